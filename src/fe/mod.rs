@@ -45,6 +45,7 @@ mod temperature;
 mod thermal_force;
 mod unbalanced;
 mod unsupported_cards;
+mod variants;
 mod what_hangs;
 
 pub use adjoint::{Adjoint, StrainTerm};
@@ -64,3 +65,4 @@ pub use solve::{
     supported_stiffness,
 };
 pub use support::{Support, SupportChoice, SupportError, assumed_relief, support_of};
+pub use variants::solve_variants;

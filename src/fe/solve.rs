@@ -10,7 +10,7 @@ use super::modes::frequencies;
 use super::options::SolveOptions;
 use super::prepared::Prepared;
 use super::reactions::{SolvedCase, reactions};
-use super::relief::Balance;
+use super::relief::{Balance, RigidBody};
 use super::report::{Clock, SolveReport, Solved};
 use super::scalar_points::{carry_to_grids, check_free_points, follow_grids};
 use super::shape_checks::check_shapes;
@@ -91,7 +91,7 @@ pub fn solution_of(
     with_strain(&prepare(model, cases)?, cases, solved, options)
 }
 
-fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeError> {
+pub(super) fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeError> {
     let refused = super::unsupported_cards::unsupported_cards(model, cases);
     if refused.is_empty() {
         Ok(Prepared::new(model))
@@ -100,7 +100,7 @@ fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeE
     }
 }
 
-fn displacements(
+pub(super) fn displacements(
     prepared: &Prepared<'_>,
     cases: &[LoadCase],
     options: &SolveOptions,
@@ -175,7 +175,10 @@ fn solve_group(
     let mut columns = vec![0.0; n * cases.len()];
     let acting: Vec<Acting> = cases
         .par_iter()
-        .map(|case| acting(prepared, mass, &system, report.mass.as_ref(), case))
+        .map(|case| {
+            let system = (&system, system.body.as_ref());
+            acting(prepared, mass, system, report.mass.as_ref(), case)
+        })
         .collect::<Result<_, FeError>>()?;
     let mut forces = Vec::with_capacity(cases.len());
     for acting in acting {
@@ -269,7 +272,7 @@ fn solve_group(
 }
 
 /// Goes on, or not.
-fn go_on(options: &SolveOptions) -> Result<(), FeError> {
+pub(super) fn go_on(options: &SolveOptions) -> Result<(), FeError> {
     match options.stop.is_asked() {
         true => Err(FeError::Stopped),
         false => Ok(()),
@@ -302,21 +305,21 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
 }
 
 /// What acts in a case.
-struct Acting {
+pub(super) struct Acting {
     /// By grid, basic frame, inertia included where it balances.
-    forces: Vec<[f64; 6]>,
-    balance: Option<Balance>,
-    findings: Vec<Finding>,
+    pub(super) forces: Vec<[f64; 6]>,
+    pub(super) balance: Option<Balance>,
+    pub(super) findings: Vec<Finding>,
 }
 
-/// The balanced loads of a case.
+/// The loads of a case, balanced by the inertia of `body` where there is one.
 ///
 /// # Errors
 /// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.
-fn acting(
+pub(super) fn acting(
     prepared: &Prepared<'_>,
     mass: &Mass,
-    system: &System,
+    (system, body): (&System, Option<&RigidBody>),
     weight: Option<&MassProperties>,
     case: &LoadCase,
 ) -> Result<Acting, FeError> {
@@ -333,7 +336,7 @@ fn acting(
     ));
     carry_to_grids(prepared, &system.reduction, &mut f);
     let mut balance = None;
-    if let Some(body) = &system.body {
+    if let Some(body) = body {
         check_free_points(model, &system.reduction, case.subcase, &f)?;
         let before = largest(&f);
         balance = Some(body.balance(case.subcase, mass, &mut f));

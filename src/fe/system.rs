@@ -47,16 +47,7 @@ impl System {
         let model = prepared.model;
         let reduction = reduce(model, &prepared.axes, sets)?;
         let mut assembled = assemble(prepared, &reduction)?;
-        let body = match relief {
-            Relief::None => None,
-            _ => RigidBody::new(
-                model,
-                &prepared.axes,
-                mass,
-                &reduction,
-                &touched(prepared, &reduction),
-            )?,
-        };
+        let body = body(prepared, mass, &reduction, relief)?;
         if let Some(body) = &body {
             findings.extend(ties(prepared, &assembled, body));
         }
@@ -106,6 +97,19 @@ impl System {
             body,
             weak,
         })
+    }
+
+    /// The free rigid motions of a structure with these constraints and its own mass.
+    ///
+    /// # Errors
+    /// See [`RigidBody::new`].
+    pub(super) fn body_of(
+        &self,
+        prepared: &Prepared<'_>,
+        mass: &Mass,
+        relief: Relief,
+    ) -> Result<Option<RigidBody>, FeError> {
+        body(prepared, mass, &self.reduction, relief)
     }
 
     /// The factor.
@@ -303,6 +307,20 @@ impl System {
         let numbers = (&self.numbering, self.symbolic.unknown_start());
         held_loads(model, numbers, &self.weak, subcase, sizes, moved)
     }
+}
+
+/// The free rigid motions, where inertia balances loads.
+fn body(
+    prepared: &Prepared<'_>,
+    mass: &Mass,
+    reduction: &Reduction,
+    relief: Relief,
+) -> Result<Option<RigidBody>, FeError> {
+    if relief == Relief::None {
+        return Ok(None);
+    }
+    let touched = touched(prepared, reduction);
+    RigidBody::new(prepared.model, &prepared.axes, mass, reduction, &touched)
 }
 
 /// Grids that belong to the structure: of an element, or tied to it.

@@ -7,7 +7,7 @@ use strainbridge::fe::*;
 use strainbridge::model::{MaterialIx, MaterialKind, Model, ShellIx, ShellKind, ShellPropertyIx};
 
 /// A tray: floor and a side wall, a triangle more, a mass on an RBE3.
-fn tray() -> Bulk {
+pub fn tray() -> Bulk {
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3,7.85-9");
     b.card("PSHELL,1,1,3.0,1,,1");
@@ -32,7 +32,7 @@ fn tray() -> Bulk {
 }
 
 /// The model with the moduli of some shells times a factor.
-fn scaled(model: &Model, shells: &[usize], factor: f64) -> Model {
+pub fn scaled(model: &Model, shells: &[usize], factor: f64) -> Model {
     let mut out = model.clone();
     let mut material = out.materials[0];
     let MaterialKind::Isotropic { e, g, .. } = &mut material.kind else {

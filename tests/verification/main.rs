@@ -32,6 +32,7 @@ mod support;
 mod supports;
 mod thermal;
 mod ties;
+mod variants;
 mod warping;
 mod whole_decks;
 mod written;

@@ -314,13 +314,15 @@ fn a_deck_whose_mass_is_more_than_numbers_can_be_is_a_fault_of_every_command() {
     ] {
         let folder = copied(&format!("mass_{name}"), "frame");
         edit(&folder, "frame.bdf", |t| t.replace(from, to));
-        for command in ["check", "sensitivity"] {
-            refuses(
-                &folder,
-                &[command, "recover.toml"],
-                "mass: the mass of the model",
-            );
-        }
+        let says = "mass: the mass of the model";
+        refuses(&folder, &["sensitivity", "recover.toml"], says);
+        // What it read is written, the fault among it.
+        let (exit, _, errors) = judged(&folder, &["check", "recover.toml"]);
+        assert_eq!(exit, 2, "{errors}");
+        assert!(errors.contains(says), "{errors}");
+        let report = std::fs::read_to_string(folder.join("judged.out/report.html")).unwrap();
+        let beyond = "mass more than numbers can be";
+        assert!(report.contains(beyond) && !report.contains("mass inf"));
     }
 }
 

@@ -83,7 +83,6 @@ impl DeckEntry {
     /// For people.
     pub fn text(&self) -> String {
         let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
-        let [x, y, z] = self.cg.map(short);
         let wtmass = if self.wtmass == 1.0 {
             String::new()
         } else {
@@ -93,13 +92,20 @@ impl DeckEntry {
             .solution
             .as_ref()
             .map_or(String::new(), |s| format!(", SOL {s}"));
+        let [x, y, z] = self.cg.map(short);
+        let weight = match self.mass.is_finite() && self.cg.iter().all(|v| v.is_finite()) {
+            true => format!(
+                "{}{wtmass}, centre of gravity {x}, {y}, {z}",
+                short(self.mass)
+            ),
+            false => "more than numbers can be".to_owned(),
+        };
         format!(
-            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {}{wtmass}, centre of gravity {x}, {y}, {z}\n  cards: {}\n  faults: {}",
+            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n  faults: {}",
             self.path,
             self.grids,
             self.elements,
             self.subcases.len(),
-            short(self.mass),
             cards.join(", "),
             self.faults
         )

@@ -1,8 +1,8 @@
 //! Signatures of the user's own hypotheses: from a table, or from the edited deck solved again.
 
 use super::deck_frame::DeckFrame;
-use super::influence::{influence, solve};
 use super::signature_table::{SignatureTable, TableColumn};
+use super::stiffness::Changed;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::{DescribedEffect, EffectSource, Job, NamedFile};
@@ -160,21 +160,24 @@ impl DeckFrame {
             ))
         };
         let factor = factor_at(&e.source, size).unwrap_or(1.0);
-        let model = match &e.source {
+        let changed = match &e.source {
             EffectSource::Thickness { property, .. } => {
-                let scaled = self.with_properties(|id| id == *property, factor);
-                scaled.ok_or_else(|| lacks(format!("PSHELL {property}")))?
+                let ids = self.shell_properties(|id| id == *property);
+                if ids.is_empty() {
+                    return Err(lacks(format!("PSHELL {property}")));
+                }
+                Changed::Thickness(ids, factor)
             }
             EffectSource::Bush { element, .. } => {
                 if !self.fields.model().bushes.iter().any(|b| b.id == *element) {
                     return Err(lacks(format!("CBUSH {element}")));
                 }
-                self.with_joint(&element.to_string(), factor)
+                Changed::Bush(element.to_string(), factor)
             }
-            EffectSource::Signature(_) => self.fields.model().clone(),
+            // A table is no change of the deck.
+            EffectSource::Signature(_) => return Ok(vec![0.0; self.base.len()]),
         };
-        let solution = solve(job, &model, &self.columns, &self.stop)?;
-        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
-        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+        let mut changes = self.changes_by(job, &[changed])?;
+        Ok(changes.pop().unwrap_or_default())
     }
 }

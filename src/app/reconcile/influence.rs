@@ -6,6 +6,7 @@ use crate::app::solved::support_of_job;
 use crate::app::work::stopped;
 use crate::fe::{
     Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, solve_unit_loads_on,
+    solve_variants,
 };
 use crate::gauge::{Gauge, reading};
 use crate::model::{GridIx, Model};
@@ -67,6 +68,23 @@ pub(super) fn solve(
     let support = support_of_job(job, model)?;
     let solved = solve_unit_loads_on(model, support, loads, &until(stop));
     solved.map(|s| s.0).map_err(|e| of_solver(job, &e))
+}
+
+/// What `read` tells of each variant of the model under these loads.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn solve_each<T>(
+    job: &Job,
+    model: &Model,
+    loads: &[UnitLoad],
+    variants: impl ExactSizeIterator<Item = Model>,
+    stop: &Stop,
+    read: impl FnMut(&Model, &Solution) -> T,
+) -> Result<Vec<T>, Faults> {
+    let support = support_of_job(job, model)?;
+    let solved = solve_variants(model, support, loads, variants, &until(stop), read);
+    solved.map_err(|e| of_solver(job, &e))
 }
 
 /// Displacements of the model under these loads and for these readings.

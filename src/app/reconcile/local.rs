@@ -5,9 +5,10 @@
 //! moved, widened and narrowed, those that lead are solved at half their stiffness, and the best of these stand beside the library's effects.
 
 use super::deck_frame::DeckFrame;
-use super::influence::{adjoint, blank_payload, influence, of_solver, solve};
+use super::influence::{adjoint, blank_payload, of_solver};
 use super::local_ground::Ground;
 use super::region::Region;
+use super::stiffness::Changed;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
 use crate::fe::Adjoint;
@@ -17,7 +18,6 @@ use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
 use crate::units::MICROSTRAIN;
-use rayon::prelude::*;
 use std::collections::BTreeMap;
 
 /// Stiffness at which a region is solved first, natural log times 100: half.
@@ -81,7 +81,7 @@ fn read_otherwise(e: &NamedEffect) -> Vec<&String> {
 }
 
 impl DeckFrame {
-    /// Signatures of the regions that take most of what the gauges `off` read besides; kept by place for [`DeckFrame::with_region`].
+    /// Signatures of the regions that take most of what the gauges `off` read besides; kept by place for [`DeckFrame::shells_of_region`].
     pub(super) fn regions_round(
         &mut self,
         job: &Job,
@@ -121,11 +121,12 @@ impl DeckFrame {
             all = best_first(all);
         }
         let n = (BUDGET / ground.model.grids.len().max(1)).clamp(KEPT, LEADING);
-        let leading = elsewhere(all, n).into_par_iter().map(|t| {
-            let change = self.change_of_region(job, &t.region, (HALF / 100.0).exp())?;
-            Ok(tried((t.region, change)))
-        });
-        let kept = elsewhere(best_first(leading.collect::<Result<_, Faults>>()?), KEPT);
+        let leading: Vec<Region> = elsewhere(all, n).into_iter().map(|t| t.region).collect();
+        let half = (HALF / 100.0).exp();
+        let halved = |r: &Region| Changed::Shells(r.shells.clone(), half);
+        let changes = self.changes_by(job, &leading.iter().map(halved).collect::<Vec<_>>())?;
+        let solved = leading.into_iter().zip(changes).map(tried).collect();
+        let kept = elsewhere(best_first(solved), KEPT);
         self.regions = kept.iter().map(|t| t.region.clone()).collect();
         Ok(kept
             .into_iter()
@@ -156,20 +157,10 @@ impl DeckFrame {
         })
     }
 
-    /// The model with the moduli of the region at `place` times `factor`; unchanged where there is no such region.
-    pub(super) fn with_region(&self, place: &str, factor: f64) -> Model {
-        let model = self.fields.model();
-        match self.regions.iter().find(|r| r.place == place) {
-            Some(r) => softened(model, &r.shells, factor),
-            None => model.clone(),
-        }
-    }
-
-    fn change_of_region(&self, job: &Job, r: &Region, factor: f64) -> Result<Vec<f64>, Faults> {
-        let model = softened(self.fields.model(), &r.shells, factor);
-        let solution = solve(job, &model, &self.columns, &self.stop)?;
-        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
-        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+    /// Shells of the region at `place`; none where there is no such region.
+    pub(super) fn shells_of_region(&self, place: &str) -> Vec<usize> {
+        let region = self.regions.iter().find(|r| r.place == place);
+        region.map_or_else(Vec::new, |r| r.shells.clone())
     }
 }
 
@@ -223,7 +214,7 @@ fn elsewhere(all: Vec<Tried>, n: usize) -> Vec<Tried> {
 }
 
 /// The model with shells' moduli times `factor`: properties and materials of their own behind all others.
-fn softened(model: &Model, shells: &[usize], factor: f64) -> Model {
+pub(super) fn softened(model: &Model, shells: &[usize], factor: f64) -> Model {
     let mut out = model.clone();
     let mut materials: BTreeMap<u32, MaterialIx> = BTreeMap::new();
     let mut properties: BTreeMap<u32, ShellPropertyIx> = BTreeMap::new();

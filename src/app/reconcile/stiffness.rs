@@ -2,12 +2,12 @@
 
 use super::deck_frame::DeckFrame;
 use super::described::{effect_of, factor_at};
-use super::influence::{influence, solve};
+use super::influence::{influence, solve_each};
+use super::local::softened;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::model::Model;
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
-use rayon::prelude::*;
 
 /// Thickness change at which a zone's signature is computed first, percent.
 const ZONE_PERCENT: f64 = 10.0;
@@ -48,6 +48,16 @@ fn joints(job: &Job, model: &Model) -> Vec<u32> {
     chosen
 }
 
+/// A change of the deck's stiffness, and its factor.
+pub(super) enum Changed {
+    /// Of a bush, by id.
+    Bush(String, f64),
+    /// Of the moduli of some shells.
+    Shells(Vec<usize>, f64),
+    /// Of the thickness of some PSHELL cards.
+    Thickness(Vec<u32>, f64),
+}
+
 impl DeckFrame {
     /// Signatures of all zones and joints.
     pub(super) fn signatures(&self, job: &Job) -> Result<Vec<StiffnessSignature>, Faults> {
@@ -64,20 +74,21 @@ impl DeckFrame {
                 JOINT_PRIOR,
             )
         }));
-        let solved = wanted
-            .into_par_iter()
-            .map(|(id, place, sizes, prior_percent)| {
-                let at = sizes
-                    .into_iter()
-                    .map(|p| Ok((p, self.stiffness_change(job, id, &place, p)?)));
-                Ok(StiffnessSignature {
-                    of: id,
-                    at_percent: at.collect::<Result<_, Faults>>()?,
-                    prior_percent,
-                    place,
-                })
-            });
-        solved.collect()
+        let mut models: Vec<Changed> = Vec::new();
+        for (of, place, sizes, _) in &wanted {
+            for percent in sizes {
+                models.push(self.changed(job, *of, place, *percent)?);
+            }
+        }
+        let mut changes = self.changes_by(job, &models)?.into_iter();
+        let signature =
+            |(of, place, sizes, prior_percent): (_, _, Vec<f64>, _)| StiffnessSignature {
+                of,
+                place,
+                at_percent: sizes.into_iter().zip(&mut changes).collect(),
+                prior_percent,
+            };
+        Ok(wanted.into_iter().map(signature).collect())
     }
 
     /// Change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]), from a solution of
@@ -92,18 +103,54 @@ impl DeckFrame {
         if let (StiffnessOf::Described, Some(e)) = (of, effect_of(job, place)) {
             return self.described_change(job, e, percent);
         }
-        let factor = factor(job, of, place, percent).unwrap_or(1.0);
-        let model = match of {
-            StiffnessOf::Joint => self.with_joint(place, factor),
-            StiffnessOf::Local => self.with_region(place, factor),
-            StiffnessOf::Zone | StiffnessOf::Described => self.with_zone(job, place, factor)?,
-        };
-        let solution = solve(job, &model, &self.columns, &self.stop)?;
-        let now = influence(job, &model, &self.gauges, &solution, self.columns.len());
-        Ok(now.iter().zip(&self.base).map(|(a, b)| a - b).collect())
+        let changed = self.changed(job, of, place, percent)?;
+        let mut changes = self.changes_by(job, &[changed])?;
+        Ok(changes.pop().unwrap_or_default())
     }
 
-    pub(super) fn with_joint(&self, place: &str, factor: f64) -> Model {
+    /// Change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh as it stands.
+    pub(super) fn changes_by(&self, job: &Job, all: &[Changed]) -> Result<Vec<Vec<f64>>, Faults> {
+        let models = all.iter().map(|c| self.model_with(c));
+        let (model, n) = (self.fields.model(), self.columns.len());
+        solve_each(
+            job,
+            model,
+            &self.columns,
+            models,
+            &self.stop,
+            |model, solution| {
+                let now = influence(job, model, &self.gauges, solution, n);
+                now.iter().zip(&self.base).map(|(a, b)| a - b).collect()
+            },
+        )
+    }
+
+    fn changed(
+        &self,
+        job: &Job,
+        of: StiffnessOf,
+        place: &str,
+        percent: f64,
+    ) -> Result<Changed, Faults> {
+        let factor = factor(job, of, place, percent).unwrap_or(1.0);
+        Ok(match of {
+            StiffnessOf::Joint => Changed::Bush(place.to_owned(), factor),
+            StiffnessOf::Local => Changed::Shells(self.shells_of_region(place), factor),
+            StiffnessOf::Zone | StiffnessOf::Described => {
+                Changed::Thickness(self.properties_of_zone(job, place)?, factor)
+            }
+        })
+    }
+
+    fn model_with(&self, changed: &Changed) -> Model {
+        match changed {
+            Changed::Bush(id, factor) => self.with_joint(id, *factor),
+            Changed::Shells(shells, factor) => softened(self.fields.model(), shells, *factor),
+            Changed::Thickness(ids, factor) => self.with_properties(ids, *factor),
+        }
+    }
+
+    fn with_joint(&self, place: &str, factor: f64) -> Model {
         let mut model = self.fields.model().clone();
         for b in model
             .bushes
@@ -115,36 +162,36 @@ impl DeckFrame {
         model
     }
 
-    fn with_zone(&self, job: &Job, zone: &str, factor: f64) -> Result<Model, Faults> {
+    fn properties_of_zone(&self, job: &Job, zone: &str) -> Result<Vec<u32>, Faults> {
         let fault = |wrong: String, remedy: &str| {
             Faults::from(Fault::of(&*job.file, "reconcile.zones", wrong, remedy))
         };
         let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
             return Err(fault(format!("no zone `{zone}`"), "name its properties"));
         };
-        self.with_properties(|id| ids.contains(id), factor)
-            .ok_or_else(|| {
-                fault(
-                    format!("zone `{zone}` names no PSHELL of the deck"),
-                    "name PSHELL ids",
-                )
-            })
+        let found = self.shell_properties(|id| ids.contains(id));
+        if found.is_empty() {
+            let wrong = format!("zone `{zone}` names no PSHELL of the deck");
+            return Err(fault(wrong, "name PSHELL ids"));
+        }
+        Ok(found)
     }
 
-    /// The model with the thickness of the shell properties `wanted` scaled; `None` where there are none.
-    pub(super) fn with_properties(
-        &self,
-        wanted: impl Fn(u32) -> bool,
-        factor: f64,
-    ) -> Option<Model> {
+    /// Ids of the PSHELL cards that are wanted.
+    pub(super) fn shell_properties(&self, wanted: impl Fn(u32) -> bool) -> Vec<u32> {
+        let cards = self.fields.deck.deck.cards.pshells.iter();
+        cards.map(|p| p.card.id).filter(|id| wanted(*id)).collect()
+    }
+
+    /// The model with the thickness of these shell properties scaled.
+    fn with_properties(&self, ids: &[u32], factor: f64) -> Model {
         let mut deck = self.fields.deck.deck.clone();
-        let mut changed = false;
-        for p in deck.cards.pshells.iter_mut().filter(|p| wanted(p.card.id)) {
+        let cards = deck.cards.pshells.iter_mut();
+        for p in cards.filter(|p| ids.contains(&p.card.id)) {
             p.card.t = p.card.t.map(|t| t * factor);
             p.card.z1 = p.card.z1.map(|z| z * factor);
             p.card.z2 = p.card.z2.map(|z| z * factor);
-            changed = true;
         }
-        changed.then(|| Model::from_deck(&deck).0)
+        Model::from_deck(&deck).0
     }
 }

@@ -1,0 +1,120 @@
+//! Variants of a model on its factor, against solutions with a factor of their own.
+
+use crate::adjoint::{scaled, tray};
+use strainbridge::fe::*;
+use strainbridge::model::{Model, ShellKind, Vec3};
+
+/// The tray with a bush between a bracket and the wall.
+fn model() -> Model {
+    let mut b = tray();
+    let ends = [[20.0, 10.0, 40.0], [20.0, 10.0, 40.0]].map(|x| b.grid(x));
+    for (i, end) in ends.iter().enumerate() {
+        let held = if i == 0 { "1,2,10,11" } else { "40,41,50,51" };
+        b.card(&format!("RBE3,{},,{end},123456,1.0,123,{held}", 910 + i));
+    }
+    b.card("PBUSH,50,K,2.0+3,3.0+3,1.5+3,4.0+5,4.0+5,4.0+5");
+    b.card(&format!("CBUSH,950,50,{},{},,,,0", ends[0], ends[1]));
+    b.model()
+}
+
+/// Thicker and heavier: its inertia balances loads otherwise.
+fn thicker(model: &Model, factor: f64) -> Model {
+    let mut out = model.clone();
+    for p in &mut out.shell_properties {
+        if let ShellKind::Homogeneous { t, .. } = &mut p.kind {
+            *t *= factor;
+        }
+        p.z = p.z.map(|z| z * factor);
+    }
+    for s in out.shells.iter_mut().step_by(3) {
+        s.thickness = s.thickness.map(|t| t * factor);
+    }
+    out
+}
+
+fn bush(model: &Model, factor: f64) -> Model {
+    let mut out = model.clone();
+    out.bushes[0].k = out.bushes[0].k.map(|k| k * factor);
+    out
+}
+
+fn moved(model: &Model) -> Model {
+    let mut out = model.clone();
+    out.grids[20].x += Vec3::new(3.0, -2.0, 1.0);
+    out
+}
+
+fn entries(solution: &Solution) -> Vec<f64> {
+    let of = |c: &CaseResult| -> Vec<f64> {
+        let corners = c.shells.corners.iter().flatten().flatten().flatten();
+        let centres = c.shells.centre.iter().flatten().flatten();
+        centres
+            .chain(corners)
+            .copied()
+            .filter(|v| v.is_finite())
+            .collect()
+    };
+    solution.cases.iter().flat_map(of).collect()
+}
+
+#[test]
+fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
+    let model = model();
+    let loads =
+        [(3, [300.0, -200.0, 500.0]), (45, [0.0, 700.0, 0.0])].map(|(g, f)| UnitLoad::AtGrid {
+            grid: strainbridge::model::GridIx(g),
+            force: f.into(),
+            moment: [0.0, 1.0e4, 0.0].into(),
+        });
+    let held = Support {
+        spc: Some(1),
+        relief: Relief::None,
+    };
+    let variants = [
+        thicker(&model, 1.1),
+        scaled(&model, &[9, 10, 11, 17], 0.5),
+        bush(&model, 2.0),
+        bush(&model, 0.01),
+        // Of no use to the factor of the base: a cut through and a moved grid.
+        scaled(&model, &[0, 1, 2, 3, 4, 5], 1e-5),
+        moved(&model),
+        model.clone(),
+    ];
+    for support in [Support::free(&model), held] {
+        let options = SolveOptions::default();
+        let own = |m: &Model| {
+            let solved = solve_unit_loads_on(m, support, &loads, &options).unwrap();
+            entries(&solved.0)
+        };
+        let base = own(&model);
+        let read = |_: &Model, s: &Solution| entries(s);
+        let all = solve_variants(
+            &model,
+            support,
+            &loads,
+            variants.iter().cloned(),
+            &options,
+            read,
+        );
+        let all = all.unwrap();
+        let size = base.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+        for (i, (got, variant)) in all.iter().zip(&variants).enumerate() {
+            let right = own(variant);
+            let largest = |a: &[f64], b: &[f64]| {
+                a.iter()
+                    .zip(b)
+                    .fold(0.0_f64, |m, (a, b)| m.max((a - b).abs()))
+            };
+            let (change, off) = (largest(&right, &base), largest(got, &right));
+            assert!(
+                i + 1 == variants.len() || change > 1e-4 * size,
+                "{i}: {change} of {size}"
+            );
+            // 1e-8 in energy; a single strain may take a little more. Rounding of two factors: 1e-10 of the strain.
+            assert!(
+                off < 1e-6 * change + 1e-9 * size,
+                "{i}: {off}, change {change}, size {size}"
+            );
+        }
+    }
+}
