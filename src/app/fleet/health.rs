@@ -6,8 +6,10 @@ use crate::units::MICROSTRAIN;
 /// Every how many samples the residual is looked at: enough of a day for a gain to a thousandth, few enough to cost little.
 const THINNED: usize = 16;
 
-/// Gauges whose sums stand in registers at a time: two vectors of four, a line of the cache.
-const TOGETHER: usize = 8;
+/// Vectors of gauges whose sums stand in registers at a time.
+const TOGETHER: usize = 2;
+/// Most gauges of so many vectors.
+const WIDEST: usize = 8 * TOGETHER;
 
 /// Sums over the readings of one gauge, strain.
 #[derive(Clone, Debug, Default)]
@@ -52,26 +54,27 @@ impl Health {
     }
 
     #[inline(always)]
-    fn add_rows(&mut self, strain: &[f64], loads: &[f64]) {
+    fn add_rows<S: pulp::Simd>(&mut self, simd: S, strain: &[f64], loads: &[f64]) {
         let n = self.sums.len().max(1);
-        // Squares of larger ones would not be finite; they are no strain.
-        const LARGE: f64 = 1e100;
-        if strain.iter().fold(true, |all, y| all & (y.abs() < LARGE)) {
-            let mut first = 0;
-            for sums in self.sums.chunks_mut(TOGETHER) {
-                match <&mut [Sums; TOGETHER]>::try_from(&mut *sums) {
-                    Ok(all) => added(all, strain, n, first),
-                    Err(_) => {
-                        for (own, g) in sums.iter_mut().zip(first..) {
-                            added(std::array::from_mut(own), strain, n, g);
-                        }
-                    }
+        let together = TOGETHER * S::F64_LANES;
+        for (sums, first) in self.sums.chunks_mut(together).zip((0..).step_by(together)) {
+            // The last few stand in vectors with those before them.
+            let begin = n.checked_sub(together).map(|last| first.min(last));
+            let all = begin.and_then(|begin| Some((begin, added(simd, strain, n, begin)?)));
+            let Some((begin, [sum, squares, seconds])) = all else {
+                for (own, g) in sums.iter_mut().zip(first..) {
+                    own.add(strain.iter().skip(g).step_by(n));
                 }
-                first += sums.len();
-            }
-        } else {
-            for (g, sums) in self.sums.iter_mut().enumerate() {
-                sums.add(strain.iter().skip(g).step_by(n));
+                continue;
+            };
+            let samples = strain.len() / n;
+            let lanes = sum.iter().zip(&squares).zip(&seconds);
+            for (own, ((sum, squares), seconds)) in sums.iter_mut().zip(lanes.skip(first - begin)) {
+                own.sum += sum;
+                own.squares += squares;
+                own.seconds += seconds;
+                own.n += samples as u64;
+                own.n_seconds += samples.saturating_sub(2) as u64;
             }
         }
         let k = (self.s.len() / n).max(1);
@@ -132,42 +135,50 @@ impl pulp::WithSimd for Add<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.to.add_rows(self.strain, self.loads);
+    fn with_simd<S: pulp::Simd>(self, simd: S) {
+        self.to.add_rows(simd, self.strain, self.loads);
     }
 }
 
-/// Adds the readings of `W` gauges from number `first` on, of `n` in a row, all of them known.
+/// Sums, sums of squares and of squared second differences of the gauges from number `first` on, of `n` in a row, as many as the vectors hold;
+/// `None` where a reading is missing or too large to be strain.
 #[inline(always)]
-fn added<const W: usize>(sums: &mut [Sums; W], strain: &[f64], n: usize, first: usize) {
-    let [mut sum, mut squares, mut seconds] = [[0.0; W]; 3];
-    for (i, s) in sums.iter().enumerate() {
-        (sum[i], squares[i], seconds[i]) = (s.sum, s.squares, s.seconds);
-    }
-    let [mut a, mut b] = [[0.0; W]; 2];
-    let mut samples = 0;
-    for row in strain.chunks_exact(n) {
-        let Some(y) = row.get(first..).and_then(|r| r.first_chunk::<W>()) else {
-            continue;
-        };
-        for i in 0..W {
-            sum[i] += y[i];
-            squares[i] += y[i] * y[i];
-        }
-        if samples > 1 {
-            for i in 0..W {
-                let second = b[i] - 2.0 * a[i] + y[i];
-                seconds[i] += second * second;
+fn added<S: pulp::Simd>(
+    simd: S,
+    strain: &[f64],
+    n: usize,
+    first: usize,
+) -> Option<[[f64; WIDEST]; 3]> {
+    /// Squares of larger readings would not be finite.
+    const LARGE: f64 = 1e200;
+    let vectors = |row: &[f64]| -> Option<[S::f64s; TOGETHER]> {
+        let own = row.get(first..first + TOGETHER * S::F64_LANES)?;
+        S::as_simd_f64s(own).0.first_chunk().copied()
+    };
+    let zero = [simd.splat_f64s(0.0); TOGETHER];
+    let (mut sum, mut squares, mut seconds) = (zero, zero, zero);
+    // The reading before, and what it had risen by.
+    let (mut before, mut rise) = (zero, zero);
+    for (i, row) in strain.chunks_exact(n).enumerate() {
+        let y = vectors(row)?;
+        for v in 0..TOGETHER {
+            sum[v] = simd.add_f64s(sum[v], y[v]);
+            squares[v] = simd.mul_add_f64s(y[v], y[v], squares[v]);
+            let more = simd.sub_f64s(y[v], before[v]);
+            if i > 1 {
+                let second = simd.sub_f64s(more, rise[v]);
+                seconds[v] = simd.mul_add_f64s(second, second, seconds[v]);
             }
+            (before[v], rise[v]) = (y[v], more);
         }
-        samples += 1;
-        (b, a) = (a, *y);
     }
-    for (i, s) in sums.iter_mut().enumerate() {
-        (s.sum, s.squares, s.seconds) = (sum[i], squares[i], seconds[i]);
-        s.n += samples;
-        s.n_seconds += samples.saturating_sub(2);
+    let mut out = [[0.0; WIDEST]; 3];
+    for (out, sums) in out.iter_mut().zip([sum, squares, seconds]) {
+        let slots = S::as_mut_simd_f64s(out).0.iter_mut();
+        slots.zip(sums).for_each(|(slot, v)| *slot = v);
     }
+    let known = out[1].iter().all(|q| *q < LARGE);
+    known.then_some(out)
 }
 
 impl Sums {

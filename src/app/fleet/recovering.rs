@@ -12,6 +12,9 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Samples gone through together: their strain stays in the nearest cache. The thinned residuals of [`Health`] begin anew with each.
+const NEAR: usize = 128;
+
 /// How many records are being recovered at the moment.
 #[derive(Default)]
 pub(super) struct UnderWay(AtomicUsize);
@@ -89,28 +92,31 @@ impl Recovering {
         let [factors, offsets] = &self.scale;
         let (mut strain, mut recovered) = (Vec::new(), SampleLoads::default());
         record.read(piece, &self.columns, &mut |block| {
-            strain.resize(block.values.len(), f64::NAN);
-            let rows = block.values.chunks_exact(n);
-            for (out, row) in strain.chunks_exact_mut(n).zip(rows) {
-                let scale = factors.iter().zip(offsets);
-                for ((out, v), (a, b)) in out.iter_mut().zip(row).zip(scale) {
-                    *out = v * a + b;
+            let firsts = (block.first..).step_by(NEAR);
+            for (values, first) in block.values.chunks(NEAR * n.max(1)).zip(firsts) {
+                strain.resize(values.len(), f64::NAN);
+                let rows = values.chunks_exact(n);
+                for (out, row) in strain.chunks_exact_mut(n).zip(rows) {
+                    let scale = factors.iter().zip(offsets);
+                    for ((out, v), (a, b)) in out.iter_mut().zip(row).zip(scale) {
+                        *out = v * a + b;
+                    }
                 }
+                recovered.values.clear();
+                recovered.gaps.clear();
+                self.filter
+                    .loads_of(&strain, 1.0, &mut recovered, &mut part.missing);
+                let loads = &mut recovered.values;
+                for row in loads.chunks_exact_mut(k) {
+                    row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
+                }
+                for row in strain.chunks_exact_mut(n) {
+                    row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
+                }
+                part.health.add(&strain, loads);
+                part.judged.add(first, &strain, loads);
+                part.loads.extend_from_slice(loads);
             }
-            recovered.values.clear();
-            recovered.gaps.clear();
-            self.filter
-                .loads_of(&strain, 1.0, &mut recovered, &mut part.missing);
-            let loads = &mut recovered.values;
-            for row in loads.chunks_exact_mut(k) {
-                row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
-            }
-            for row in strain.chunks_exact_mut(n) {
-                row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
-            }
-            part.health.add(&strain, loads);
-            part.judged.add(block.first, &strain, loads);
-            part.loads.extend_from_slice(loads);
             ControlFlow::Continue(())
         })?;
         Ok(part)
