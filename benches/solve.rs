@@ -2,11 +2,15 @@
 //!
 //! Loads are vertical unit forces at grids spread over the model. With a third argument the supported stiffness goes to a Matrix
 //! Market file, which `../shared/benchmarks/frames/pardiso_anchor.py` reads: run both in one sitting and compare.
+//!
+//! `--zones`: ten zones, a fortieth of the shells each and a tenth thicker, as variants on one factor, over the time of the solution.
 
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
 use std::io::Write;
 use std::time::Instant;
-use strainbridge::fe::{Corners, SolveOptions, UnitLoad, solve_unit_loads, supported_stiffness};
+use strainbridge::fe::{
+    Corners, SolveOptions, Support, UnitLoad, solve_unit_loads, solve_variants, supported_stiffness,
+};
 use strainbridge::model::{GridIx, Model, Vec3};
 
 struct NoFiles;
@@ -15,6 +19,20 @@ impl Loader for NoFiles {
     fn load(&mut self, _: &IncludeRequest) -> Result<Loaded, String> {
         Err("benchmark decks have no includes".to_owned())
     }
+}
+
+/// Zones that are changed one at a time.
+const ZONES: usize = 10;
+
+/// The model with one of the zones a tenth thicker.
+fn thicker(model: &Model, zone: usize) -> Model {
+    let mut out = model.clone();
+    let n = out.shells.len();
+    let shells = out.shells.iter_mut().skip(zone * n / ZONES);
+    for s in shells.take(n / (4 * ZONES)) {
+        s.thickness = s.thickness.map(|t| 1.1 * t);
+    }
+    out
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -45,23 +63,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             }
         })
         .collect();
+    let options = SolveOptions {
+        corners: Corners::Compute,
+        ..SolveOptions::default()
+    };
     let start = Instant::now();
-    let (_, report) = solve_unit_loads(
-        &model,
-        &loads,
-        &SolveOptions {
-            corners: Corners::Compute,
-            ..SolveOptions::default()
-        },
-    )?;
+    let (_, report) = solve_unit_loads(&model, &loads, &options)?;
+    let solved = start.elapsed().as_secs_f64();
     writeln!(
         out,
-        "solve {count} loads {:.2} s: {} unknowns, {} entries, {:?}",
-        start.elapsed().as_secs_f64(),
-        report.dofs,
-        report.factor_nonzeros,
-        report.ordering
+        "solve {count} loads {solved:.2} s: {} unknowns, {} entries, {:?}",
+        report.dofs, report.factor_nonzeros, report.ordering
     )?;
+    if std::env::args().any(|a| a == "--zones") {
+        let start = Instant::now();
+        let variants = (0..ZONES).map(|zone| thicker(&model, zone));
+        let support = Support::free(&model);
+        let read = |_: &Model, s: &strainbridge::fe::Solution| s.cases.len();
+        solve_variants(&model, support, &loads, variants, &options, read)?;
+        let took = start.elapsed().as_secs_f64();
+        let share = took / solved;
+        writeln!(out, "{ZONES} zones {took:.2} s, {share:.2} solutions")?;
+    }
     if let Some(matrix) = arguments.get(2) {
         let (n, entries) = supported_stiffness(&model)?;
         let mut file = std::io::BufWriter::new(std::fs::File::create(matrix)?);
