@@ -101,6 +101,19 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
         result["calibration"]["runs"], 9,
         "eight weighed bay by bay, one by its sum"
     );
+    let left_out = result["calibration"]["left_out"].as_array().unwrap();
+    let of_sum = left_out.iter().find(|l| l["run"] == "W9").unwrap();
+    let one = |name: &str| {
+        let all = of_sum["loads"].as_array().unwrap();
+        all.iter().find(|l| l["name"] == name).unwrap()
+    };
+    for bay in ["front", "rear"] {
+        assert!(one(bay)["known"].is_null(), "{of_sum}");
+    }
+    let [known, low, high] =
+        ["known", "low", "high"].map(|key| one("payload")[key].as_f64().unwrap());
+    assert!((known - 60.0).abs() < 1e-6, "{of_sum}");
+    assert!(low < known && known < high, "{of_sum}");
     let (code, result, said) = run(
         "recover",
         &folder.join("cal/calibrated.toml"),
@@ -836,6 +849,25 @@ fn weight_and_moment_of_a_payload_share_the_error_of_its_weight() {
     for name in ["payload", "payload.MY"] {
         let (_, sigma) = load(&result, "L0", name);
         assert!((sigma / shared - 1.0).abs() < 0.1, "{name}: {sigma}");
+    }
+}
+
+#[test]
+fn a_combination_that_no_calibrated_job_could_recover_is_a_fault_of_calibrate_and_check_too() {
+    let folder = scratch("calibrate-combination");
+    let job = "units = \"m-kg-s\"\n[[load]]\nname = \"jack.FZ\"\n[[load]]\nname = \"jack.MY\"\n\
+               [[combination]]\nname = \"both\"\nterms = { \"jack.FZ\" = 1, \"jack.MY\" = 1 }\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    let runs = "run,jack.FZ,jack.MY\nA,10,0\nB,0,20\nC,30,10\n";
+    let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,-40.3\nC,40.2,40.1\n";
+    let job = write_job(&folder, job, runs, strain);
+    for command in ["calibrate", "check"] {
+        let (code, _, said) = run(command, &job, &folder.join(command));
+        assert_eq!(code, Some(2), "{command}: {said}");
+        assert!(
+            said.contains("combination.terms: `both` adds forces and moments"),
+            "{command}: {said}"
+        );
     }
 }
 

@@ -14,6 +14,8 @@ pub struct Dependence {
     pub sigma: f64,
     /// Chance of such a slope where there is none.
     pub chance: f64,
+    /// Degrees of freedom behind `sigma`.
+    pub dof: f64,
 }
 
 /// Rounds between the slope and the calibration that knows of it; they settle in three.
@@ -29,7 +31,7 @@ const SETTLED: f64 = 0.1;
 ///
 /// `None` where no freedom is left for it, or where the column does not change but with the loads.
 pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
-    let (mut found, free) = slope(task, left_out, column)?;
+    let mut found = slope(task, left_out, column)?;
     if found.slope_rel.abs() <= found.sigma {
         return Some(found);
     }
@@ -38,14 +40,15 @@ pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<D
             break;
         };
         let again = calibrate(&sloped).ok();
-        let Some((rest, _)) = again.and_then(|c| slope(&sloped, &c.left_out, column)) else {
+        let Some(rest) = again.and_then(|c| slope(&sloped, &c.left_out, column)) else {
             break;
         };
         let slope_rel = found.slope_rel + rest.slope_rel;
         found = Dependence {
             slope_rel,
             sigma: rest.sigma,
-            chance: chance(slope_rel, rest.sigma, free),
+            chance: chance(slope_rel, rest.sigma, rest.dof),
+            dof: rest.dof,
         };
         if rest.slope_rel.abs() < SETTLED * rest.sigma {
             break;
@@ -75,11 +78,11 @@ fn with_slope(task: &Task, column: &[f64], slope_rel: f64) -> Option<Task> {
 }
 
 /// Chance of a slope where there is none.
-fn chance(slope_rel: f64, sigma: f64, free: f64) -> f64 {
-    (2.0 * student_tail((slope_rel / sigma).abs(), free)).min(1.0)
+fn chance(slope_rel: f64, sigma: f64, dof: f64) -> f64 {
+    (2.0 * student_tail((slope_rel / sigma).abs(), dof)).min(1.0)
 }
 
-/// Slope of recovered over known sum of the left-out runs against the column, with its degrees of freedom.
+/// Slope of recovered over known sum of the left-out runs against the column.
 ///
 /// What the others taught of S has the column in it too. With `Z` the known loads of each run over their sum, whose factors the calibration
 /// fits, `H = Z (Z'Z)^-1 Z'` and `h = H_rr`, the others make `1 - h + h u` of a left-out run's ratio `u` theirs: `(u - 1) (1 - h) / (1 - h + h u)` is
@@ -88,7 +91,7 @@ fn chance(slope_rel: f64, sigma: f64, free: f64) -> f64 {
 ///
 /// # Reference
 /// R. D. Cook, S. Weisberg, Residuals and Influence in Regression (1982), section 2.2 (left-out residuals), 2.3.2 (added variables).
-fn slope(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<(Dependence, f64)> {
+fn slope(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
     let wanted: Vec<usize> = (0..task.loads.len())
         .filter(|l| task.loads[*l].wanted)
         .collect();
@@ -133,12 +136,12 @@ fn slope(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<(Dependenc
     let slope_rel = x.iter().zip(&y).map(|(x, y)| x * y).sum::<f64>() / sxx;
     let rest = x.iter().zip(&y).map(|(x, y)| (y - slope_rel * x).powi(2));
     let sigma = (rest.sum::<f64>() / free / sxx).sqrt();
-    let found = Dependence {
+    Some(Dependence {
         slope_rel,
         sigma,
         chance: chance(slope_rel, sigma, free),
-    };
-    Some((found, free))
+        dof: free,
+    })
 }
 
 /// Share of a column's square from which what the loads leave of it is no rounding.

@@ -34,6 +34,7 @@ pub use dependence::{Dependence, depends_on};
 pub use fit::calibrate;
 pub use next::{NextRun, next_runs};
 pub use types::*;
+pub use unknown::known_of;
 
 #[cfg(test)]
 mod tests;

@@ -5,7 +5,7 @@
 //! strain that the known sums leave (`start.rs`), the loads along `Z` are free in each run ([`Free`]), and the covariance of S along `S Z B`
 //! stays as wide as beforehand: recovered loads along `Z` are unknown, their sums are not.
 
-use super::types::{KnownLoads, KnownRun};
+use super::types::{KnownLoads, KnownRun, Task};
 use crate::linalg::{Matrix, dense, spd};
 
 /// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.
@@ -108,6 +108,21 @@ pub(super) fn wide_directions(loads: &KnownLoads, scales: &[f64]) -> Vec<Vec<f64
     let wide = (0..k).filter(|i| d.s[*i] > UNKNOWN * UNKNOWN);
     wide.map(|i| d.v.column(i).iter().copied().collect())
         .collect()
+}
+
+/// What is known of a sum of loads (their numbers and factors) in a run of the task; `None` where its sd is more than [`UNKNOWN`] of the largest
+/// that any run has.
+pub fn known_of(task: &Task, run: usize, terms: &[(usize, f64)]) -> Option<f64> {
+    let k = task.loads.len();
+    let value = |r: &KnownRun| -> f64 { terms.iter().map(|(l, c)| c * r.loads.mean[*l]).sum() };
+    let largest = task.runs.iter().map(|r| value(r).abs());
+    let largest = largest.fold(0.0, f64::max);
+    let run = task.runs.get(run)?;
+    let pairs = terms.iter().flat_map(|a| terms.iter().map(move |b| (a, b)));
+    let variance: f64 = pairs
+        .map(|((l, c), (m, d))| c * d * run.loads.covariance[l * k + m])
+        .sum();
+    (variance.max(0.0).sqrt() <= UNKNOWN * largest).then(|| value(run))
 }
 
 /// Takes from `x` what lies along orthonormal directions.
