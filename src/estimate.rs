@@ -31,6 +31,12 @@ impl LoadEstimate {
             .sqrt()
     }
 
+    /// Multiplies every sigma by a factor.
+    pub fn widen(&mut self, factor: f64) {
+        let covariance = self.covariance.iter_mut();
+        covariance.for_each(|c| *c *= factor * factor);
+    }
+
     /// Appends sums of loads, each a list of loads and factors: `c' f` with the variance `c' C c`.
     pub fn add_sums(&mut self, names: &[String], sums: &[Vec<(usize, f64)>]) {
         let k = self.values.len();

@@ -101,6 +101,19 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
         result["calibration"]["runs"], 9,
         "eight weighed bay by bay, one by its sum"
     );
+    let left_out = result["calibration"]["left_out"].as_array().unwrap();
+    let of_sum = left_out.iter().find(|l| l["run"] == "W9").unwrap();
+    let one = |name: &str| {
+        let all = of_sum["loads"].as_array().unwrap();
+        all.iter().find(|l| l["name"] == name).unwrap()
+    };
+    for bay in ["front", "rear"] {
+        assert!(one(bay)["known"].is_null(), "{of_sum}");
+    }
+    let [known, low, high] =
+        ["known", "low", "high"].map(|key| one("payload")[key].as_f64().unwrap());
+    assert!((known - 60.0).abs() < 1e-6, "{of_sum}");
+    assert!(low < known && known < high, "{of_sum}");
     let (code, result, said) = run(
         "recover",
         &folder.join("cal/calibrated.toml"),
@@ -205,6 +218,80 @@ fn runs_that_do_not_determine_s_are_said_so_and_known_loads_that_are_missing_are
         said.contains("runs.csv:14: run: run `R13` is to teach and its loads are not known"),
         "{said}"
     );
+}
+
+#[test]
+fn of_lorries_that_a_scale_weighed_whole_the_whole_is_known_and_the_axles_are_not() {
+    const ROWS: [[f64; 2]; 6] = [
+        [3.0, 1.0],
+        [2.0, -1.0],
+        [-1.0, 2.0],
+        [1.0, 3.0],
+        [2.0, 1.0],
+        [-2.0, 1.0],
+    ];
+    let folder = scratch("calibrate-sums-alone");
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"front\"\n[[load]]\nname = \"rear\"\n\
+               [[combination]]\nname = \"whole\"\nterms = { front = 1, rear = 1 }\n[measured]\nstrain = \"strain.csv\"\n\
+               noise_microstrain = 0.1\n[runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\n";
+    let loads = |i: u32| [f64::from(5 + 7 * i % 11), f64::from(4 + 5 * i % 13)];
+    let (mut runs, mut strain) = (
+        "run,front,rear,whole\n".to_owned(),
+        "run,A,B,C,D,E,F\n".to_owned(),
+    );
+    for i in 0..17 {
+        let [front, rear] = loads(i);
+        if i < 14 {
+            let _ = writeln!(runs, "R{i},,,{}", front + rear);
+        }
+        let _ = write!(strain, "R{i}");
+        for (g, row) in (0_u32..).zip(ROWS) {
+            // 0.1 microstrain, root mean square.
+            let (r, g) = (f64::from(i), f64::from(g));
+            let noise = 0.1 * 2_f64.sqrt() * (2.3 * r * r + 1.7 * g * g * r + g).sin();
+            let _ = write!(strain, ",{:.6}", row[0] * front + row[1] * rear + noise);
+        }
+        let _ = writeln!(strain);
+    }
+    let job = write_job(&folder, job, &runs, &strain);
+    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(1), "{said}");
+    let undetermined = result["calibration"]["undetermined"].as_array().unwrap();
+    let [apart] = undetermined.as_slice() else {
+        panic!("{undetermined:?}")
+    };
+    let share = |name: &str| apart[name].as_f64().unwrap();
+    assert!(
+        (share("front") + share("rear")).abs() < 1e-6,
+        "what takes from one axle and gives to the other: {apart}"
+    );
+    assert!(said.contains("Known all the same: front + rear"), "{said}");
+    let calibrated = folder.join("cal/calibrated.toml");
+    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("loads-not-determined"), "{said}");
+    // Of the true S: noise times the root of the sum of (S'S)^-1.
+    let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
+    for [x, y] in ROWS {
+        (a, b, c) = (a + x * x, b + x * y, c + y * y);
+    }
+    let best = 0.1 * ((a + c - 2.0 * b) / (a * c - b * b)).sqrt();
+    for i in 14..17 {
+        let truth: f64 = loads(i).iter().sum();
+        let run = format!("R{i}");
+        let (value, sigma) = load(&result, &run, "whole");
+        assert!(
+            (value - truth).abs() < 3.0 * sigma,
+            "{run}: {value} +- {sigma}"
+        );
+        assert!(
+            sigma < 1.5 * best && sigma > 0.9 * best,
+            "{run}: {sigma}, {best}"
+        );
+        for name in ["front", "rear"] {
+            assert!(load(&result, &run, name).1 > truth, "{run} {name}");
+        }
+    }
 }
 
 /// A strip of plates, 400 by 80 mm, clamped at x = 0, with a rigid end plate at x = 400.
@@ -724,6 +811,63 @@ fn payloads_of_known_mass_and_place_teach_and_then_every_lift_is_weighed() {
             "{one}"
         );
         assert!(number("mass_sigma") < 0.05 * kg, "{one}");
+    }
+}
+
+#[test]
+fn weight_and_moment_of_a_payload_share_the_error_of_its_weight() {
+    let folder = scratch("calibrate-payload-error");
+    // A scale that is off by 5 % (1 sd) of 1000 kg; places are known. The first run's place is wrong by 0.2 m: of moments whose errors were their own,
+    // 60 kg m each, three sd; of the one error of its weight nothing at all makes that.
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"N\", moment = \"N m\" }\n[[load]]\nname = \"payload\"\n\
+               [[load]]\nname = \"payload.MY\"\n[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.1\n[runs]\nfile = \"runs.csv\"\n";
+    let (mut runs, mut strain) = (
+        "run,payload_mass,payload_mass_sd,payload_x\n".to_owned(),
+        "run,G1,G2,G3,G4\n".to_owned(),
+    );
+    for i in 0..17 {
+        let x = if i % 2 == 0 { 1.0 } else { -1.0 };
+        let stated = if i == 0 { 1.2 } else { x };
+        let _ = writeln!(runs, "W{i},1000,50,{stated}");
+        let wiggle = if i / 2 % 2 == 0 { 0.03 } else { -0.03 };
+        let _ = writeln!(strain, "W{i}{}", lift(1000.0, x, wiggle));
+    }
+    let _ = writeln!(strain, "L0{}", lift(1000.0, 1.0, 0.0));
+    let job = write_job(&folder, job, &runs, &strain);
+    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{said}");
+    assert_eq!(
+        result["calibration"]["refused"],
+        serde_json::json!(["W0"]),
+        "{said}"
+    );
+    let calibrated = folder.join("cal/calibrated.toml");
+    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(0), "{said}");
+    // Eight runs stand where the lift does: 5 % over the root of eight, of either.
+    let shared = 1000.0 * 9.80665 * 0.05 / 8_f64.sqrt();
+    for name in ["payload", "payload.MY"] {
+        let (_, sigma) = load(&result, "L0", name);
+        assert!((sigma / shared - 1.0).abs() < 0.1, "{name}: {sigma}");
+    }
+}
+
+#[test]
+fn a_combination_that_no_calibrated_job_could_recover_is_a_fault_of_calibrate_and_check_too() {
+    let folder = scratch("calibrate-combination");
+    let job = "units = \"m-kg-s\"\n[[load]]\nname = \"jack.FZ\"\n[[load]]\nname = \"jack.MY\"\n\
+               [[combination]]\nname = \"both\"\nterms = { \"jack.FZ\" = 1, \"jack.MY\" = 1 }\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    let runs = "run,jack.FZ,jack.MY\nA,10,0\nB,0,20\nC,30,10\n";
+    let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,-40.3\nC,40.2,40.1\n";
+    let job = write_job(&folder, job, runs, strain);
+    for command in ["calibrate", "check"] {
+        let (code, _, said) = run(command, &job, &folder.join(command));
+        assert_eq!(code, Some(2), "{command}: {said}");
+        assert!(
+            said.contains("combination.terms: `both` adds forces and moments"),
+            "{command}: {said}"
+        );
     }
 }
 

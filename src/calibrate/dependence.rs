@@ -1,5 +1,6 @@
 //! Whether loads come out larger with a column of the runs, such as speed.
 
+use super::fit::calibrate;
 use super::types::{LeftOut, Task};
 use crate::linalg::tail::student_tail;
 use crate::linalg::{Matrix, dense};
@@ -13,20 +14,84 @@ pub struct Dependence {
     pub sigma: f64,
     /// Chance of such a slope where there is none.
     pub chance: f64,
+    /// Degrees of freedom behind `sigma`.
+    pub dof: f64,
 }
 
-/// Slope of recovered over known sum of the left-out runs against the column (a value a run of the task; NaN: blank).
+/// Rounds between the slope and the calibration that knows of it; they settle in three.
+const ROUNDS: usize = 4;
+/// Share of its sigma up to which a slope counts as settled.
+const SETTLED: f64 = 0.1;
+
+/// Relative change of the loads with the column (a value a run of the task; NaN: blank); `left_out` of the task's calibration.
+///
+/// A calibration that does not know of a slope takes it for scatter of the runs, several times as large, and learns which patterns of noise go with
+/// it by chance: the slope that its left-out runs show is off by more than they scatter. So, where there is one, the loads are made what the slope
+/// makes of them, `f (1 + slope (x - mean x))`, and the runs calibrated again, until nothing of a slope is left.
+///
+/// `None` where no freedom is left for it, or where the column does not change but with the loads.
+pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
+    let mut found = slope(task, left_out, column)?;
+    if found.slope_rel.abs() <= found.sigma {
+        return Some(found);
+    }
+    for _ in 0..ROUNDS {
+        let Some(sloped) = with_slope(task, column, found.slope_rel) else {
+            break;
+        };
+        let again = calibrate(&sloped).ok();
+        let Some(rest) = again.and_then(|c| slope(&sloped, &c.left_out, column)) else {
+            break;
+        };
+        let slope_rel = found.slope_rel + rest.slope_rel;
+        found = Dependence {
+            slope_rel,
+            sigma: rest.sigma,
+            chance: chance(slope_rel, rest.sigma, rest.dof),
+            dof: rest.dof,
+        };
+        if rest.slope_rel.abs() < SETTLED * rest.sigma {
+            break;
+        }
+    }
+    Some(found)
+}
+
+/// The task with known loads times what a slope makes of them; `None` where that turns the sign of one.
+fn with_slope(task: &Task, column: &[f64], slope_rel: f64) -> Option<Task> {
+    let known: Vec<f64> = column.iter().copied().filter(|x| x.is_finite()).collect();
+    let mean = known.iter().sum::<f64>() / known.len() as f64;
+    let mut out = task.clone();
+    for (run, x) in out.runs.iter_mut().zip(column) {
+        let factor = match x.is_finite() {
+            true => 1.0 + slope_rel * (x - mean),
+            false => 1.0,
+        };
+        if !(factor > 0.0) {
+            return None;
+        }
+        run.loads.mean.iter_mut().for_each(|f| *f *= factor);
+        let covariance = run.loads.covariance.iter_mut();
+        covariance.for_each(|c| *c *= factor * factor);
+    }
+    Some(out)
+}
+
+/// Chance of a slope where there is none.
+fn chance(slope_rel: f64, sigma: f64, dof: f64) -> f64 {
+    (2.0 * student_tail((slope_rel / sigma).abs(), dof)).min(1.0)
+}
+
+/// Slope of recovered over known sum of the left-out runs against the column.
 ///
 /// What the others taught of S has the column in it too. With `Z` the known loads of each run over their sum, whose factors the calibration
 /// fits, `H = Z (Z'Z)^-1 Z'` and `h = H_rr`, the others make `1 - h + h u` of a left-out run's ratio `u` theirs: `(u - 1) (1 - h) / (1 - h + h u)` is
 /// a residual of least squares with the run in it, and the slope is that of these residuals against `(I - H) x`, of which `R - rank Z - 1`
 /// are free.
 ///
-/// `None` where none is free, or where the column does not change but with the loads.
-///
 /// # Reference
 /// R. D. Cook, S. Weisberg, Residuals and Influence in Regression (1982), section 2.2 (left-out residuals), 2.3.2 (added variables).
-pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
+fn slope(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<Dependence> {
     let wanted: Vec<usize> = (0..task.loads.len())
         .filter(|l| task.loads[*l].wanted)
         .collect();
@@ -71,11 +136,11 @@ pub fn depends_on(task: &Task, left_out: &[LeftOut], column: &[f64]) -> Option<D
     let slope_rel = x.iter().zip(&y).map(|(x, y)| x * y).sum::<f64>() / sxx;
     let rest = x.iter().zip(&y).map(|(x, y)| (y - slope_rel * x).powi(2));
     let sigma = (rest.sum::<f64>() / free / sxx).sqrt();
-    let chance = (2.0 * student_tail((slope_rel / sigma).abs(), free)).min(1.0);
     Some(Dependence {
         slope_rel,
         sigma,
-        chance,
+        chance: chance(slope_rel, sigma, free),
+        dof: free,
     })
 }
 

@@ -3,9 +3,9 @@
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
-use super::start::SPANNED;
 use super::state::{State, left, sensitivity_of};
-use super::types::{Coverage, LeftOut, Task};
+use super::types::{Coverage, KnownLoads, KnownRun, LeftOut, Task};
+use super::unknown::{SPANNED, UNKNOWN, wide_directions};
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, estimate};
 use rayon::prelude::*;
@@ -101,6 +101,10 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
         found.estimate.covariance[at] + run.loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
+    let told = Told::of(run, &wanted, &state.scales);
+    if told.combinations == 0 {
+        return None;
+    }
     let apart: Vec<f64> = wanted
         .iter()
         .map(|&l| found.estimate.values[l] - run.loads.mean[l])
@@ -116,12 +120,11 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
             .sum();
         off * off / variance
     };
-    let each = (0..w)
-        .map(|i| apart[i] * apart[i] / covariance[i * w + i])
-        .sum::<f64>()
-        / w.max(1) as f64;
+    let each = told.alone.iter();
+    let each = each.map(|&i| apart[i] * apart[i] / covariance[i * w + i]);
     Some(LeftOut {
-        each,
+        each: each.sum::<f64>() / told.alone.len().max(1) as f64,
+        alone: told.alone.len(),
         sums: task
             .sums
             .iter()
@@ -130,12 +133,37 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
             .collect(),
         number,
         distance: mahalanobis(&covariance, &apart)?,
-        loads: w,
+        loads: told.combinations,
         dof,
         misfit: found.chi2 / found.dof.max(1) as f64,
         known: run.loads.mean.clone(),
         estimate: found.estimate,
     })
+}
+
+/// What is known of a run's wanted loads.
+struct Told {
+    /// Independent combinations.
+    combinations: usize,
+    /// Loads by themselves, by number among the wanted.
+    alone: Vec<usize>,
+}
+
+impl Told {
+    fn of(run: &KnownRun, wanted: &[usize], scales: &[f64]) -> Self {
+        let (k, w) = (scales.len(), wanted.len());
+        let entry = |i: usize| run.loads.covariance[wanted[i / w] * k + wanted[i % w]];
+        let loads = KnownLoads {
+            mean: wanted.iter().map(|l| run.loads.mean[*l]).collect(),
+            covariance: (0..w * w).map(entry).collect(),
+        };
+        let scales: Vec<f64> = wanted.iter().map(|l| scales[*l]).collect();
+        let sd = |i: usize| loads.covariance[i * w + i].sqrt();
+        Self {
+            combinations: w - wide_directions(&loads, &scales).len(),
+            alone: (0..w).filter(|i| sd(*i) <= UNKNOWN * scales[*i]).collect(),
+        }
+    }
 }
 
 /// Rounds between the scatter of the others and the posterior that it gives.
@@ -239,7 +267,7 @@ pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
     let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
     let mut scores =
         vec![score(kept().map(|l| {
-            (l.each * l.loads as f64 / expected_ratio(l.dof), l.loads)
+            (l.each * l.alone as f64 / expected_ratio(l.dof), l.alone)
         }))];
     let sums = left_out.iter().map(|l| l.sums.len()).min().unwrap_or(0);
     for i in 0..sums {

@@ -1,13 +1,14 @@
 //! What strain says of loads that are known with an error: errors in variables.
 
 use super::types::KnownLoads;
+use super::unknown::{Free, project_out};
 use crate::linalg::spd;
 
 /// Loads of one run given S: what was known, corrected by what the gauges read.
 pub(super) struct Corrected {
     /// Most probable loads, in loads of unit size.
     pub phi: Vec<f64>,
-    /// `S (f - f0)`: added to the readings, they are those of `phi`.
+    /// `S (f - f0)` without what is free: added to the readings, they are those of `phi`.
     pub shift: Vec<f64>,
     /// `S D S'` by rows: strain that the loads' own error makes.
     pub spread: Vec<f64>,
@@ -16,12 +17,12 @@ pub(super) struct Corrected {
 }
 
 /// Loads given their own Gaussian `known` and readings `y` of covariance `r` (by rows) through `s` (rows by gauge, loads of unit size):
-/// `f = f0 + D S' (S D S' + R)^-1 (y - S f0)`.
+/// `f = f0 + D S' (S D S' + R)^-1 (y - S f0)`. Loads that are `free` have no `f0` that readings could be far from: theirs is `f`.
 ///
 /// # Reference
 /// W. A. Fuller, Measurement Error Models (1987), section 2.2.
 pub(super) fn correct(
-    known: &KnownLoads,
+    (known, free): (&KnownLoads, Free),
     scales: &[f64],
     s: &[Vec<f64>],
     y: &[f64],
@@ -29,7 +30,7 @@ pub(super) fn correct(
 ) -> Option<Corrected> {
     let (n, k) = (y.len(), scales.len());
     let first: Vec<f64> = known.mean.iter().zip(scales).map(|(f, c)| f / c).collect();
-    if known.covariance.iter().all(|v| *v == 0.0) {
+    if known.covariance.iter().all(|v| *v == 0.0) && free.directions.is_empty() {
         return Some(Corrected {
             phi: first,
             shift: vec![0.0; n],
@@ -37,7 +38,9 @@ pub(super) fn correct(
             freedom: 0.0,
         });
     }
-    let d = |l: usize, m: usize| known.covariance[l * k + m] / (scales[l] * scales[m]);
+    let d = |l: usize, m: usize| {
+        known.covariance[l * k + m] / (scales[l] * scales[m]) + free.covariance(l, m)
+    };
     let carried: Vec<Vec<f64>> = s
         .iter()
         .map(|row| {
@@ -64,8 +67,10 @@ pub(super) fn correct(
     let step: Vec<f64> = (0..k)
         .map(|m| carried.iter().zip(&weighted).map(|(c, w)| c[m] * w).sum())
         .collect();
+    let mut off = step.clone();
+    project_out(&mut off, free.directions);
     Some(Corrected {
-        shift: s.iter().map(|row| spd::dot(row, &step)).collect(),
+        shift: s.iter().map(|row| spd::dot(row, &off)).collect(),
         phi: first.iter().zip(&step).map(|(a, b)| a + b).collect(),
         freedom: spd::trace_of_product(&spread, &inverse),
         spread,

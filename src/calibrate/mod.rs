@@ -4,7 +4,7 @@
 //! [`posterior`] solves for all entries together, because the scatter of repeats ([`scatter`]) goes across gauges; [`known`] carries the
 //! errors of the loads themselves; [`held_out`] leaves out run by run and states how far intervals must be widened; [`shift`] says how
 //! each gauge moved, [`cause`] what that looks like by the [`evidence`] of its readings, [`glued`] where it sits, [`next`] which load would
-//! tell most, [`undetermined`] what no run has shown.
+//! tell most, [`undetermined`] what no run has shown, [`unknown`] what runs weighed by a sum leave open.
 
 mod as_glued;
 mod cause;
@@ -27,12 +27,14 @@ mod state;
 mod stated;
 mod types;
 mod undetermined;
+mod unknown;
 
 pub use as_glued::{GlueTolerance, calibrate_as_glued};
 pub use dependence::{Dependence, depends_on};
 pub use fit::calibrate;
 pub use next::{NextRun, next_runs};
 pub use types::*;
+pub use unknown::known_of;
 
 #[cfg(test)]
 mod tests;

@@ -1,14 +1,10 @@
-//! S to begin with where no model gives one: from the runs whose loads are known.
+//! S to begin with where no model gives one: from the runs whose loads are known, or from what is known of each.
 
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::RowPrior;
 use super::types::{KnownRun, Task};
-use crate::linalg::spd;
-
-/// Share of the largest eigenvalue of the loads' squares from which a combination counts as applied.
-pub(super) const SPANNED: f64 = 1e-6;
-/// Share of a load's size from which its sd makes it unknown.
-pub(super) const UNKNOWN: f64 = 0.5;
+use super::unknown::{SPANNED, UNKNOWN, Unknown, project_out, span_alike};
+use crate::linalg::{Matrix, dense, spd};
 
 /// Whether every load of a run is known to better than [`UNKNOWN`] of its size.
 pub(super) fn is_known(run: &KnownRun, sizes: &[f64]) -> bool {
@@ -43,22 +39,7 @@ pub(super) fn from_known(
             .map(|(f, c)| f / c)
             .collect();
         spd::add_outer(&mut gram, &phi, 1.0);
-        let gauges: Vec<usize> = (0..prior.len())
-            .filter(|&g| run.strain.get(g).is_some_and(|v| v.is_finite()))
-            .collect();
-        let m = gauges.len();
-        let noise = (task.noise * task.noise * run.noise_factor).max(f64::MIN_POSITIVE);
-        let mut covariance = vec![0.0; m * m];
-        covariance
-            .iter_mut()
-            .step_by(m + 1)
-            .for_each(|v| *v = noise);
-        equations.push(Equation {
-            y: gauges.iter().map(|&g| run.strain[g]).collect(),
-            gauges,
-            phi,
-            covariance,
-        });
+        equations.push(with_noise(task, run, phi));
     }
     let values = spd::eigenvalues(&gram, k);
     let (least, most) = (values.first()?, values.last()?);
@@ -66,4 +47,101 @@ pub(super) fn from_known(
         return None;
     }
     solve(prior, &equations)
+}
+
+/// A run as an equation of loads `phi` whose readings have noise alone.
+fn with_noise(task: &Task, run: &KnownRun, phi: Vec<f64>) -> Equation {
+    let gauges: Vec<usize> = (0..task.gauges.len())
+        .filter(|&g| run.strain.get(g).is_some_and(|v| v.is_finite()))
+        .collect();
+    let m = gauges.len();
+    let noise = (task.noise * task.noise * run.noise_factor).max(f64::MIN_POSITIVE);
+    let mut covariance = vec![0.0; m * m];
+    covariance
+        .iter_mut()
+        .step_by(m + 1)
+        .for_each(|v| *v = noise);
+    Equation {
+        y: gauges.iter().map(|&g| run.strain[g]).collect(),
+        gauges,
+        phi,
+        covariance,
+    }
+}
+
+/// Rows of S by gauge where no run tells the loads along some directions: what the known parts of the loads make, by least squares, and along what
+/// runs leave free the patterns over gauges that strain has besides, the largest first, each for loads of a root mean square of 1.
+///
+/// # Reference
+/// M. E. Tipping, C. M. Bishop, J. R. Stat. Soc. B 61 (1999) 611: principal components are the most probable columns where noise is alike.
+pub(super) fn from_parts(
+    task: &Task,
+    runs: &[&KnownRun],
+    unknown: &Unknown,
+    prior: &[RowPrior],
+) -> Option<Vec<Vec<f64>>> {
+    let n = prior.len();
+    let known = runs.iter().zip(&unknown.parts);
+    let equations: Vec<Equation> = known
+        .map(|(run, part)| with_noise(task, run, part.clone()))
+        .collect();
+    let found = solve(prior, &equations)?;
+    let mut rows: Vec<Vec<f64>> = (found.mean.chunks_exact(found.k.max(1)))
+        .map(<[f64]>::to_vec)
+        .collect();
+    let left = |(run, part): (&&KnownRun, &Vec<f64>)| -> Vec<f64> {
+        let off = run.strain.iter().zip(found.predict(part));
+        off.map(|(y, p)| if y.is_finite() { y - p } else { 0.0 })
+            .collect()
+    };
+    let lefts: Vec<Vec<f64>> = runs.iter().zip(&unknown.parts).map(left).collect();
+    // Directions with their patterns.
+    let (mut directions, mut patterns) = (Vec::<Vec<f64>>::new(), Vec::<Vec<f64>>::new());
+    for free in &unknown.free {
+        let new = beyond(free, &directions);
+        if new.is_empty() {
+            continue;
+        }
+        let explained: Vec<Vec<f64>> = (directions.iter().zip(&patterns))
+            .filter(|(z, _)| free.iter().any(|f| spd::dot(f, z).abs() > OVERLAP))
+            .map(|(_, u)| u.clone())
+            .collect();
+        let alike = unknown.free.iter().zip(&lefts);
+        let alike: Vec<Vec<f64>> = alike
+            .filter(|(other, _)| span_alike(free, other))
+            .map(|(_, left)| {
+                let mut left = left.clone();
+                project_out(&mut left, &explained);
+                left
+            })
+            .collect();
+        let d = dense::svd(&Matrix::from_fn(alike.len(), n, |r, g| alike[r][g]))?;
+        for (i, z) in new.into_iter().enumerate().take(d.s.len()) {
+            let pattern: Vec<f64> = d.v.column(i).iter().copied().collect();
+            let size = d.s[i] / (alike.len() as f64).sqrt();
+            for (row, u) in rows.iter_mut().zip(&pattern) {
+                row.iter_mut().zip(&z).for_each(|(s, z)| *s += size * u * z);
+            }
+            directions.push(z);
+            patterns.push(pattern);
+        }
+    }
+    Some(rows)
+}
+
+/// Cosine from which two directions have something in common.
+const OVERLAP: f64 = 1e-3;
+
+/// Orthonormal directions of the span of `free` at a right angle to the orthonormal `taken`.
+fn beyond(free: &[Vec<f64>], taken: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let mut all = taken.to_vec();
+    for f in free {
+        let mut rest = f.clone();
+        project_out(&mut rest, &all);
+        let size = spd::dot(&rest, &rest).sqrt();
+        if size > OVERLAP {
+            all.push(rest.iter().map(|v| v / size).collect());
+        }
+    }
+    all.split_off(taken.len())
 }

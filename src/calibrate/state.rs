@@ -6,8 +6,9 @@ use super::model_error::{ErrorEvidence, error_evidence as learn_error};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{FLOORS, RowError, RowPrior, diffuse, rows};
 use super::scatter::{Left, Scatter};
-use super::start::from_known;
+use super::start::{from_known, from_parts};
 use super::types::{KnownRun, ModelPrior, Task};
+use super::unknown::{Free, Unknown};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty, mean_square};
 
@@ -58,23 +59,23 @@ impl State {
             .fold(0.0_f64, |a, v| a.max(v.abs()));
         let alike = |r: &&KnownRun| runs.iter().filter(|o| o.group == r.group).count();
         let repeats: Vec<usize> = runs.iter().map(alike).collect();
+        let without_model = diffuse(n, k, largest);
+        let begun = Begun::of(task, &runs, &scales, &without_model);
         let mut scatter = Scatter::none(n);
         let mut state: Option<Self> = None;
         for _ in 0..ROUNDS {
             let mean: Vec<Vec<f64>> = match (&state, &task.model) {
                 (Some(s), _) => rows_of(&s.posterior),
                 (None, Some(m)) => drawn(m, &scales),
-                (None, None) => {
-                    let begun = from_known(task, &runs, &scales, &diffuse(n, k, largest));
-                    begun.map_or_else(|| vec![vec![0.0; k]; n], |s| rows_of(&s))
-                }
+                (None, None) => begun.rows.clone(),
             };
             let mut freedom = 0.0;
             let (mut equations, mut by_gauge) = (Vec::new(), Vec::new());
             for (i, run) in runs.iter().enumerate() {
                 let so_far = state.as_ref();
                 let times = so_far.map(|s| s.lefts[i].q2 * scatter.design(repeats[i]));
-                let made = equation(task, run, &scales, &mean, &scatter, times)?;
+                let free = begun.unknown.as_ref().map_or(Free::NONE, |u| u.free(i));
+                let made = equation(task, (run, free), &scales, &mean, &scatter, times)?;
                 freedom += made.freedom / made.equation.gauges.len().max(1) as f64;
                 by_gauge.push(given_others::by_gauge(&made.equation, &made.spread, &mean));
                 equations.push(made.equation);
@@ -85,7 +86,7 @@ impl State {
             let row_errors = row_errors.map(|e| e.by_gauge(wrongly_wired));
             let prior = match (&task.model, &row_errors) {
                 (Some(m), Some(e)) => rows(m, &scales, e.iter().copied().enumerate()),
-                _ => diffuse(n, k, largest),
+                _ => begun.prior(&without_model),
             };
             let posterior = solve(&prior, &equations)?;
             let lefts: Vec<Left> = runs
@@ -199,6 +200,45 @@ fn drawn(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
     all.into_iter().map(|row| row.mean).collect()
 }
 
+/// What a fit without a model begins with.
+struct Begun {
+    /// Rows of S; empty with a model.
+    rows: Vec<Vec<f64>>,
+    /// What the runs leave unknown, where no run tells it.
+    unknown: Option<Unknown>,
+}
+
+impl Begun {
+    fn of(task: &Task, runs: &[&KnownRun], scales: &[f64], prior: &[RowPrior]) -> Self {
+        if task.model.is_some() {
+            return Self {
+                rows: Vec::new(),
+                unknown: None,
+            };
+        }
+        let unknown = Some(Unknown::of(runs, scales)).filter(Unknown::is_any);
+        let rows = match &unknown {
+            Some(unknown) => from_parts(task, runs, unknown, prior),
+            None => from_known(task, runs, scales, prior).map(|s| rows_of(&s)),
+        };
+        Self {
+            rows: rows.unwrap_or_else(|| vec![vec![0.0; scales.len()]; prior.len()]),
+            unknown,
+        }
+    }
+
+    /// Prior of the rows. Along what no run tells it alone decides where S lies: where it began.
+    fn prior(&self, without_model: &[RowPrior]) -> Vec<RowPrior> {
+        let mut out = without_model.to_vec();
+        if self.unknown.is_some() {
+            for (prior, row) in out.iter_mut().zip(&self.rows) {
+                prior.mean.clone_from(row);
+            }
+        }
+        out
+    }
+}
+
 /// What a run says of S.
 struct Made {
     equation: Equation,
@@ -211,7 +251,7 @@ struct Made {
 /// A run as an equation, with `times` the scatter.
 fn equation(
     task: &Task,
-    run: &KnownRun,
+    (run, free): (&KnownRun, Free),
     scales: &[f64],
     mean: &[Vec<f64>],
     scatter: &Scatter,
@@ -232,7 +272,7 @@ fn equation(
     }
     let y: Vec<f64> = gauges.iter().map(|&g| run.strain[g]).collect();
     let s: Vec<Vec<f64>> = gauges.iter().map(|&g| mean[g].clone()).collect();
-    let corrected = correct(&run.loads, scales, &s, &y, &own)?;
+    let corrected = correct((&run.loads, free), scales, &s, &y, &own)?;
     let covariance = own.iter().zip(&corrected.spread);
     Some(Made {
         equation: Equation {

@@ -1,8 +1,9 @@
 //! Known loads against what the model makes of them: a wrong unit, a wrong sign. A prior that is off by such a factor must not be learnt from:
 //! all that the loads cause would count as scatter of the runs.
 
-use super::start::{SPANNED, is_known};
+use super::start::is_known;
 use super::types::{KnownRun, Task};
+use super::unknown::SPANNED;
 use crate::finding::{Finding, Severity};
 use crate::linalg::median::weighted_median;
 use crate::linalg::precision::Precision;

@@ -169,12 +169,14 @@ pub struct LeftOut {
     pub known: Vec<f64>,
     /// Squared distance between the two in units of their covariance.
     pub distance: f64,
-    /// Loads compared.
+    /// Independent combinations of loads that are known of it, and compared.
     pub loads: usize,
     /// Degrees of freedom behind the covariance.
     pub dof: f64,
-    /// Mean over loads of the squared distance of each by itself, in units of its variance.
+    /// Mean over the loads that are known by themselves of the squared distance of each, in units of its variance.
     pub each: f64,
+    /// Number of these.
+    pub alone: usize,
     /// Squared distance of each sum of loads that the task names, in units of its variance.
     pub sums: Vec<f64>,
     /// What is left of the strain over what is expected: chi2 over its degrees of freedom.

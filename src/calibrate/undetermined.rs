@@ -1,28 +1,22 @@
 //! Combinations of loads that no run has shown: known from the model only, or not at all.
 
-use super::start::SPANNED;
 use super::state::State;
-use super::types::{Task, Undetermined};
+use super::types::{KnownRun, Task, Undetermined};
+use super::unknown::Unknown;
 use crate::finding::{Finding, Severity};
-use crate::linalg::{Matrix, dense, spd};
+use crate::linalg::spd;
 
 /// Share of a load in a combination from which it is named.
 const NAMED: f64 = 0.1;
 
-/// Directions of the loads, in their sizes, along which the runs vary by nothing.
+/// Directions of the loads, in their sizes, along which what is known of the runs' loads is nothing.
 pub(super) fn check(task: &Task, state: &State) -> Vec<Undetermined> {
-    let k = task.loads.len();
-    let mut gram = vec![0.0; k * k];
-    for e in &state.equations {
-        spd::add_outer(&mut gram, &e.phi, 1.0);
-    }
-    let Some(d) = dense::svd(&Matrix::from_row_slice(k, k, &gram)) else {
-        return Vec::new();
-    };
-    let limit = SPANNED * d.s.first().copied().unwrap_or(0.0);
-    let null = (0..k).filter(|&i| d.s[i] <= limit);
-    null.map(|i| {
-        let terms: Vec<f64> = (0..k).map(|l| d.v[(l, i)] * state.scales[l]).collect();
+    let runs: Vec<&KnownRun> = (state.used.iter())
+        .filter_map(|r| task.runs.get(*r))
+        .collect();
+    let directions = Unknown::of(&runs, &state.scales).untold;
+    let one = |z: &Vec<f64>| {
+        let terms: Vec<f64> = z.iter().zip(&state.scales).map(|(v, c)| v * c).collect();
         let top = terms
             .iter()
             .copied()
@@ -30,17 +24,38 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<Undetermined> {
         Undetermined {
             terms: terms.iter().map(|v| v / top).collect(),
         }
-    })
-    .collect()
+    };
+    directions.iter().map(one).collect()
 }
 
+/// The task's sums of loads that no undetermined combination changes, in words.
+fn known_sums(task: &Task, all: &[Undetermined]) -> String {
+    let is_known = |terms: &&Vec<f64>| {
+        let size = |a: &[f64]| spd::dot(a, a).sqrt();
+        let alone = |u: &Undetermined| {
+            let along = spd::dot(terms, &u.terms).abs();
+            along < UNCHANGED * size(terms) * size(&u.terms)
+        };
+        size(terms) > 0.0 && all.iter().all(alone)
+    };
+    let known = task.sums.iter().filter(is_known);
+    let words: Vec<String> = known.map(|terms| combination(task, terms)).collect();
+    match words.is_empty() {
+        true => String::new(),
+        false => format!(". Known all the same: {}", words.join("; ")),
+    }
+}
+
+/// Cosine under which a combination does not change a sum.
+const UNCHANGED: f64 = 1e-6;
+
 /// `LF.FZ - 0.5 RF.FZ`; all loads where the shares are no numbers.
-pub(super) fn formula(task: &Task, u: &Undetermined) -> String {
+fn combination(task: &Task, terms: &[f64]) -> String {
     let mut out = String::new();
     for (load, t) in task
         .loads
         .iter()
-        .zip(&u.terms)
+        .zip(terms)
         .filter(|(_, t)| t.abs() >= NAMED)
     {
         let sign = match (out.is_empty(), *t < 0.0) {
@@ -65,10 +80,10 @@ pub(super) fn formula(task: &Task, u: &Undetermined) -> String {
 
 /// An error without a model, a remark with one.
 pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
-    let Some(first) = all.first() else {
+    if all.is_empty() {
         return Vec::new();
-    };
-    let list: Vec<String> = all.iter().map(|u| formula(task, u)).collect();
+    }
+    let list: Vec<String> = all.iter().map(|u| combination(task, &u.terms)).collect();
     let finding = if task.model.is_some() {
         Finding::new(
             Severity::Info,
@@ -81,14 +96,14 @@ pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
             "apply one of these loads by itself, if it matters",
         )
     } else {
-        let _ = first;
         Finding::new(
             Severity::Error,
             "calibration-not-determined",
             list.join("; "),
             format!(
-                "the runs do not determine S: no run tells {} from nothing, and there is no model",
-                list.join("; ")
+                "the runs do not determine S: no run tells {} from nothing, and there is no model{}",
+                list.join("; "),
+                known_sums(task, all)
             ),
             "add runs in which these loads act by themselves, give a [model], or drop loads",
         )

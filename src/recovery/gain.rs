@@ -32,7 +32,7 @@ pub struct Gain {
     /// Loads and factors behind every row of `gain`: itself, or a sum of loads.
     rows: Vec<Vec<(usize, f64)>>,
     errors: ErrorModel,
-    /// Of a calibrated S, for the gauges used; and `k x k` a load, by rows: its variance at loads `f` is `f' B f`.
+    /// Of a calibrated S, for the gauges used; and a matrix a row of `gain`, by rows: its variance at the loads `f` of S is `f' B f`.
     calibrated: Option<(Uncertainty, Vec<f64>)>,
 }
 
@@ -79,6 +79,10 @@ impl Gain {
                     base[(a, b)] += column[a] * column[b];
                 }
             }
+        }
+        // What runs left out say of sigma they say of all of it.
+        if let Some(u) = &known {
+            base *= u.scale * u.scale;
         }
         for l in (0..k).filter(|&l| covariance[(l, l)].is_infinite()) {
             base[(l, l)] = f64::INFINITY;
@@ -129,11 +133,14 @@ impl Gain {
             let column: f64 = rows[a].iter().filter(|t| t.0 == m).map(|t| t.1).sum();
             rel2 * (single + column * column)
         });
+        let calibrated = self.calibrated.as_ref();
+        let calibrated = calibrated.map(|(u, _)| (u.clone(), u.load_forms(&gain)));
         Self {
             gain,
             base,
             model_variance,
             rows,
+            calibrated,
             ..self.clone()
         }
     }
@@ -224,7 +231,8 @@ impl Gain {
 
     /// Variance of load `l` at loads `f` that the uncertainty of a calibrated S and the scatter of repeats make.
     fn calibrated_part(&self, l: usize, f: &[f64]) -> f64 {
-        let (k, Some((_, forms))) = (self.n_loads(), &self.calibrated) else {
+        // Sums of loads stand behind the loads.
+        let (k, Some((_, forms))) = (self.s.ncols(), &self.calibrated) else {
             return 0.0;
         };
         let form = forms.get(l * k * k..(l + 1) * k * k).unwrap_or(&[]);
@@ -239,7 +247,8 @@ impl Gain {
             return Vec::new();
         };
         let n = self.used.len();
-        let strain = Matrix::from_row_slice(n, n, &known.strain_covariance(n, f));
+        let loads = f.get(..self.s.ncols()).unwrap_or(f);
+        let strain = Matrix::from_row_slice(n, n, &known.strain_covariance(n, loads));
         let loads = &self.gain * strain * self.gain.transpose() * (known.scale * known.scale);
         loads.iter().copied().collect()
     }

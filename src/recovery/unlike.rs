@@ -71,7 +71,7 @@ fn above_stated(gauges: &[String], unlike: &[&RunEstimate], of: usize) -> Option
             "residual-above-stated-errors",
             "residual",
             format!(
-                "in {} of {of} runs residuals are up to {most:.1} times what noise, model uncertainty and what may be left of the mesh's error make, most in                  `{}` at {}. The loads of these runs are estimated with that much more error on every gauge, their intervals accordingly",
+                "in {} of {of} runs residuals are up to {most:.1} times what noise, model uncertainty and what may be left of the mesh's error make, most in `{}` at {}. The loads of these runs are estimated with that much more error on every gauge, their intervals accordingly",
                 unlike.len(),
                 worst_run.estimate.run,
                 worst(gauges, worst_run)

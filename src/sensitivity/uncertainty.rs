@@ -85,13 +85,14 @@ impl Uncertainty {
         out
     }
 
-    /// Quadratic forms of a filter `f = G eps`: for each load `l` the `k x k` matrix `B_l` with `f' B_l f` its variance for loads `f`;
-    /// `gain` is `k x n`.
+    /// Quadratic forms of a filter `G eps`: for each of its rows, a load or a sum of loads, the `k x k` matrix `B` with `f' B f` its variance for
+    /// the `k` loads `f` of S; `gain` has a column a gauge.
     pub fn load_forms(&self, gain: &Matrix) -> Vec<f64> {
-        let (k, n) = gain.shape();
+        let (rows, n) = gain.shape();
+        let k = (self.mean_square.len() as f64).sqrt().round() as usize;
         let scale2 = self.scale * self.scale;
-        let mut out = Vec::with_capacity(k * k * k);
-        for l in 0..k {
+        let mut out = Vec::with_capacity(rows * k * k);
+        for l in 0..rows {
             let mut own = 0.0;
             for g in 0..n {
                 for h in 0..n {

@@ -1,6 +1,6 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
-use super::payloads::add_columns;
+use super::payloads::{Payloads, add_columns};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::column_unit::{asked_column, known_column, place_of, run_column, take_units};
 use crate::app::job::quantity::quantity_of_name;
@@ -106,7 +106,8 @@ pub(super) fn read_known(
         if left_out {
             continue;
         }
-        let Some(known) = loads_of(&table, at, &stated, loads, &largest) else {
+        let Some(known) = loads_of((&table, at), &stated, payloads.as_ref(), loads, &largest)
+        else {
             if listed {
                 let line = table.rows.get(at).map_or(0, |r| r.0);
                 let wrong = format!("run `{run}` is to teach and its loads are not known");
@@ -378,9 +379,9 @@ fn largest_known(
 
 /// Loads of one run, unknown ones wide, conditioned on the sums that are known; `None` where a wanted load is in nothing that is known.
 fn loads_of(
-    table: &Table,
-    row: usize,
+    (table, row): (&Table, usize),
     stated: &[Stated],
+    payloads: Option<&Payloads>,
     loads: &[Load],
     largest: &[f64],
 ) -> Option<KnownLoads> {
@@ -401,6 +402,9 @@ fn loads_of(
             }
             terms => sums.push((terms, value, sd)),
         }
+    }
+    if let Some(payloads) = payloads {
+        payloads.share_error(row, &mut covariance, k);
     }
     for l in (0..k).filter(|l| !known[*l]) {
         let in_sum = sums

@@ -16,7 +16,8 @@ use super::job::strain::{StrainRows, StrainTable, no_gauge_column, stated_readin
 use super::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
-use super::strain::{Prepared, given_as_asked, load_units, prepare};
+use super::recover::listed;
+use super::strain::{Prepared, given_as_asked, prepare};
 use super::work::Work;
 use super::zeroed::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
 use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
@@ -35,6 +36,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let zeroed = work.stage("read strain", |w| strain_of_runs(w, job, measured))?;
     let (prepared, prior) = prior(&mut work, job, &zeroed.table)?;
     let s = &prepared.sensitivity;
+    let listed = listed(job, s)?;
     let origin = payload_place(job, &prepared);
     let (known, strain) = read(&mut work, job, (measured, runs), &zeroed, s, origin)?;
     let names = names_of(&zeroed.table);
@@ -75,15 +77,8 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             ))
         })?;
     work.findings.extend(found.findings.iter().cloned());
-    let units = load_units(
-        job,
-        &task
-            .loads
-            .iter()
-            .map(|l| l.name.clone())
-            .collect::<Vec<_>>(),
-    );
-    let next = work.stage("next run", |_| said::next_run(&task, &found, &units));
+    let units = &listed.units[..task.loads.len()];
+    let next = work.stage("next run", |_| said::next_run(&task, &found, units));
     let dependence = known
         .column
         .as_ref()
@@ -94,7 +89,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             .flatten()
             .filter_map(DependenceSummary::finding),
     );
-    let calibration = said::words(&task, &found, &units, next, dependence.flatten());
+    let calibration = said::words(&task, &found, &listed, next, dependence.flatten());
     work.findings.extend(glued::untold(&calibration.gauges));
     let glued = found.as_glued.iter().enumerate();
     let answer = Calibrated {
@@ -129,6 +124,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
         Some(_) => given_as_asked(work, job)?,
         None => stated_alone(job, &zeroed.table),
     };
+    listed(job, &s)?;
     read(work, job, (measured, runs), &zeroed, &s, [0.0; 2]).map(|_| ())
 }
 

@@ -168,19 +168,23 @@ pub struct LeftOutSummary {
     pub run: String,
     /// Distance from what is known, sigmas, root mean square over loads.
     pub distance: f64,
-    /// By load.
+    /// By load, then by combination.
     pub loads: Vec<LeftOutLoad>,
 }
 
-/// A load of a left-out run, report units.
+/// A load of a left-out run, or a combination, report units.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct LeftOutLoad {
     pub name: String,
-    pub known: f64,
+    /// As `[runs]` gives it; `None` where it does not.
+    pub known: Option<f64>,
     pub value: f64,
     pub sigma: f64,
     pub unit: String,
+    /// Ends of the 95 % interval.
+    pub low: f64,
+    pub high: f64,
 }
 
 /// Change of the scale with a column.
@@ -194,4 +198,6 @@ pub struct DependenceSummary {
     pub sigma: f64,
     /// Chance of such a slope where there is none.
     pub chance: f64,
+    /// Degrees of freedom behind `sigma`.
+    pub dof: f64,
 }

@@ -25,6 +25,16 @@ pub(super) struct Payloads {
     column: &'static str,
     /// Whether the job has loads that are the payload's.
     taught: bool,
+    /// Loads that are made of the weight and its place.
+    made: Vec<Made>,
+}
+
+/// A load that is the weight times an arm.
+struct Made {
+    /// Its number.
+    load: usize,
+    /// By row of the table: the arm, where an sd of the weight is stated.
+    arms: Vec<Option<f64>>,
 }
 
 /// Adds a column for each load that is the payload's and has none: `W = m g` at its place, `W dx` and `W dy` from the nominal one, which is
@@ -61,7 +71,8 @@ pub(super) fn add_columns(
         at.map_or(0.0, |x| x - stated.unwrap_or(origin[axis]))
     };
     let mut taught = false;
-    for load in loads {
+    let mut made = Vec::new();
+    for (number, load) in loads.iter().enumerate() {
         let Some(part) = part_of(job, &load.name) else {
             continue;
         };
@@ -89,12 +100,18 @@ pub(super) fn add_columns(
         let spread = |(i, r): (usize, &RunRow)| Some(sd.get(i).copied()?? * of(r).abs() / si);
         let name = format!("{}_sd", load.name);
         push(table, headers, &name, rows.iter().enumerate().map(spread));
+        let stated = rows.iter().zip(&sd);
+        made.push(Made {
+            load: number,
+            arms: stated.map(|(r, sd)| sd.map(|_| of(r))).collect(),
+        });
     }
     let weights = rows.iter().map(|r| (weight(r).unwrap_or(0.0), r.line));
     Ok(Some(Payloads {
         weights: weights.collect(),
         column: states.0,
         taught,
+        made,
     }))
 }
 
@@ -156,6 +173,19 @@ fn weight_sd(
 }
 
 impl Payloads {
+    /// Puts into the covariance of a row's `k` known loads, so far that of independent ones, that those made of one weight share its error:
+    /// `Cov(W a, W b) = sd_W^2 a b`.
+    pub fn share_error(&self, row: usize, covariance: &mut [f64], k: usize) {
+        let arm = |m: &Made| Some((m.load, m.arms.get(row).copied()??));
+        let made: Vec<(usize, f64)> = self.made.iter().filter_map(arm).collect();
+        for (l, a) in &made {
+            for (m, b) in made.iter().filter(|m| m.0 != *l) {
+                let size = (covariance[l * k + l] * covariance[m * k + m]).sqrt();
+                covariance[l * k + m] = size * a.signum() * b.signum();
+            }
+        }
+    }
+
     /// A fault where runs that teach carry a payload whose strain no load of the job makes: it would be taken for that of the others.
     pub fn unaccounted(&self, job: &Job, table: &Table, teaching: &[usize]) -> Option<Fault> {
         let in_readings = job.payload.as_ref().is_none_or(|p| p.weight_in_model);

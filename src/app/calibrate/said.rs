@@ -1,9 +1,11 @@
 //! The calibration in the units of reports.
 
 use super::outcome::*;
+use crate::app::recover::Listed;
 use crate::app::strain::LoadUnits;
-use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, next_runs};
+use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, known_of, next_runs};
 use crate::finding::{Finding, Severity};
+use crate::recovery::student_95;
 use std::collections::BTreeMap;
 
 /// Chance under which a dependence is worth a word.
@@ -17,7 +19,7 @@ impl DependenceSummary {
                 "the strain of the runs depends on `{}`: loads come out {:+.2} % per unit of it (+- {:.2}, chance {:.1e})",
                 self.column,
                 100.0 * self.slope_rel,
-                196.0 * self.sigma,
+                100.0 * student_95(self.dof) * self.sigma,
                 self.chance
             );
             Finding::new(
@@ -81,12 +83,14 @@ pub(super) fn dependence(
         slope_rel,
         sigma,
         chance,
+        dof,
     } = depends_on(task, &found.left_out, &column.1)?;
     Some(DependenceSummary {
         column: column.0.clone(),
         slope_rel,
         sigma,
         chance,
+        dof,
     })
 }
 
@@ -94,24 +98,35 @@ pub(super) fn dependence(
 pub(super) fn words(
     task: &Task,
     found: &Calibration,
-    units: &[LoadUnits],
+    listed: &Listed,
     next_run: Option<NextRunSummary>,
     dependence: Option<DependenceSummary>,
 ) -> CalibrationSummary {
-    let left_out = |l: &LeftOut| LeftOutSummary {
-        run: l.estimate.run.clone(),
-        distance: (l.distance / l.loads.max(1) as f64).sqrt(),
-        loads: units
-            .iter()
-            .enumerate()
-            .map(|(i, u)| LeftOutLoad {
-                name: task.loads[i].name.clone(),
-                known: l.known[i] * u.factor,
-                value: l.estimate.values[i] * u.factor,
-                sigma: l.estimate.sigma(i) * found.coverage.factor * u.factor,
-                unit: u.name.clone(),
-            })
-            .collect(),
+    let left_out = |l: &LeftOut| {
+        let mut estimate = l.estimate.clone();
+        let k = task.loads.len();
+        estimate.widen(found.coverage.factor);
+        estimate.add_sums(&listed.names[k..], &listed.sums);
+        let own = (0..k).map(|l| vec![(l, 1.0)]);
+        let rows = own.chain(listed.sums.iter().cloned());
+        let one = |(i, terms): (usize, Vec<(usize, f64)>)| {
+            let unit = &listed.units[i];
+            let [low, high] = estimate.interval(i);
+            LeftOutLoad {
+                name: listed.names[i].clone(),
+                known: known_of(task, l.number, &terms).map(|known| known * unit.factor),
+                value: estimate.values[i] * unit.factor,
+                sigma: estimate.sigma(i) * unit.factor,
+                unit: unit.name.clone(),
+                low: low * unit.factor,
+                high: high * unit.factor,
+            }
+        };
+        LeftOutSummary {
+            run: estimate.run.clone(),
+            distance: (l.distance / l.loads.max(1) as f64).sqrt(),
+            loads: rows.enumerate().map(one).collect(),
+        }
     };
     let terms = |u: &crate::calibrate::Undetermined| -> BTreeMap<String, f64> {
         task.loads

@@ -78,8 +78,11 @@ impl Task<'_> {
         let mut w = vec![0.0; n * n];
         for (g, (gauge, row)) in gauges.iter().zip(&strain).enumerate() {
             let sd = match self.given_row(gauge) {
-                Some((own, _)) if own.uncertainty.is_some() => noise,
-                Some(_) => noise.hypot(model_rel * spd::dot(row, row).sqrt()),
+                Some((own, _)) => match &own.uncertainty {
+                    // As runs that were left out have it: `scale` is a factor on all of sigma.
+                    Some(u) => noise * u.scale,
+                    None => noise.hypot(model_rel * spd::dot(row, row).sqrt()),
+                },
                 None => {
                     let noise = self.with_mesh_error(gauge, noise);
                     noise.hypot(model_rel * spd::dot(row, row).sqrt())

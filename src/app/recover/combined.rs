@@ -6,7 +6,7 @@ use crate::app::strain::{LoadUnits, load_units};
 use crate::sensitivity::Sensitivity;
 
 /// Names and units of what is listed.
-pub(super) struct Listed {
+pub struct Listed {
     /// Loads, then combinations.
     pub names: Vec<String>,
     /// Units of both.
@@ -19,7 +19,7 @@ pub(super) struct Listed {
 ///
 /// # Errors
 /// Combinations of loads that S lacks, of forces with moments, or that bear a load's name.
-pub(super) fn listed(job: &Job, s: &Sensitivity) -> Result<Listed, Faults> {
+pub fn listed(job: &Job, s: &Sensitivity) -> Result<Listed, Faults> {
     let mut names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let mut units = load_units(job, &names);
     let mut faults = FaultList::new();

@@ -24,6 +24,7 @@ pub use answer::{
     Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
     RunFit, States,
 };
+pub(super) use combined::{Listed, listed};
 pub use damage::LoadDamage;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};

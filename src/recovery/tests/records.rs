@@ -274,3 +274,56 @@ fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gau
     s.values[(2, 1)] = 0.0;
     assert!(said(&s));
 }
+
+#[test]
+fn by_a_calibrated_s_a_record_has_the_intervals_of_a_run_with_and_without_sums() {
+    let values = Matrix::from_row_slice(4, 2, &[3e-6, 1e-6, 2e-6, -1e-6, -1e-6, 2e-6, 1e-6, 3e-6]);
+    let mean_square = crate::sensitivity::mean_square(&values);
+    // Entries of S off by 2e-7 each and 1e-7 together, gauges that scatter by 3 % each and 2 % together; runs left out doubled all of it.
+    let alike = |each: f64, all: f64, order: usize| -> Vec<f64> {
+        let entry = |i: usize| {
+            if i / order == i % order {
+                each * each
+            } else {
+                0.0
+            }
+        };
+        (0..order * order).map(|i| entry(i) + all * all).collect()
+    };
+    let s = Sensitivity {
+        gauges: ["1", "2", "3", "4"].map(String::from).to_vec(),
+        loads: ["A", "B"].map(Load::named).to_vec(),
+        uncertainty: Some(Uncertainty {
+            covariance: alike(2e-7, 1e-7, 8),
+            scatter: alike(0.03, 0.02, 4),
+            mean_square,
+            scale: 2.0,
+            dof: 9.0,
+            dof_outside: 9.0,
+        }),
+        values,
+    };
+    let truth = [3.0, 2.0];
+    let strain = s.values.row_iter().map(|row| row[0] * 3.0 + row[1] * 2.0);
+    let run = Readings::of_sample(0.0, strain.collect(), 1.0);
+    let of_run = estimate(&s, &run, NOISE).estimate;
+    let c = &of_run.covariance;
+    let wanted = [
+        of_run.sigma(0),
+        of_run.sigma(1),
+        (c[0] + c[1] + c[2] + c[3]).sqrt(),
+    ];
+    let mut filter = filter(&s, NOISE, &truth);
+    let close = |found: f64, wanted: f64| {
+        assert!((found / wanted - 1.0).abs() < 1e-6, "{found} {wanted}");
+    };
+    for (l, sigma) in filter.sigma(&truth).into_iter().enumerate() {
+        close(sigma, wanted[l]);
+    }
+    filter.combine(&[vec![(0, 1.0), (1, 1.0)]]);
+    let found = filter.sigma(&[3.0, 2.0, 5.0]);
+    assert_eq!(found.len(), 3);
+    for (sigma, wanted) in found.into_iter().zip(wanted) {
+        close(sigma, wanted);
+    }
+}

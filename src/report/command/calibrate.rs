@@ -35,21 +35,25 @@ impl Report for Outcome<Calibrated> {
                 ("value", ""),
                 ("sigma", ""),
                 ("unit", ""),
+                ("low", ""),
+                ("high", ""),
             ],
         );
         out.write("left_out.csv", |w| {
-            writeln!(w, "run,load,known,value,sigma,unit")?;
+            writeln!(w, "run,load,known,value,sigma,unit,low,high")?;
             for r in &self.calibration.left_out {
                 for l in &r.loads {
                     writeln!(
                         w,
-                        "{},{},{},{},{},{}",
+                        "{},{},{},{},{},{},{},{}",
                         csv_cell(&r.run),
                         csv_cell(&l.name),
-                        l.known,
+                        l.known.map_or_else(String::new, |k| k.to_string()),
                         l.value,
                         l.sigma,
-                        csv_cell(&l.unit)
+                        csv_cell(&l.unit),
+                        l.low,
+                        l.high
                     )?;
                 }
             }
@@ -111,11 +115,11 @@ impl Report for Outcome<Calibrated> {
                 .collect();
             let _ = writeln!(
                 text,
-                "next run worth making: {} ({}: +- {:.3} becomes +- {:.3} {})",
+                "next run worth making: {} ({}: sigma of {:.3} becomes {:.3} {})",
                 loads.join(", "),
                 n.load,
-                1.96 * n.sigma_before,
-                1.96 * n.sigma_after,
+                n.sigma_before,
+                n.sigma_after,
                 n.unit
             );
         }

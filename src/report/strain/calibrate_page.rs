@@ -76,8 +76,8 @@ fn left_out(answer: &Calibrated) -> Section {
                 vec![
                     r.run.clone(),
                     l.name.clone(),
-                    number(l.known),
-                    format!("{} +- {}", number(l.value), number(1.96 * l.sigma)),
+                    l.known.map_or_else(String::new, number),
+                    format!("{} +- {}", number(l.value), number((l.high - l.low) / 2.0)),
                     l.unit.clone(),
                     format!("{:.1}", r.distance),
                 ]
