@@ -280,6 +280,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         payload_weight: PayloadWeight::InModel,
         wheel_forces: WheelForces::Measured,
         nuisance: Vec::new(),
+        ground: 0.0,
         other_loads: other_names
             .into_iter()
             .enumerate()

@@ -117,6 +117,11 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
             "{said}"
         );
         assert!(size < -20.0, "{said}");
+        // No property bounds the region: nothing is written, it is said why, and the page shows where it lies.
+        assert!(r["extended_model"].is_null(), "{said}");
+        let findings = r["findings"].as_array().expect("findings");
+        let is_said = |f: &serde_json::Value| f["code"] == "effect-not-in-model";
+        assert!(findings.iter().any(is_said), "{said}");
     }
 }
 

@@ -73,6 +73,7 @@ fn frame() -> StrainFrame {
         wheel_forces: WheelForces::Measured,
         other_loads: Vec::new(),
         nuisance: Vec::new(),
+        ground: 0.0,
         thermal_uniform: None,
         thermal_gradient: None,
         masses: Vec::new(),

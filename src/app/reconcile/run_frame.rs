@@ -84,6 +84,7 @@ pub(super) fn frame(
         wheel_forces: runs.wheel_forces,
         other_loads: part.other_loads,
         nuisance: part.nuisance,
+        ground: runs.ground.map_or(0.0, |f| f * runs.units.force.si / KILO),
         thermal_uniform: part.thermal_uniform,
         thermal_gradient: part.thermal_gradient,
         masses: part.masses,

@@ -11,10 +11,11 @@ pub struct UnevenGround;
 const USUAL: f64 = 0.25;
 
 impl UnevenGround {
-    /// Itself where the wheel forces are computed, not measured.
+    /// Itself where the wheel forces are computed, not measured, and the job has no ground of its own.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let warps = frame.n_loads() > constraints(frame).len();
-        if frame.wheel_forces == WheelForces::FlatGroundModel && warps {
+        let missing = frame.wheel_forces == WheelForces::FlatGroundModel && frame.ground == 0.0;
+        if missing && warps {
             vec![Self]
         } else {
             Vec::new()
@@ -76,6 +77,16 @@ fn warps(frame: &StrainFrame) -> Vec<Vec<f64>> {
     basis.split_off(n_fixed)
 }
 
+/// Strain of a self-balanced change of the wheel forces of 1 kN, microstrain by gauge: one for each that their sum and moments leave free.
+pub fn ground_patterns(frame: &StrainFrame) -> Vec<Vec<f64>> {
+    let pattern = |w: &Vec<f64>| {
+        let rows = frame.influence.chunks_exact(frame.n_columns());
+        rows.map(|row| row.iter().zip(w).map(|(a, b)| a * b).sum())
+            .collect()
+    };
+    warps(frame).iter().map(pattern).collect()
+}
+
 impl StrainEffect for UnevenGround {
     fn id(&self) -> &str {
         "uneven_ground"
@@ -84,13 +95,7 @@ impl StrainEffect for UnevenGround {
         Stage::Loads
     }
     fn amplitudes(&self, frame: &StrainFrame) -> Option<Amplitudes> {
-        let n_c = frame.n_columns();
-        let pattern = |w: &Vec<f64>| {
-            let rows = frame.influence.chunks_exact(n_c);
-            rows.map(|row| row.iter().zip(w).map(|(a, b)| a * b).sum())
-                .collect()
-        };
-        let patterns: Vec<Vec<f64>> = warps(frame).iter().map(pattern).collect();
+        let patterns = ground_patterns(frame);
         Some(Amplitudes {
             kinds: vec![0; patterns.len()],
             patterns,

@@ -305,6 +305,7 @@ impl Problem {
             rest: self.rest,
             columns: Arc::new(self.columns),
             column_of: self.column_of,
+            estimates: s.x,
             residual: Arc::new(s.residual),
             left: Arc::new(left),
             values,

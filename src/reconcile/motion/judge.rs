@@ -11,10 +11,11 @@ use super::floor::NOISE_FACTOR;
 use super::found::{DECISIVE, Found};
 use super::gap::{Proof, RecordGap, fitted_gap, proof, proof_gap};
 use super::limits::{beyond_tolerance, stands_out};
+use super::next::next_measurement;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
 use super::scorer::MotionScorer;
-use super::sentences::{next_measurement, remains};
+use super::sentences::remains;
 use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
 use crate::reconcile::search::{Scored, settle};
 use crate::vehicle::motion::VehicleError;
@@ -22,7 +23,7 @@ use crate::vehicle::motion::VehicleError;
 /// Log evidence that is a hint: odds of three.
 const HINT: f64 = 1.0;
 /// Rivals within this log evidence (odds of 20) can't be told apart.
-const CLOSE: f64 = 3.0;
+pub(super) const CLOSE: f64 = 3.0;
 /// Share of an effect's own power that its form may leave: stretch is integrated from noisy accelerations and nonlinear terms are formed
 /// from it, to about a fifth of their amplitude at the worst (the lower band edge).
 const FORM: f64 = 0.04;
@@ -142,7 +143,7 @@ pub(super) fn judged(
         covariance,
         corrections: stated(frame, &best.fit.parts),
         remains: remains(verdict, chi, left, judged_by, after.proof.as_ref()),
-        next_measurement: next_measurement(scorer, verdict, &rivals),
+        next_measurement: next_measurement(scorer, verdict, &best, &all),
         rivals,
         evidence,
         decisive: DECISIVE,
@@ -264,6 +265,17 @@ fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
 }
 
 /// Other sets, nearest first; sets that merely add to the best are no rivals. Where nothing is named, what came nearest.
+pub(super) fn other_sets<'a>(
+    best: &'a Scored<MotionFit>,
+    all: &'a [Scored<MotionFit>],
+) -> impl Iterator<Item = &'a Scored<MotionFit>> {
+    all.iter().filter(|s| {
+        let adds = best.set.iter().all(|m| s.set.contains(m));
+        !s.set.is_empty() && (best.set.is_empty() || !adds)
+    })
+}
+
+/// The first of [`other_sets`], in words and numbers.
 fn rivals(
     scorer: &MotionScorer,
     best: &Scored<MotionFit>,
@@ -271,11 +283,7 @@ fn rivals(
 ) -> Vec<Rival> {
     /// As many as anyone reads.
     const MOST: usize = 4;
-    all.iter()
-        .filter(|s| {
-            let adds = best.set.iter().all(|m| s.set.contains(m));
-            !s.set.is_empty() && (best.set.is_empty() || !adds)
-        })
+    other_sets(best, all)
         .take(MOST)
         .map(|s| {
             let difference = best.log_evidence - s.log_evidence;

@@ -3,7 +3,7 @@
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
 use crate::reconcile::Observations;
-use crate::reconcile::effect::{Amplitudes, SizedAmplitudes};
+use crate::reconcile::effect::{Amplitudes, SizedAmplitudes, ground_patterns};
 use crate::sensitivity::Uncertainty;
 use crate::stop::Stop;
 
@@ -143,6 +143,9 @@ pub struct StrainFrame {
     pub other_loads: Vec<(String, Vec<f64>)>,
     /// Loads that the model has as nuisance loads: found anew in every run, before, after and in the floor alike.
     pub nuisance: Vec<NuisanceLoad>,
+    /// Usual change of a wheel force by ground that is not flat, where the job has it: found anew in every run as nuisance loads are; zero where
+    /// it has none.
+    pub ground: f64,
     /// Microstrain per degree of a uniform temperature change, by gauge.
     pub thermal_uniform: Option<Vec<f64>>,
     /// Microstrain per degree of a temperature gradient, by gauge.
@@ -194,15 +197,24 @@ impl StrainFrame {
         self.load_names.len() + N_PAYLOAD_COLUMNS
     }
 
-    /// The nuisance loads of the model as amplitudes of their stated sizes: as much may repeat in all runs as differs from run to run.
+    /// The nuisance loads of the model, and its ground, as amplitudes of their stated sizes: as much may repeat in all runs as differs from run to run.
     pub fn nuisance_amplitudes(&self) -> Option<SizedAmplitudes> {
-        if self.nuisance.is_empty() {
+        let mut sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
+        let mut patterns: Vec<Vec<f64>> =
+            self.nuisance.iter().map(|n| n.per_unit.clone()).collect();
+        let mut kinds: Vec<usize> = (0..sizes.len()).collect();
+        if self.ground > 0.0 {
+            let ground = ground_patterns(self);
+            kinds.extend(ground.iter().map(|_| sizes.len()));
+            patterns.extend(ground);
+            sizes.push(self.ground);
+        }
+        if patterns.is_empty() {
             return None;
         }
-        let sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
         let amplitudes = Amplitudes {
-            patterns: self.nuisance.iter().map(|n| n.per_unit.clone()).collect(),
-            kinds: (0..sizes.len()).collect(),
+            patterns,
+            kinds,
             usual: sizes.clone(),
             steady: sizes.clone(),
             unit: "1",

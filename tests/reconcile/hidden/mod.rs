@@ -80,6 +80,7 @@ pub fn plain_frame(
         wheel_forces: WheelForces::Measured,
         other_loads: Vec::new(),
         nuisance: Vec::new(),
+        ground: 0.0,
         thermal_uniform: None,
         thermal_gradient: None,
         masses: Vec::new(),

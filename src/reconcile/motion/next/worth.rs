@@ -1,0 +1,156 @@
+//! The difference of log evidence that a measurement is expected to bring between two explanations.
+
+use super::view::{Recorded, View};
+use crate::linalg::tall::{Triangle, solve, triangle};
+use crate::reconcile::motion::columns::parameter_column;
+use crate::reconcile::motion::fit::held;
+use crate::reconcile::motion::fitted::MotionFit;
+use crate::reconcile::motion::frame::MotionFrame;
+
+/// Rows of a measurement over their standard deviation.
+#[derive(Clone)]
+pub(super) struct Rows {
+    /// What is read there under the explanation, or its residual.
+    pub(super) reading: Vec<f64>,
+    /// Columns of the fit, in its order.
+    pub(super) own: Vec<Vec<f64>>,
+    /// Columns that the measurement brings, with one sd where they are known beforehand.
+    pub(super) fresh: Vec<(Vec<f64>, Option<f64>)>,
+    /// The scale of masses and springs, where the measurement sets it.
+    pub(super) scale: Vec<(usize, Vec<f64>)>,
+}
+
+/// An explanation with what the record at hand says of its parameters.
+pub(super) struct Known<'a> {
+    /// Its fit.
+    pub(super) fit: &'a MotionFit,
+    /// Parameters that are held because nothing sets the scale.
+    pub(super) held: Vec<usize>,
+    /// The present rows: columns of the fit, then the held parameters.
+    now: Triangle,
+}
+
+impl<'a> Known<'a> {
+    pub(super) fn of(frame: &MotionFrame, fit: &'a MotionFit) -> Self {
+        let v = &fit.assembled.vehicle;
+        let names = v.parameters();
+        let known = |i: &usize| frame.known.contains_key(&names[*i].name);
+        let held: Vec<usize> = (held(frame, v, &fit.design).iter().enumerate())
+            .filter_map(|(i, h)| h.map(|_| i))
+            .filter(|i| !known(i))
+            .collect();
+        let scale: Vec<Vec<f64>> = held
+            .iter()
+            .map(|&i| fit.rows(&parameter_column(&fit.design, i), 0.0))
+            .collect();
+        let own = fit.columns.iter().map(|c| c.rows.as_slice());
+        let all: Vec<(usize, &[f64])> = own
+            .chain(scale.iter().map(Vec::as_slice))
+            .enumerate()
+            .collect();
+        Self {
+            fit,
+            held,
+            now: triangle(&all),
+        }
+    }
+}
+
+/// Half the squared misfit that the other explanation keeps where the first one holds: its parameters are free within what the record at
+/// hand and declared tolerances leave them. `None` where the two do not speak of the same rows.
+///
+/// With d the difference of what both read there over its standard deviation, A the columns of the other one there, B those of the record at
+/// hand and P the priors: 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Noise adds alike to both.
+pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64> {
+    let (other, reading) = match (other, truth) {
+        (View::AtRest(o), View::AtRest(t)) => (o.clone(), t.reading.clone()),
+        (View::Record(o), View::Record(t)) if o.weight.is_some() == t.weight.is_some() => {
+            (o.rows_of(o), o.rows_of(t).reading)
+        }
+        _ => return None,
+    };
+    let difference: Vec<f64> = (other.reading.iter().zip(&reading))
+        .map(|(o, t)| o - t)
+        .collect();
+    let is_alike = other.reading.len() == reading.len();
+    if !is_alike || difference.iter().any(|d| !d.is_finite()) {
+        return None;
+    }
+    let n_own = known.fit.columns.len();
+    let mut columns: Vec<(Vec<f64>, Option<f64>)> = (known.fit.columns.iter())
+        .zip(&other.own)
+        .map(|(c, rows)| (rows.clone(), c.prior))
+        .collect();
+    columns.extend(other.scale.iter().map(|(_, rows)| (rows.clone(), None)));
+    columns.extend(other.fresh);
+    let n = columns.len();
+    // Held parameters that stay held have no column.
+    let index = |c: &usize| match c.checked_sub(n_own) {
+        None => *c,
+        Some(k) => {
+            let of = known.held.get(k);
+            let at = other.scale.iter().position(|s| Some(&s.0) == of);
+            at.map_or(usize::MAX, |at| n_own + at)
+        }
+    };
+    let now = Triangle {
+        columns: known.now.columns.iter().map(index).collect(),
+        ..known.now.clone()
+    };
+    let priors: Vec<(usize, f64)> = (columns.iter().enumerate())
+        .filter_map(|(k, c)| Some((k, c.1.filter(|sd| *sd > 0.0)?)))
+        .collect();
+    for (k, column) in columns.iter_mut().enumerate() {
+        column
+            .0
+            .extend(priors.iter().map(|(of, sd)| match *of == k {
+                true => 1.0 / sd,
+                false => 0.0,
+            }));
+    }
+    let mut target: Vec<f64> = difference.iter().map(|d| -d).collect();
+    target.extend(vec![0.0; priors.len()]);
+    let list: Vec<(usize, &[f64])> = (columns.iter().enumerate())
+        .map(|(k, c)| (k, c.0.as_slice()))
+        .chain([(n, target.as_slice())])
+        .collect();
+    let further = triangle(&list);
+    let mut x = solve(&[(1.0, &now), (1.0, &further)], n).x;
+    x.push(-1.0);
+    let worth = 0.5 * (now.norm(&x).powi(2) + further.norm(&x).powi(2));
+    worth.is_finite().then_some(worth)
+}
+
+impl Recorded {
+    /// The rows of another one under the noise of this one, times the root of the number of records.
+    fn rows_of(&self, of: &Self) -> Rows {
+        let times = self.repeats.sqrt();
+        let rows = |bins: &[crate::reconcile::motion::design::Bins], at_rest: Option<f64>| {
+            let mut rows = self.rows(bins);
+            rows.iter_mut().for_each(|v| *v *= times);
+            if self.weight.is_some() {
+                rows.push(at_rest.unwrap_or(0.0));
+            }
+            rows
+        };
+        let entry = |list: fn(&super::view::Weight) -> &[f64], k: usize| {
+            let weight = of.weight.as_ref()?;
+            list(weight).get(k).copied()
+        };
+        // Over the deviation of this one's balance.
+        let (here, there) = (self.weight.as_ref(), of.weight.as_ref());
+        let sum = here.zip(there).map(|(h, t)| t.weight / h.sigma);
+        Rows {
+            reading: rows(&of.left, sum),
+            own: (of.own.iter().enumerate())
+                .map(|(k, c)| rows(c, entry(|w| &w.own, k)))
+                .collect(),
+            fresh: (of.fresh.iter().enumerate())
+                .map(|(k, (c, sd))| (rows(c, entry(|w| &w.fresh, k)), *sd))
+                .collect(),
+            scale: (of.scale.iter().enumerate())
+                .map(|(k, (i, c))| (*i, rows(c, entry(|w| &w.scale, k))))
+                .collect(),
+        }
+    }
+}
