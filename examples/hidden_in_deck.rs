@@ -236,6 +236,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         })
         .collect();
     StrainFrame {
+        rules: Default::default(),
         stop: Default::default(),
         observations: Observations {
             channels: gauges.iter().map(|g| g.name.clone()).collect(),

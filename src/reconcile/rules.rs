@@ -23,9 +23,10 @@ pub struct StrainRules {
     pub part: f64,
     /// Noise up to twice the stated one is noise that was stated too small; more is something else.
     pub noise: f64,
-    /// Share of the drawings of the runs that must hold a name.
+    /// Share of the drawings of the runs that must hold a name: one that fewer than half hold is ahead by the runs that happened to be driven.
     pub drawings: f64,
-    /// Gauges within this many usual distances from gauge to nearest gauge are neighbours, whose faults together are none.
+    /// Gauges within this many usual distances from gauge to nearest gauge are neighbours: gains and angles of several of them at once are a
+    /// change of stiffness between them sooner than as many bad gauges.
     pub near: f64,
 }
 
@@ -136,4 +137,32 @@ impl MotionRules {
         ("play", |r| &mut r.play),
         ("lost", |r| &mut r.lost),
     ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Each place is one of its own, and there are as many as numbers in the struct.
+    fn all_are_listed<R: Copy + Default>(list: &[Rule<R>]) {
+        assert_eq!(list.len() * size_of::<f64>(), size_of::<R>());
+        let mut rules = R::default();
+        for (k, (_, place)) in (0u32..).zip(list) {
+            *place(&mut rules) = f64::from(k);
+        }
+        for (k, (name, place)) in (0u32..).zip(list) {
+            assert_eq!(*place(&mut rules), f64::from(k), "{name}");
+        }
+    }
+
+    #[test]
+    fn every_threshold_is_listed_once() {
+        all_are_listed(&StrainRules::ALL);
+        all_are_listed(&MotionRules::ALL);
+    }
+
+    #[test]
+    fn the_evidence_of_a_name_is_that_of_one_false_name_in_a_hundred() {
+        assert!((StrainRules::default().decisive - 100f64.ln()).abs() < 1e-12);
+    }
 }

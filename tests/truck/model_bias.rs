@@ -43,6 +43,7 @@ fn frame() -> StrainFrame {
         influence.extend([0.0; 4]);
     }
     StrainFrame {
+        rules: Default::default(),
         stop: Default::default(),
         observations: Observations {
             channels: s.gauges.clone(),

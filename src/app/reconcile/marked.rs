@@ -18,8 +18,8 @@ pub struct MarkedStiffness {
     pub factor: f64,
     /// Indices of the shells of a zone or a small region; empty for a joint.
     pub shells: Vec<usize>,
-    /// Place of a joint, basic frame.
-    pub joint: Option<Vec3>,
+    /// Place of a joint or middle of a small region, basic frame.
+    pub at: Option<Vec3>,
 }
 
 impl DeckFrame {
@@ -37,19 +37,19 @@ impl DeckFrame {
                 Extension::Described { id, size } => (StiffnessOf::Described, id, *size),
                 _ => return None,
             };
-            let (shells, joint) = self.place_of(job, of, place);
-            let lies = !shells.is_empty() || joint.is_some();
+            let (shells, at) = self.place_of(job, of, place);
+            let lies = !shells.is_empty() || at.is_some();
             lies.then_some(MarkedStiffness {
                 id: e.id.clone(),
                 factor: factor(job, of, place, size)?,
                 shells,
-                joint,
+                at,
             })
         };
         effects.iter().filter_map(of).collect()
     }
 
-    /// Shells of a zone or region, place of a joint.
+    /// Shells of a zone or region, place of a joint or region.
     fn place_of(&self, job: &Job, of: StiffnessOf, place: &str) -> (Vec<usize>, Option<Vec3>) {
         let joint = |id: &str| {
             let mut bushes = self.fields.model().bushes.iter();
@@ -64,7 +64,8 @@ impl DeckFrame {
             }
             StiffnessOf::Local => {
                 let region = self.regions.iter().find(|r| r.place == place);
-                (region.map_or_else(Vec::new, |r| r.shells.clone()), None)
+                let shells = region.map_or_else(Vec::new, |r| r.shells.clone());
+                (shells, region.map(|r| r.centre))
             }
             StiffnessOf::Joint => (Vec::new(), joint(place)),
             StiffnessOf::Described => match effect_of(job, place).map(|e| &e.source) {

@@ -64,6 +64,7 @@ pub(super) fn frame(
         .map_or(LOAD_NOISE_KN, |f| f * runs.units.force.si / KILO);
     let measured = job.measured.as_ref();
     let mut frame = StrainFrame {
+        rules: Default::default(),
         stop: work.cx.progress.stop(),
         observations,
         gauges: part.gauges,

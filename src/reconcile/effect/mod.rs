@@ -40,7 +40,6 @@ pub use extension::{Correction, Extension, Noted, Nuisance};
 pub use library::{Candidate, library};
 pub use model_discrepancy::ModelDiscrepancy;
 pub use smooth_error::SmoothError;
-pub use uneven_ground::ground_patterns;
 
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 

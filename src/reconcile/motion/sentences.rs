@@ -1,12 +1,13 @@
 //! What remains, in words.
 
-use super::floor::NOISE_FACTOR;
 use super::gap::{Proof, RecordGap};
 use super::sits::gap_sits;
 use crate::reconcile::outcome::Verdict;
+use crate::reconcile::rules::MotionRules;
 
 /// What remains and where it sits; `chi` and `left` are before, after (and floor).
 pub(super) fn remains(
+    rules: &MotionRules,
     verdict: Verdict,
     chi: [f64; 2],
     left: [f64; 3],
@@ -15,7 +16,7 @@ pub(super) fn remains(
 ) -> String {
     let worst = gap.and_then(|g| gap_sits(g).into_iter().next());
     let place = worst.map_or_else(String::new, |w| format!(" Largest in {}.", w.words()));
-    let noise = NOISE_FACTOR * NOISE_FACTOR;
+    let noise = rules.noise_factor * rules.noise_factor;
     let state = match verdict {
         Verdict::Named if chi[1] < noise => "What is left is at the floor of sensor noise.",
         Verdict::None | Verdict::BelowDetectability if chi[0] < noise => {

@@ -3,7 +3,7 @@
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
 use crate::reconcile::Observations;
-use crate::reconcile::effect::{Amplitudes, SizedAmplitudes, ground_patterns};
+use crate::reconcile::rules::StrainRules;
 use crate::sensitivity::Uncertainty;
 use crate::stop::Stop;
 
@@ -167,6 +167,8 @@ pub struct StrainFrame {
     pub scatter: Vec<Scatter>,
     /// Where S was calibrated: how far it may be off, microstrain per kN of the wheel loads, and what repeats of one loading scatter by.
     pub learnt: Option<Uncertainty>,
+    /// Thresholds of names.
+    pub rules: StrainRules,
     /// Cuts the search short; what it found is then of no use.
     pub stop: Stop,
 }
@@ -195,35 +197,6 @@ impl StrainFrame {
     /// Number of columns of `influence`.
     pub fn n_columns(&self) -> usize {
         self.load_names.len() + N_PAYLOAD_COLUMNS
-    }
-
-    /// The nuisance loads of the model, and its ground, as amplitudes of their stated sizes: as much may repeat in all runs as differs from run to run.
-    pub fn nuisance_amplitudes(&self) -> Option<SizedAmplitudes> {
-        let mut sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
-        let mut patterns: Vec<Vec<f64>> =
-            self.nuisance.iter().map(|n| n.per_unit.clone()).collect();
-        let mut kinds: Vec<usize> = (0..sizes.len()).collect();
-        if self.ground > 0.0 {
-            let ground = ground_patterns(self);
-            kinds.extend(ground.iter().map(|_| sizes.len()));
-            patterns.extend(ground);
-            sizes.push(self.ground);
-        }
-        if patterns.is_empty() {
-            return None;
-        }
-        let amplitudes = Amplitudes {
-            patterns,
-            kinds,
-            usual: sizes.clone(),
-            steady: sizes.clone(),
-            unit: "1",
-            plausible: f64::INFINITY,
-        };
-        Some(SizedAmplitudes {
-            amplitudes,
-            sizes: [sizes.as_slice(), &sizes].concat(),
-        })
     }
 
     /// Root mean square of the wheel loads over all runs, kN; one where there are none.

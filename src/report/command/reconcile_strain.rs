@@ -45,7 +45,7 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
     for m in &mut marks {
         m.note.push_str(&smooth_note(found, &m.name));
     }
-    marks.extend(found.marked.iter().filter_map(mark_of_joint));
+    marks.extend(found.marked.iter().filter_map(mark_of_place));
     // Where S is given there is no model to draw: the gauges alone.
     let nothing = Model::default();
     let fields = found.fields.as_ref();
@@ -90,11 +90,11 @@ fn smooth_note(found: &StrainPart, gauge: &str) -> String {
 /// Half width of the 95 % interval, standard deviations.
 const HALF_WIDTH: f64 = 1.96;
 
-/// A joint that is off, where it sits.
-fn mark_of_joint(m: &MarkedStiffness) -> Option<Mark> {
+/// A joint or small region that is off, where it sits.
+fn mark_of_place(m: &MarkedStiffness) -> Option<Mark> {
     Some(Mark {
         name: m.id.clone(),
-        at: m.joint?,
+        at: m.at?,
         axes: None,
         surface: None,
         note: format!("stiffness times {:.3}", m.factor),

@@ -64,6 +64,7 @@ pub fn plain_frame(
     loads: Vec<f64>,
 ) -> StrainFrame {
     StrainFrame {
+        rules: Default::default(),
         stop: Default::default(),
         tensors: vec![Vec::new(); gauges.len()],
         payload: vec![[0.0; 3]; observations.runs.len()],

@@ -1,6 +1,6 @@
 //! What is measured at rest: the gains of accelerometers, and their timing.
 
-use super::worth::Rows;
+use super::known::Rows;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::corrections::adjustments;
 use crate::reconcile::motion::fitted::MotionFit;

@@ -5,15 +5,17 @@
 //! [`measurement`], what an explanation predicts of it in [`view`] and, at rest, in [`bench`].
 
 mod bench;
+mod known;
 mod measurement;
 mod view;
 mod worth;
 
+use self::known::Known;
 use self::measurement::{Measurement, measurements};
 use self::view::{View, view};
-use self::worth::{Known, expected};
+use self::worth::expected;
 use super::fitted::MotionFit;
-use super::judge::{CLOSE, other_sets};
+use super::found::other_sets;
 use super::scorer::MotionScorer;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::search::{Scored, Scorer};
@@ -21,6 +23,8 @@ use crate::reconcile::search::{Scored, Scorer};
 /// Expected difference of log evidence that is worth a measurement: as much as names an effect over another, and half of it again lost to
 /// what no model foresees.
 const WORTH: f64 = 5.0;
+/// Difference of log evidence at which one is sure: odds of 10^10.
+const SURE: f64 = 25.0;
 /// Rivals that a measurement is held against.
 const MOST: usize = 3;
 /// What an explanation is called that holds no effect.
@@ -35,12 +39,16 @@ struct Weighed {
 }
 
 impl Weighed {
-    /// Pairs that it separates, then all that it brings. No pair counts for more than it takes to be sure of it, odds of 10^10: of several that
-    /// are as sure the first one is the least trouble.
+    /// Pairs that it separates, then all that it brings. No pair counts for more than it takes to be sure: of several that are as sure the
+    /// first one is the least trouble.
     fn rank(&self) -> (usize, f64) {
-        const SURE: f64 = 25.0;
         let separated = self.worth.iter().filter(|w| **w > WORTH).count();
         (separated, self.worth.iter().map(|w| w.min(SURE)).sum())
+    }
+
+    /// Whether nothing could say more.
+    fn is_sure(&self) -> bool {
+        self.worth.iter().all(|w| *w >= SURE)
     }
 }
 
@@ -118,7 +126,7 @@ fn explanations<'a>(
     let others = || other_sets(nearest, all);
     let level = nearest.log_evidence;
     let close: Vec<_> = others()
-        .filter(|s| (level - s.log_evidence).abs() < CLOSE)
+        .filter(|s| (level - s.log_evidence).abs() < scorer.frame.rules.indistinguishable)
         .take(MOST)
         .collect();
     let kinds = |s: &Scored<MotionFit>| -> Vec<String> {
@@ -163,6 +171,9 @@ fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed
         let better = |b: &Weighed| weighed.rank() > b.rank();
         if weighed.rank().0 > 0 && best.as_ref().is_none_or(better) {
             best = Some(weighed);
+        }
+        if best.as_ref().is_some_and(Weighed::is_sure) {
+            break;
         }
     }
     best

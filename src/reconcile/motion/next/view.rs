@@ -1,8 +1,8 @@
 //! What an explanation says of a measurement: its residual there, and how readings, faults and tolerances enter it.
 
 use super::bench::{struck, turned_over};
+use super::known::{Known, Rows};
 use super::measurement::{Measurement, is_driven};
-use super::worth::{Known, Rows};
 use crate::linalg::tall::left_inverse;
 use crate::reconcile::motion::columns::{fault_columns, nuisance, parameter_column, slices};
 use crate::reconcile::motion::corrections::adjustments;

@@ -1,60 +1,9 @@
 //! The difference of log evidence that a measurement is expected to bring between two explanations.
 
-use super::view::{Recorded, View};
+use super::known::{Known, Rows};
+use super::view::{Recorded, View, Weight};
 use crate::linalg::tall::{Triangle, solve, triangle};
-use crate::reconcile::motion::columns::parameter_column;
-use crate::reconcile::motion::fit::held;
-use crate::reconcile::motion::fitted::MotionFit;
-use crate::reconcile::motion::frame::MotionFrame;
-
-/// Rows of a measurement over their standard deviation.
-#[derive(Clone)]
-pub(super) struct Rows {
-    /// What is read there under the explanation, or its residual.
-    pub(super) reading: Vec<f64>,
-    /// Columns of the fit, in its order.
-    pub(super) own: Vec<Vec<f64>>,
-    /// Columns that the measurement brings, with one sd where they are known beforehand.
-    pub(super) fresh: Vec<(Vec<f64>, Option<f64>)>,
-    /// The scale of masses and springs, where the measurement sets it.
-    pub(super) scale: Vec<(usize, Vec<f64>)>,
-}
-
-/// An explanation with what the record at hand says of its parameters.
-pub(super) struct Known<'a> {
-    /// Its fit.
-    pub(super) fit: &'a MotionFit,
-    /// Parameters that are held because nothing sets the scale.
-    pub(super) held: Vec<usize>,
-    /// The present rows: columns of the fit, then the held parameters.
-    now: Triangle,
-}
-
-impl<'a> Known<'a> {
-    pub(super) fn of(frame: &MotionFrame, fit: &'a MotionFit) -> Self {
-        let v = &fit.assembled.vehicle;
-        let names = v.parameters();
-        let known = |i: &usize| frame.known.contains_key(&names[*i].name);
-        let held: Vec<usize> = (held(frame, v, &fit.design).iter().enumerate())
-            .filter_map(|(i, h)| h.map(|_| i))
-            .filter(|i| !known(i))
-            .collect();
-        let scale: Vec<Vec<f64>> = held
-            .iter()
-            .map(|&i| fit.rows(&parameter_column(&fit.design, i), 0.0))
-            .collect();
-        let own = fit.columns.iter().map(|c| c.rows.as_slice());
-        let all: Vec<(usize, &[f64])> = own
-            .chain(scale.iter().map(Vec::as_slice))
-            .enumerate()
-            .collect();
-        Self {
-            fit,
-            held,
-            now: triangle(&all),
-        }
-    }
-}
+use crate::reconcile::motion::design::Bins;
 
 /// Half the squared misfit that the other explanation keeps where the first one holds: its parameters are free within what the record at
 /// hand and declared tolerances leave them. `None` where the two do not speak of the same rows.
@@ -64,7 +13,9 @@ impl<'a> Known<'a> {
 pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64> {
     let (other, reading) = match (other, truth) {
         (View::AtRest(o), View::AtRest(t)) => (o.clone(), t.reading.clone()),
-        (View::Record(o), View::Record(t)) if o.weight.is_some() == t.weight.is_some() => {
+        (View::Record(o), View::Record(t))
+            if o.left.len() == t.left.len() && o.weight.is_some() == t.weight.is_some() =>
+        {
             (o.rows_of(o), o.rows_of(t).reading)
         }
         _ => return None,
@@ -125,7 +76,7 @@ impl Recorded {
     /// The rows of another one under the noise of this one, times the root of the number of records.
     fn rows_of(&self, of: &Self) -> Rows {
         let times = self.repeats.sqrt();
-        let rows = |bins: &[crate::reconcile::motion::design::Bins], at_rest: Option<f64>| {
+        let rows = |bins: &[Bins], at_rest: Option<f64>| {
             let mut rows = self.rows(bins);
             rows.iter_mut().for_each(|v| *v *= times);
             if self.weight.is_some() {
@@ -133,7 +84,7 @@ impl Recorded {
             }
             rows
         };
-        let entry = |list: fn(&super::view::Weight) -> &[f64], k: usize| {
+        let entry = |list: fn(&Weight) -> &[f64], k: usize| {
             let weight = of.weight.as_ref()?;
             list(weight).get(k).copied()
         };
