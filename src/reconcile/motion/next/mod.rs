@@ -7,6 +7,7 @@
 mod bench;
 mod known;
 mod measurement;
+mod obeying;
 mod view;
 mod worth;
 
@@ -59,7 +60,7 @@ pub(super) fn next_measurement(
     best: &Scored<MotionFit>,
     all: &[Scored<MotionFit>],
 ) -> String {
-    let (list, close) = explanations(scorer, verdict, best, all);
+    let list = explanations(scorer, verdict, best, all);
     let names: Vec<String> = list.iter().map(|s| name(scorer, s)).collect();
     let weighed = match list.len() {
         0 | 1 => None,
@@ -82,11 +83,8 @@ pub(super) fn next_measurement(
         )
     });
     match (verdict, said) {
-        (Verdict::Named, Some((words, each))) if close => format!("{} ({each}).", capital(&words)),
-        (Verdict::Named, Some((words, each))) => {
-            format!("None needed; {words} would confirm it ({each}).")
-        }
-        (Verdict::Named, None) if close => format!(
+        (Verdict::Named, Some((words, each))) => format!("{} ({each}).", capital(&words)),
+        (Verdict::Named, None) if !others.is_empty() => format!(
             "No road, sensor or mass of those that were weighed separates {first} from {others}: take them for one."
         ),
         (Verdict::Named, None) => "None needed; another road would confirm it.".into(),
@@ -107,21 +105,21 @@ pub(super) fn next_measurement(
     }
 }
 
-/// What is to be separated, the first from the others, and whether the record can't: the best set and the sets beside it; where nothing is
-/// named, the set that comes nearest and, of a hint, the model without it.
+/// What is to be separated, the first from the others: the best set and those that the record can't tell from it; where nothing is named, the
+/// set that comes nearest and the best one of another kind; of a hint, the model without it.
 fn explanations<'a>(
     scorer: &MotionScorer,
     verdict: Verdict,
     best: &'a Scored<MotionFit>,
     all: &'a [Scored<MotionFit>],
-) -> (Vec<&'a Scored<MotionFit>>, bool) {
+) -> Vec<&'a Scored<MotionFit>> {
     let empty = all.iter().find(|s| s.set.is_empty());
     let nearest = match best.set.is_empty() {
         true => all.iter().find(|s| !s.set.is_empty()),
         false => Some(best),
     };
     let Some(nearest) = nearest.filter(|_| verdict != Verdict::None) else {
-        return (vec![], false);
+        return vec![];
     };
     let others = || other_sets(nearest, all);
     let level = nearest.log_evidence;
@@ -133,16 +131,15 @@ fn explanations<'a>(
         let family = |&c: &usize| scorer.candidates[c].family().to_owned();
         s.set.iter().map(family).collect()
     };
-    let (rest, is_close) = match (verdict, close.is_empty()) {
-        (Verdict::BelowDetectability, _) => (empty.into_iter().collect(), true),
-        (_, false) => (close, true),
-        (_, true) => {
+    let rest = match verdict {
+        Verdict::BelowDetectability => empty.into_iter().collect(),
+        Verdict::Unknown if close.is_empty() => {
             let other_kind = others().find(|s| kinds(s) != kinds(nearest));
-            let other = other_kind.or_else(|| others().next());
-            (other.or(empty).into_iter().collect(), false)
+            other_kind.or(empty).into_iter().collect()
         }
+        Verdict::Named | Verdict::Unknown | Verdict::None => close,
     };
-    (std::iter::once(nearest).chain(rest).collect(), is_close)
+    std::iter::once(nearest).chain(rest).collect()
 }
 
 /// The measurement that separates most; `None` where none is worth it.

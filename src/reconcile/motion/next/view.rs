@@ -20,6 +20,7 @@ use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Point;
 use crate::vehicle::stretch::slow_stretches;
 use rustfft::num_complex::Complex64;
+use std::f64::consts::PI;
 
 /// What is left of a measurement under an explanation, before its parameters move, and how they move it.
 pub(super) enum View {
@@ -33,6 +34,10 @@ pub(super) enum View {
 pub(super) struct Recorded {
     /// Residual by equation, the present estimates of tolerances in it.
     pub(super) left: Vec<Bins>,
+    /// Whether an equation says what a new channel reads: its residual is that reading, no error of the record.
+    pub(super) is_new: Vec<bool>,
+    /// How the channels of the record enter the equations.
+    pub(super) channels: Vec<Entered>,
     /// Whitening by sensor noise and background.
     pub(super) whitener: Whitener,
     /// Columns in the order of the fit's own, then those that the measurement brings, before whitening.
@@ -45,6 +50,18 @@ pub(super) struct Recorded {
     pub(super) weight: Option<Weight>,
     /// How many records of this length it is.
     pub(super) repeats: f64,
+}
+
+/// A channel of the record.
+pub(super) struct Entered {
+    /// Name.
+    pub(super) name: String,
+    /// Power of its noise.
+    pub(super) power: f64,
+    /// Response of each equation to it as it is corrected, by bin.
+    pub(super) responses: Vec<Bins>,
+    /// Truth over reading, by bin.
+    pub(super) undone: Bins,
 }
 
 /// The balance of weight, and the entries of the columns in it, in the order of [`Recorded`], over its standard deviation.
@@ -91,7 +108,8 @@ impl View {
 /// The equations of motion of a further drive.
 ///
 /// Motion that obeys the one explanation is, to the first order of what parts the two, the motion at hand under the same filter at every
-/// channel; the equations of the other miss it by the difference of the forces of both at that motion.
+/// channel, less what parts it from the equations of the one ([`super::obeying`]); the equations of the other miss it by the difference of the
+/// forces of both at that motion.
 fn driven(
     frame: &MotionFrame,
     measurement: &Measurement,
@@ -118,30 +136,28 @@ fn driven(
             samples: vec![0.0; n],
         });
     }
-    // A slip is of the present record.
-    let adjust = match measurement {
-        Measurement::Forces(_) | Measurement::KnownMass { .. } | Measurement::Longer(_) => {
-            adjustments(&frame, &fit.parts)
-        }
-        _ => Adjustment::elsewhere(&adjustments(&frame, &fit.parts)),
-    };
+    let adjust = adjustments(&frame, &fit.parts);
     let v = &fit.assembled.vehicle;
-    let slow = slow_stretches(v, &fit.values, &frame.data, &adjust);
-    let mut d = design(&frame, v, &frame.data, &adjust, slow).ok()?;
-    let mut left = d.residual(&fit.values);
-    if let Measurement::KnownMass { body, mass } = measurement {
-        let i = v.inertia_index(*body, 0, 0);
-        for (l, c) in left.iter_mut().zip(parameter_column(&d, i)) {
-            l.iter_mut().zip(c).for_each(|(l, c)| *l += c * *mass);
-        }
+    let mut values = fit.values.clone();
+    if let Measurement::KnownMass { body, mass } = measurement
+        && let Some(m) = values.get_mut(v.inertia_index(*body, 0, 0))
+    {
+        *m += mass;
     }
+    let slow = slow_stretches(v, &values, &frame.data, &adjust);
+    let mut d = design(&frame, v, &frame.data, &adjust, slow).ok()?;
+    let left = d.residual(&values);
     let sets_scale = !forces.is_empty() && !is_driven(&fit.design);
     give_forces(&frame, &mut d, &left, forces, sets_scale)?;
-    let h = responses(&d, &fit.values);
+    let h = responses(&d, &values);
     let louder = scaled(&frame, &fit.design, &d, background, |f| measurement.gain(f));
     let whitener = Whitener::of(&covariance(&frame, &d, &h, &louder), d.equations.len());
     let mut out = with_columns(&frame, fit, &d, &h, left, whitener);
     out.repeats = measurement.repeats();
+    out.is_new = (d.equations.iter())
+        .map(|e| fit.design.equations.iter().all(|n| n.name != e.name))
+        .collect();
+    out.channels.retain(|c| !forces.contains(&c.name));
     let fixed = |i: &usize| frame.known.contains_key(&v.parameters()[*i].name);
     let fresh: Vec<usize> = (0..fit.values.len())
         .filter(|i| d.has(*i) && !fit.free.contains(i) && !known.held.contains(i) && !fixed(i))
@@ -357,8 +373,11 @@ fn with_columns(
         }
         own.push(column);
     }
+    let adjust = adjustments(frame, &fit.parts);
     Recorded {
         left,
+        is_new: vec![true; d.equations.len()],
+        channels: entered(d, h, &adjust),
         whitener,
         own,
         fresh: (tolerances.into_iter().flatten())
@@ -370,9 +389,31 @@ fn with_columns(
     }
 }
 
+/// The channels of a design, with what the corrections make of them.
+fn entered(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<Entered> {
+    /// Noise of a channel that is not declared, as a share of what it reads.
+    const UNDECLARED: f64 = 1e-4;
+    let one = |(c, channel): (usize, &BinChannel)| {
+        let n = channel.bins.len().max(1) as f64;
+        let assumed = UNDECLARED * size(&channel.bins) / n.sqrt();
+        let own = Adjustment::of_channel(adjust, &channel.name);
+        let undone = |f: &f64| {
+            let one = Complex64::new(1.0, 0.0);
+            own.as_ref().map_or(one, |a| a.undone(2.0 * PI * f))
+        };
+        Entered {
+            name: channel.name.clone(),
+            power: channel.noise.unwrap_or(assumed).powi(2),
+            responses: h.iter().map(|e| e[c].clone()).collect(),
+            undone: d.f_hz.iter().map(undone).collect(),
+        }
+    };
+    d.channels.iter().enumerate().map(one).collect()
+}
+
 impl Recorded {
     /// Unit-variance rows of a column, or of a residual.
-    pub(super) fn rows(&self, bins: &[Bins]) -> Vec<f64> {
+    pub(super) fn whitened(&self, bins: &[Bins]) -> Vec<f64> {
         self.whitener.rows(&slices(bins))
     }
 }

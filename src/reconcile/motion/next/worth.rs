@@ -1,6 +1,7 @@
 //! The difference of log evidence that a measurement is expected to bring between two explanations.
 
 use super::known::{Known, Rows};
+use super::obeying::missed;
 use super::view::{Recorded, View, Weight};
 use crate::linalg::tall::{Triangle, solve, triangle};
 use crate::reconcile::motion::design::Bins;
@@ -11,20 +12,17 @@ use crate::reconcile::motion::design::Bins;
 /// With d the difference of what both read there over its standard deviation, A the columns of the other one there, B those of the record at
 /// hand and P the priors: 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Noise adds alike to both.
 pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64> {
-    let (other, reading) = match (other, truth) {
-        (View::AtRest(o), View::AtRest(t)) => (o.clone(), t.reading.clone()),
-        (View::Record(o), View::Record(t))
-            if o.left.len() == t.left.len() && o.weight.is_some() == t.weight.is_some() =>
-        {
-            (o.rows_of(o), o.rows_of(t).reading)
-        }
+    let other = match (other, truth) {
+        (View::AtRest(o), View::AtRest(t)) if o.reading.len() == t.reading.len() => Rows {
+            reading: (o.reading.iter().zip(&t.reading))
+                .map(|(o, t)| o - t)
+                .collect(),
+            ..o.clone()
+        },
+        (View::Record(o), View::Record(t)) => o.rows(t)?,
         _ => return None,
     };
-    let difference: Vec<f64> = (other.reading.iter().zip(&reading))
-        .map(|(o, t)| o - t)
-        .collect();
-    let is_alike = other.reading.len() == reading.len();
-    if !is_alike || difference.iter().any(|d| !d.is_finite()) {
+    if other.reading.iter().any(|d| !d.is_finite()) {
         return None;
     }
     let n_own = known.fit.columns.len();
@@ -59,7 +57,7 @@ pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64>
                 false => 0.0,
             }));
     }
-    let mut target: Vec<f64> = difference.iter().map(|d| -d).collect();
+    let mut target: Vec<f64> = other.reading.iter().map(|d| -d).collect();
     target.extend(vec![0.0; priors.len()]);
     let list: Vec<(usize, &[f64])> = (columns.iter().enumerate())
         .map(|(k, c)| (k, c.0.as_slice()))
@@ -73,11 +71,11 @@ pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64>
 }
 
 impl Recorded {
-    /// The rows of another one under the noise of this one, times the root of the number of records.
-    fn rows_of(&self, of: &Self) -> Rows {
+    /// The rows of this one, and as their reading what it misses of `truth`, over the noise of this one, times the root of the number of records.
+    fn rows(&self, truth: &Self) -> Option<Rows> {
         let times = self.repeats.sqrt();
         let rows = |bins: &[Bins], at_rest: Option<f64>| {
-            let mut rows = self.rows(bins);
+            let mut rows = self.whitened(bins);
             rows.iter_mut().for_each(|v| *v *= times);
             if self.weight.is_some() {
                 rows.push(at_rest.unwrap_or(0.0));
@@ -85,23 +83,27 @@ impl Recorded {
             rows
         };
         let entry = |list: fn(&Weight) -> &[f64], k: usize| {
-            let weight = of.weight.as_ref()?;
+            let weight = self.weight.as_ref()?;
             list(weight).get(k).copied()
         };
-        // Over the deviation of this one's balance.
-        let (here, there) = (self.weight.as_ref(), of.weight.as_ref());
-        let sum = here.zip(there).map(|(h, t)| t.weight / h.sigma);
-        Rows {
-            reading: rows(&of.left, sum),
-            own: (of.own.iter().enumerate())
+        let (here, there) = (self.weight.as_ref(), truth.weight.as_ref());
+        if here.is_some() != there.is_some() {
+            return None;
+        }
+        let apart = here
+            .zip(there)
+            .map(|(h, t)| (h.weight - t.weight) / h.sigma);
+        Some(Rows {
+            reading: rows(&missed(self, truth)?, apart),
+            own: (self.own.iter().enumerate())
                 .map(|(k, c)| rows(c, entry(|w| &w.own, k)))
                 .collect(),
-            fresh: (of.fresh.iter().enumerate())
+            fresh: (self.fresh.iter().enumerate())
                 .map(|(k, (c, sd))| (rows(c, entry(|w| &w.fresh, k)), *sd))
                 .collect(),
-            scale: (of.scale.iter().enumerate())
+            scale: (self.scale.iter().enumerate())
                 .map(|(k, (i, c))| (*i, rows(c, entry(|w| &w.scale, k))))
                 .collect(),
-        }
+        })
     }
 }
