@@ -118,6 +118,9 @@ fn driven(
 ) -> Option<Recorded> {
     let fit = known.fit;
     let mut frame = frame.clone();
+    let whole = frame.data.n_samples();
+    frame.data = beginning(&frame.data);
+    let shorter = whole as f64 / frame.data.n_samples().max(1) as f64;
     frame.data = match measurement {
         Measurement::Road(_) | Measurement::Part { .. } => {
             shaped(&frame.data, |f| measurement.gain(f))
@@ -153,7 +156,7 @@ fn driven(
     let louder = scaled(&frame, &fit.design, &d, background, |f| measurement.gain(f));
     let whitener = Whitener::of(&covariance(&frame, &d, &h, &louder), d.equations.len());
     let mut out = with_columns(&frame, fit, &d, &h, left, whitener);
-    out.repeats = measurement.repeats();
+    out.repeats = measurement.repeats() * shorter;
     out.is_new = (d.equations.iter())
         .map(|e| fit.design.equations.iter().all(|n| n.name != e.name))
         .collect();
@@ -416,6 +419,16 @@ impl Recorded {
     pub(super) fn whitened(&self, bins: &[Bins]) -> Vec<f64> {
         self.whitener.rows(&slices(bins))
     }
+}
+
+/// As much of a record as says what the rest would: a road is alike from mile to mile.
+fn beginning(record: &Channels) -> Channels {
+    const SAMPLES: usize = 65_536;
+    let mut out = record.clone();
+    out.list
+        .iter_mut()
+        .for_each(|c| c.samples.truncate(SAMPLES));
+    out
 }
 
 /// A record with every motion times a real gain at each frequency, means as they are.
