@@ -236,6 +236,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         })
         .collect();
     StrainFrame {
+        rules: Default::default(),
         stop: Default::default(),
         observations: Observations {
             channels: gauges.iter().map(|g| g.name.clone()).collect(),
@@ -280,6 +281,7 @@ fn truth(text: &str, gauges: &[Glued], runs: &str) -> StrainFrame {
         payload_weight: PayloadWeight::InModel,
         wheel_forces: WheelForces::Measured,
         nuisance: Vec::new(),
+        ground: 0.0,
         other_loads: other_names
             .into_iter()
             .enumerate()

@@ -199,6 +199,64 @@ fn the_accelerometer_that_reads_wrong_is_named_or_its_group_never_another_alone(
     }
 }
 
+/// What the text of a next measurement expects, by rival.
+fn expected_worth(next: &str) -> Vec<f64> {
+    let list = next.split("expected difference of log evidence").nth(1);
+    let list = list.unwrap_or_else(|| panic!("{next}"));
+    let number = |part: &str| {
+        part.split([',', ')'])
+            .next()?
+            .rsplit(' ')
+            .next()?
+            .parse()
+            .ok()
+    };
+    list.split("from ").skip(1).filter_map(number).collect()
+}
+
+/// Two accelerometers whose gains are aliases: turned over, each says its own. With g the gain and s what turning over tells of one (a sensor
+/// that leans by 4 degrees, .0025), either explanation misses both channels by ln g, but for what the record leaves its own gain to move:
+/// the difference of log evidence is up to (ln g / s)^2. What was found is off by what g is known to.
+#[test]
+fn of_two_accelerometers_that_may_be_wrong_the_next_measurement_is_to_turn_them_over() {
+    use moving::generator::hide_gain;
+    let library = ["accel_gain".to_owned()];
+    let mut groups = 0;
+    for (channel, gain) in [("a_wheel", 0.93), ("a_body", 1.08), ("a_wheel", 1.15)] {
+        let case = hide_gain(Layout::FrontAccelerationsOnly, channel, gain, 11);
+        let o = examine(&frame_of(&case), &library).unwrap();
+        if o.verdict != Verdict::Named || !o.rivals.iter().any(|r| r.indistinguishable) {
+            continue;
+        }
+        groups += 1;
+        let next = &o.next_measurement;
+        assert!(next.starts_with("Turn every accelerometer over"), "{next}");
+        let most = (gain.ln() / 0.0025_f64).powi(2);
+        let [worth] = expected_worth(next)[..] else {
+            panic!("{next}");
+        };
+        assert!(
+            worth > 0.4 * most && worth < 1.25 * most,
+            "{worth} {most} {next}"
+        );
+    }
+    assert!(groups > 0, "no group to separate");
+}
+
+/// Thresholds are those of the frame: where a name takes more evidence than any record has, there is none; the gap stays what it was.
+#[test]
+fn a_frame_brings_its_thresholds() {
+    let case = hide(Layout::Front, "coulomb_friction", 1, Background::Clean, 7);
+    let library = ["coulomb_friction".to_owned()];
+    let plain = examine(&frame_of(&case), &library).unwrap();
+    let mut strict = frame_of(&case);
+    strict.rules.decisive = 1e9;
+    let strict = examine(&strict, &library).unwrap();
+    assert_eq!(plain.verdict, Verdict::Named);
+    assert_eq!(strict.verdict, Verdict::Unknown);
+    assert_eq!(plain.gap.before, strict.gap.before);
+}
+
 #[test]
 fn without_a_second_record_gaps_are_cross_validated_and_called_that() {
     use strainbridge::reconcile::motion::gap::Proof;

@@ -62,6 +62,7 @@ fn frame(
         sync_tolerance_s: 0.0,
         corrections: vec![],
         units: UnitNames::from_system(UnitSystem::MKgS),
+        rules: Default::default(),
         stop: Default::default(),
     })
 }

@@ -258,3 +258,61 @@ fn the_readme_is_short_and_leads_to_the_reference() {
         assert!(text.contains(page), "{page}");
     }
 }
+
+/// The thresholds of names with their values, and every constant that the page lists, as the code has them.
+#[test]
+fn the_page_of_thresholds_states_those_of_the_code() {
+    use strainbridge::reconcile::{MotionRules, Rule, StrainRules};
+    fn values<R: Copy + Default>(list: &[Rule<R>]) -> BTreeMap<String, f64> {
+        let value = |place: fn(&mut R) -> &mut f64| *place(&mut R::default());
+        let one = |(name, place): &Rule<R>| ((*name).to_owned(), value(*place));
+        list.iter().map(one).collect()
+    }
+    let page = std::fs::read_to_string(root().join("docs/reference/thresholds.md")).unwrap();
+    let cells = |line: &str| -> Vec<String> {
+        let inside = line.trim_matches('|').split('|');
+        inside
+            .map(|c| c.trim().trim_matches('`').to_owned())
+            .collect()
+    };
+    let section = |title: &str| -> Vec<Vec<String>> {
+        let text = page.split("\n## ").find(|s| s.starts_with(title)).unwrap();
+        let rows = text.lines().filter(|l| l.starts_with("| `"));
+        rows.map(cells).collect()
+    };
+    for (title, known) in [
+        ("Strain: what names", values(&StrainRules::ALL)),
+        ("Motion: what names", values(&MotionRules::ALL)),
+    ] {
+        let rows = section(title);
+        assert_eq!(rows.len(), known.len(), "{title}");
+        for row in rows {
+            let stated: f64 = row[1].parse().unwrap();
+            let value = known[&row[0]];
+            // Four digits are stated.
+            assert!(
+                (stated / value - 1.0).abs() < 5e-4,
+                "{title}: {row:?} {value}"
+            );
+        }
+    }
+    let mut listed = 0;
+    for row in page.lines().filter(|l| l.starts_with("| `")).map(cells) {
+        if !row[0].ends_with(".rs") {
+            continue;
+        }
+        let path = root().join("src/reconcile").join(&row[0]);
+        let source = std::fs::read_to_string(&path).unwrap_or_default();
+        let of_name = format!("const {}: ", row[1]);
+        let words = |text: &str| -> String { text.split_whitespace().collect() };
+        let mut stands = source.split(of_name.as_str()).skip(1);
+        // Types of arrays hold a semicolon of their own, before the sign.
+        let is_it = |rest: &str| {
+            let value = rest.split_once('=').and_then(|r| r.1.split_once(';'));
+            value.is_some_and(|v| words(v.0) == words(&row[2]))
+        };
+        assert!(stands.any(is_it), "{row:?}");
+        listed += 1;
+    }
+    assert!(listed > 60, "{listed} constants: is the page still read?");
+}

@@ -46,7 +46,7 @@ pub struct CauseOutcome {
 }
 
 /// Log evidence beyond which a set is preferred: as for all effects.
-const DECISIVE: f64 = super::strain::DECISIVE;
+const DECISIVE: f64 = super::rules::DECISIVE;
 /// Sets within this log evidence can't be told apart.
 const ALIKE: f64 = 3.0;
 /// More causes than these are not weighed together: their sets double with each.

@@ -8,6 +8,7 @@ pub mod effect;
 pub mod motion;
 mod observation;
 mod outcome;
+mod rules;
 mod search;
 pub mod strain;
 
@@ -17,4 +18,5 @@ pub use outcome::{
     ChannelGap, Detectable, Gap, GapBasis, GapNumbers, LoadShift, Misfit, NamedEffect, Outcome,
     Rival, SmoothAt, Verdict,
 };
+pub use rules::{MotionRules, Rule, StrainRules};
 pub use search::{Addition, Breadth, Scored, Scorer, search, search_near, settle};

@@ -61,6 +61,7 @@ pub fn frame_of(case: &Case) -> MotionFrame {
         sync_tolerance_s: if loose { 0.0004 } else { 0.0 },
         corrections: vec![],
         units: UnitNames::from_system(UnitSystem::MKgS),
+        rules: Default::default(),
         stop: Default::default(),
     }
 }

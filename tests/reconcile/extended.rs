@@ -253,6 +253,7 @@ fn the_extended_model_holds_every_kind_of_effect_on_runs_never_seen_too() {
         ("thermal_uniform", 18.0, 23),
         ("thermal_gradient", 8.0, 24),
         ("payload_gravity_missing", 1.0, 25),
+        ("uneven_ground", 4.0, 51),
     ] {
         let Some(found) = found(effect, size, seed) else {
             return;
@@ -564,15 +565,30 @@ fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to
     );
 }
 
-/// Ground that is not flat is no model of the structure: nothing is written, and it is said why.
+/// Ground that is not flat is a load of the extended job, in the unit of its runs; beside measured wheel forces, which hold it, it is refused.
 #[test]
-fn what_can_not_be_put_into_the_model_is_said() {
+fn uneven_ground_is_a_load_of_the_extended_job() {
     let Some(found) = found("uneven_ground", 4.0, 51) else {
         return;
     };
     let r = &found.result;
     assert_eq!(r["named"], serde_json::json!(["uneven_ground"]));
-    assert!(r["extended_model"].is_null());
-    let findings = r["findings"].as_array().expect("findings");
-    assert!(findings.iter().any(|f| f["code"] == "effect-not-in-model"));
+    let size = r["effects"][0]["size"].as_f64().expect("a size");
+    let extended = extended(&found, "uneven_ground");
+    let text = std::fs::read_to_string(&extended).expect("the extended job");
+    let mut job: toml::Table = text.parse().expect("valid toml");
+    let ground = job["runs"]["ground"].as_float().expect("a number");
+    assert!((ground - size).abs() < 1e-9 * size, "{ground} {size}");
+    let runs = job["runs"].as_table_mut().expect("[runs]");
+    runs.insert("wheel_forces".into(), "measured".into());
+    let path = extended.with_file_name("measured_forces.toml");
+    std::fs::write(&path, toml::to_string(&job).expect("toml")).expect("written");
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .arg("check")
+        .arg(&path)
+        .output()
+        .expect("the program runs");
+    assert_eq!(done.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert!(said.contains("runs.ground"), "{said}");
 }

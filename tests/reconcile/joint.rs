@@ -22,6 +22,9 @@ fn a_joint_of_half_its_stiffness_is_named_and_the_extended_deck_strains_as_the_t
         "{}",
         found["best_attempt"]
     );
+    // The page marks the joint, with what its stiffness is multiplied by: a half, as far as it is told.
+    let page = std::fs::read_to_string(out.join("report.html")).expect("the page");
+    assert!(page.contains("stiffness times 0."), "no joint is marked");
     // Natural log times 100 of one half.
     let number = |key: &str| found["effects"][0][key].as_f64().expect("a number");
     let (size, sigma) = (number("size"), number("sigma"));

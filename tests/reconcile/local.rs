@@ -1,6 +1,7 @@
 //! A small region of a plate that lost stiffness (a crack), hidden in a mesh three times as fine; no zone is given to the analyst.
 
 use super::strips::{ALONG, GAUGES, MEASURED, Mesh, measured, result, run, sensitivity, workplace};
+use std::path::Path;
 
 /// Strip, rows and stations of the analyst's mesh that a region holds, as far as they go.
 struct Crack {
@@ -117,6 +118,18 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
             "{said}"
         );
         assert!(size < -20.0, "{said}");
+        // No property bounds the region: nothing is written, it is said why, and the page shows where it lies.
+        assert!(r["extended_model"].is_null(), "{said}");
+        let findings = r["findings"].as_array().expect("findings");
+        let is_said = |f: &serde_json::Value| f["code"] == "effect-not-in-model";
+        assert!(findings.iter().any(is_said), "{said}");
+        let page = Path::new(env!("CARGO_TARGET_TMPDIR"))
+            .join(format!("reconcile_local_{k}/model/job.out/report.html"));
+        let page = std::fs::read_to_string(page).expect("the page");
+        assert!(
+            page.contains(&format!("stiffness less than the model's: {one}")),
+            "{said}"
+        );
     }
 }
 

@@ -9,6 +9,7 @@ use strainbridge::reconcile::strain::{
     GaugeFacts, StiffnessOf, StiffnessSignature, StrainFrame, Wiring, examine, predict,
 };
 use strainbridge::reconcile::{Observations, Outcome, Verdict};
+use strainbridge::report::strain::{GapReport, RunStrain, reconcile_page};
 
 const SPAN: f64 = 8.0;
 const GAUGES: usize = 24;
@@ -144,6 +145,18 @@ fn a_model_that_is_off_by_a_smooth_factor_is_unknown_smooth_and_its_curve_is_the
             assert!((at.factor - truth).abs() < allowed, "{said} {at:?} {truth}");
         }
         assert!(!outcome.smooth.is_empty(), "{said}");
+        let page = reconcile_page(&GapReport {
+            title: "beam",
+            outcome: &outcome,
+            added: vec![],
+            scene: None,
+            strain: &RunStrain::default(),
+            findings: &[],
+        })
+        .to_html();
+        assert!(page.contains("The smooth error of the model"), "{said}");
+        let is_drawn = |g: &String| page.contains(&format!("{g} at "));
+        assert!(outcome.smooth.iter().all(|s| is_drawn(&s.gauge)), "{said}");
     }
     // A curve of 5 % may lead by less than odds of a hundred to one, and then is none: that is asked of it so that it names nothing falsely.
     let curves = 2 * SEEDS - straight;

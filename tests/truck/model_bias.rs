@@ -43,6 +43,7 @@ fn frame() -> StrainFrame {
         influence.extend([0.0; 4]);
     }
     StrainFrame {
+        rules: Default::default(),
         stop: Default::default(),
         observations: Observations {
             channels: s.gauges.clone(),
@@ -73,6 +74,7 @@ fn frame() -> StrainFrame {
         wheel_forces: WheelForces::Measured,
         other_loads: Vec::new(),
         nuisance: Vec::new(),
+        ground: 0.0,
         thermal_uniform: None,
         thermal_gradient: None,
         masses: Vec::new(),

@@ -203,6 +203,7 @@ pub(super) struct RawRuns {
     pub units: Option<RawUnits>,
     pub noise: Option<RawRunNoise>,
     pub wheel_forces: S<String>,
+    pub ground: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

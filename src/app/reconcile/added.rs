@@ -111,6 +111,14 @@ impl Held<'_> {
                 "loads and payload exchanged".into(),
             )],
             Extension::RunRecord { run, noted, .. } => self.record(run, *noted),
+            Extension::NuisanceLoads {
+                source: Nuisance::Ground,
+                ..
+            } => {
+                let size = e.size.first().copied().unwrap_or(0.0);
+                let found = format!("{} kN rms, found anew in every run", number(size));
+                vec![self.in_job("[runs] ground", "none", found)]
+            }
             Extension::NuisanceLoads { source, loads, .. } => {
                 let names: Vec<&str> = loads.iter().map(|l| l.0.as_str()).collect();
                 let sizes = match source {

@@ -2,6 +2,7 @@
 
 use super::added::Added;
 use super::extended::ExtendedModel;
+use super::marked::MarkedStiffness;
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
 use crate::app::strain::Fields;
@@ -230,6 +231,9 @@ pub struct StrainPart {
     /// Deck and strain fields; `None` where S was given.
     #[serde(skip)]
     pub fields: Option<Fields>,
+    /// Where the stiffnesses of the named set (or best attempt) lie on the deck's model.
+    #[serde(skip)]
+    pub marked: Vec<MarkedStiffness>,
 }
 
 /// What only motion has.

@@ -58,13 +58,6 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
                 "a temperature that differs from place to place, and the job names no temperature set",
             )
         }
-        (
-            Extension::NuisanceLoads {
-                source: Nuisance::Ground,
-                ..
-            },
-            _,
-        ) => Some("wheel forces of ground that is not flat: weigh every wheel where it stands"),
         (Extension::Nothing, _) => Some("no effect of the library"),
         _ => None,
     }

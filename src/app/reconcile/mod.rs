@@ -21,6 +21,7 @@ mod frame_columns;
 mod influence;
 mod local;
 mod local_ground;
+mod marked;
 mod matrix_frame;
 mod model_part;
 mod motion_findings;
@@ -42,6 +43,7 @@ mod words;
 pub use added::Added;
 pub use answer::*;
 pub use extended_job::extended_job;
+pub use marked::MarkedStiffness;
 pub use words::effect_in_words;
 
 use super::context::Context;

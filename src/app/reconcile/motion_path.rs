@@ -241,6 +241,7 @@ fn frame(section: &VehicleJob, records: &VehicleRecords, stop: Stop) -> MotionFr
         sync_tolerance_s: q.sync_tolerance_s,
         corrections: q.corrections.clone(),
         units: q.units.clone(),
+        rules: Default::default(),
         stop,
     }
 }

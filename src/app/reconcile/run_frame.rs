@@ -64,6 +64,7 @@ pub(super) fn frame(
         .map_or(LOAD_NOISE_KN, |f| f * runs.units.force.si / KILO);
     let measured = job.measured.as_ref();
     let mut frame = StrainFrame {
+        rules: Default::default(),
         stop: work.cx.progress.stop(),
         observations,
         gauges: part.gauges,
@@ -84,6 +85,7 @@ pub(super) fn frame(
         wheel_forces: runs.wheel_forces,
         other_loads: part.other_loads,
         nuisance: part.nuisance,
+        ground: runs.ground.map_or(0.0, |f| f * runs.units.force.si / KILO),
         thermal_uniform: part.thermal_uniform,
         thermal_gradient: part.thermal_gradient,
         masses: part.masses,

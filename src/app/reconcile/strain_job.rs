@@ -8,7 +8,7 @@ use super::extended_columns::{expected, sensitivity_columns};
 use super::extended_loads::{component_word, entries, side_loads};
 use crate::app::job::Job;
 use crate::reconcile::NamedEffect;
-use crate::reconcile::effect::Extension;
+use crate::reconcile::effect::{Extension, Nuisance};
 use crate::reconcile::strain::StrainFrame;
 use crate::units::KILO;
 use toml::{Table, Value};
@@ -46,6 +46,17 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
             runs.insert("units".into(), Value::Table(words_of(&units)));
         }
     }
+    let ground = ground_found(effects).unwrap_or(found.frame.ground);
+    if ground > 0.0
+        && let Some(runs) = &job.runs
+    {
+        // What was put into kN stays in kN.
+        let unit = match extended.runs {
+            Some(_) => KILO,
+            None => runs.units.force.si,
+        };
+        put(table, "runs", "ground", Value::Float(ground * KILO / unit));
+    }
     if let Some(x_m) = extended.nominal_x_m {
         let x = x_m / job.units.length_m();
         put(table, "payload", "nominal_x", Value::Float(x));
@@ -59,6 +70,18 @@ pub(super) fn edit(table: &mut Table, job: &Job, found: &StrainPart, extended: &
     }
     let accepted: Vec<&str> = effects.iter().filter_map(described).collect();
     drop_accepted(table, &accepted);
+}
+
+/// Usual change of a wheel force, kN, where uneven ground was named.
+pub(super) fn ground_found(effects: &[NamedEffect]) -> Option<f64> {
+    let of = |e: &NamedEffect| match &e.extension {
+        Extension::NuisanceLoads {
+            source: Nuisance::Ground,
+            ..
+        } => e.size.first().copied(),
+        _ => None,
+    };
+    effects.iter().find_map(of)
 }
 
 /// The id of a hypothesis of the user's own.

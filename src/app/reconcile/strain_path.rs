@@ -114,7 +114,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         remains: Some(outcome.remains.clone()),
         next_measurement: outcome.next_measurement.clone(),
         detectable: Some(outcome.detectable.iter().map(size).collect()),
-        strain: Some(strain_part(frame, outcome, deck)),
+        strain: Some(strain_part(job, frame, outcome, deck)),
         motion: None,
         causes: None,
         added,
@@ -153,7 +153,13 @@ fn searched(work: &mut Work, frame: &StrainFrame, only: &[String]) -> Result<Out
     Ok(outcome)
 }
 
-fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) -> StrainPart {
+fn strain_part(
+    job: &Job,
+    frame: StrainFrame,
+    outcome: Outcome,
+    deck: Option<DeckFrame>,
+) -> StrainPart {
+    let marked = deck.as_ref().map(|d| d.marked(job, &outcome.best_attempt));
     let n = outcome.covariance.len().isqrt().max(1);
     StrainPart {
         wins_of_100: outcome.wins,
@@ -169,6 +175,7 @@ fn strain_part(frame: StrainFrame, outcome: Outcome, deck: Option<DeckFrame>) ->
         outcome,
         frame,
         fields: deck.map(|d| d.fields),
+        marked: marked.unwrap_or_default(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! `uneven_ground`: the wheels stand on ground that is not flat, so the forces differ from those computed for flat ground.
 
 use super::{Amplitudes, Extension, Nuisance, Stage, StrainEffect};
-use crate::reconcile::strain::{StrainFrame, WheelForces};
+use crate::reconcile::strain::{StrainFrame, WheelForces, ground_patterns};
 
 /// Strain = strain + influence times a self-balanced change of the wheel forces, unknown in every run.
 #[derive(Clone, Debug)]
@@ -11,69 +11,16 @@ pub struct UnevenGround;
 const USUAL: f64 = 0.25;
 
 impl UnevenGround {
-    /// Itself where the wheel forces are computed, not measured.
+    /// Itself where the wheel forces are computed, not measured, and the job has no ground of its own.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
-        let warps = frame.n_loads() > constraints(frame).len();
-        if frame.wheel_forces == WheelForces::FlatGroundModel && warps {
+        let warps = !ground_patterns(frame).is_empty();
+        let missing = frame.wheel_forces == WheelForces::FlatGroundModel && frame.ground == 0.0;
+        if missing && warps {
             vec![Self]
         } else {
             Vec::new()
         }
     }
-}
-
-/// What a change of wheel forces can't alter: their sum and moments, as far as the wheels' places are known.
-fn constraints(frame: &StrainFrame) -> Vec<Vec<f64>> {
-    let n = frame.n_loads();
-    let mut out = vec![vec![1.0; n]];
-    if let Some(places) = &frame.load_positions {
-        out.push(places.iter().map(|p| p[0]).collect());
-        out.push(places.iter().map(|p| p[1]).collect());
-    } else if frame
-        .load_names
-        .iter()
-        .all(|name| name.starts_with(['L', 'R']))
-    {
-        // Named by side, as LF and RF are: the moment about the long axis is all that is known.
-        out.push(
-            frame
-                .load_names
-                .iter()
-                .map(|name| if name.starts_with('L') { 1.0 } else { -1.0 })
-                .collect(),
-        );
-    }
-    out
-}
-
-/// An orthonormal basis of the forces that satisfy the constraints (Gram-Schmidt).
-fn warps(frame: &StrainFrame) -> Vec<Vec<f64>> {
-    /// Below this length a vector is what the basis already holds.
-    const NEGLIGIBLE: f64 = 1e-9;
-    let n = frame.n_loads();
-    let mut basis: Vec<Vec<f64>> = Vec::new();
-    let fixed = constraints(frame);
-    let n_fixed_given = fixed.len();
-    let mut n_fixed = 0;
-    let units = (0..n).map(|i| {
-        (0..n)
-            .map(|j| if i == j { 1.0 } else { 0.0 })
-            .collect::<Vec<f64>>()
-    });
-    for (k, mut v) in fixed.into_iter().chain(units).enumerate() {
-        let before = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        for b in &basis {
-            let along: f64 = b.iter().zip(&v).map(|(x, y)| x * y).sum();
-            v.iter_mut().zip(b).for_each(|(x, y)| *x -= along * y);
-        }
-        let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        if length > NEGLIGIBLE * before.max(1.0) {
-            v.iter_mut().for_each(|x| *x /= length);
-            basis.push(v);
-            n_fixed += usize::from(k < n_fixed_given);
-        }
-    }
-    basis.split_off(n_fixed)
 }
 
 impl StrainEffect for UnevenGround {
@@ -84,13 +31,7 @@ impl StrainEffect for UnevenGround {
         Stage::Loads
     }
     fn amplitudes(&self, frame: &StrainFrame) -> Option<Amplitudes> {
-        let n_c = frame.n_columns();
-        let pattern = |w: &Vec<f64>| {
-            let rows = frame.influence.chunks_exact(n_c);
-            rows.map(|row| row.iter().zip(w).map(|(a, b)| a * b).sum())
-                .collect()
-        };
-        let patterns: Vec<Vec<f64>> = warps(frame).iter().map(pattern).collect();
+        let patterns = ground_patterns(frame);
         Some(Amplitudes {
             kinds: vec![0; patterns.len()],
             patterns,

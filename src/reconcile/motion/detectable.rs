@@ -3,7 +3,6 @@
 use super::change::Change;
 use super::effect_units::unit_of_change;
 use super::fitted::MotionFit;
-use super::found::DECISIVE;
 use super::gls::Basis;
 use super::limits::{late_on_average, tolerance_limit};
 use super::outcome::Smallest;
@@ -21,7 +20,7 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smalle
         .iter()
         .filter(|c| matches!(c, ColumnOf::Gain(_) | ColumnOf::Delay(_)))
         .count();
-    let limit = tolerance_limit(tolerances);
+    let limit = tolerance_limit(&scorer.frame.rules, tolerances);
     let mut out: Vec<Option<Smallest>> = vec![None; scorer.candidates.len()];
     for (c, k, columns) in scorer.form_columns(null) {
         let candidate = &scorer.candidates[c];
@@ -39,7 +38,7 @@ pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smalle
         }
         let price = scorer.cost(c, shape, null.n_rows);
         let sigma = 1.0 / left;
-        let seen = sigma * (2.0 * (DECISIVE + price)).sqrt();
+        let seen = sigma * (2.0 * (scorer.frame.rules.decisive + price)).sqrt();
         let tolerance = match shape {
             Change::Gain { .. } => scorer.frame.gain_tolerance,
             Change::Delay { .. }

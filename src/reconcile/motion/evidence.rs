@@ -6,11 +6,6 @@ use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::zeros::zeros;
 
-/// Scatter of the logarithm of gains that are at fault, one sd: by some per cent; more is ever less likely.
-const GAIN: f64 = 0.1;
-/// Scatter of delays that are at fault, s, one sd: some samples at the rates of vehicle records.
-const DELAY_S: f64 = 0.01;
-
 /// What an effect costs for its freedom: half the log of the number of rows a parameter (Schwarz), the choice among `n` candidates, and
 /// the candidate's own handicap.
 ///
@@ -47,17 +42,17 @@ pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) 
         - fit.log_det
         - at_rest
         - cost
-        - unusual(fit)
+        - unusual(frame, fit)
 }
 
 /// What the sizes of channel faults cost.
-fn unusual(fit: &MotionFit) -> f64 {
+fn unusual(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     fit.parts
         .iter()
         .map(|p| match &p.shape {
-            Change::Gain { .. } => 0.5 * ((1.0 / p.fault).ln() / GAIN).powi(2),
+            Change::Gain { .. } => 0.5 * ((1.0 / p.fault).ln() / frame.rules.gain).powi(2),
             Change::Delay { .. } | Change::Slip { .. } | Change::Lag { .. } => {
-                0.5 * (p.fault / DELAY_S).powi(2)
+                0.5 * (p.fault / frame.rules.delay_s).powi(2)
             }
             _ => 0.0,
         })

@@ -8,7 +8,7 @@ use super::design::design;
 use super::effect::library;
 use super::fit::{Effort, fit};
 use super::fitted::MotionFit;
-use super::found::{DECISIVE, Found};
+use super::found::Found;
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
 use super::growing::fit_of_clock;
@@ -16,7 +16,7 @@ use super::judge::judged;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
 use super::part::Part;
-use super::scorer::{LOST, MotionScorer};
+use super::scorer::MotionScorer;
 use super::sound::outcome_of_dead;
 use super::unexplained_background::{of_fit, power, unexplained_background};
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
@@ -24,12 +24,14 @@ use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::motion::VehicleError;
 
 /// How far the search looks.
-const BREADTH: Breadth = Breadth {
-    largest: 3,
-    beam: 2,
-    tries: 4,
-    decisive: DECISIVE,
-};
+fn breadth(frame: &MotionFrame) -> Breadth {
+    Breadth {
+        largest: 3,
+        beam: 2,
+        tries: 4,
+        decisive: frame.rules.decisive,
+    }
+}
 /// Rounds of searching under a background that the last best set lowered.
 const ROUNDS: usize = 3;
 /// Fall of the background's power that makes another round worth while.
@@ -96,21 +98,22 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
         // A change of mass or a clock leaves room for more; without it nothing that is looked for near the empty set means anything.
         let mut near = found;
         near.retain(|s| !s.set.is_empty() && !whole(s));
-        near.truncate(BREADTH.beam);
+        near.truncate(breadth(scorer.frame).beam);
         if near.is_empty() {
             scorer.background = unexplained_background(scorer, &null);
         }
         for _ in 0..ROUNDS {
             all = if near.is_empty() {
-                search(scorer, BREADTH)
+                search(scorer, breadth(scorer.frame))
             } else {
-                search_near(scorer, BREADTH, &near)
+                search_near(scorer, breadth(scorer.frame), &near)
             };
             if scorer.is_stopped() {
                 break;
             }
-            with_aliases(scorer, &mut all, DECISIVE);
-            best = settle(&all, DECISIVE);
+            let decisive = scorer.frame.rules.decisive;
+            with_aliases(scorer, &mut all, decisive);
+            best = settle(&all, decisive);
             let Some(b) = &best else { break };
             let lower = of_fit(scorer.frame, &b.fit);
             if b.set.is_empty() || power(&lower) > LOWERED * power(&scorer.background) {
@@ -137,7 +140,7 @@ fn searched(scorer: &mut MotionScorer, null: MotionFit, broken: Vec<BrokenChanne
 fn upheavals(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Scored<MotionFit>> {
     /// Fall of the squared residual that settles it.
     const FALL: f64 = 10.0;
-    if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < LOST) {
+    if fitted_gap(scorer.frame, null).is_none_or(|g| g.gap < scorer.frame.rules.lost) {
         return vec![];
     }
     let tried = |(c, candidate): (usize, &Candidate)| {

@@ -104,7 +104,7 @@ pub fn fit(
         }
         let (d, _) = current.as_ref()?;
         let problem = Problem::of(frame, d, values.as_deref(), &parts, background);
-        let (s, problem) = problem.solved()?;
+        let (s, problem) = problem.solved(frame)?;
         let new = problem.values(&s);
         let was_even = values.is_none();
         let moved = advance(&mut parts, &problem, &s);
@@ -122,7 +122,7 @@ pub fn fit(
         }
     }
     let out = last?;
-    plausible(candidates, &out).then_some(out)
+    plausible(&frame.rules, candidates, &out).then_some(out)
 }
 
 /// Relative change of the squared residual between rounds at which a fit has settled.
@@ -219,8 +219,8 @@ impl Problem {
         self.columns.push(PriorColumn { rows, prior });
     }
 
-    fn solved(mut self) -> Option<(Solved, Self)> {
-        let s = within_tolerance(&mut self.columns, &self.rows);
+    fn solved(mut self, frame: &MotionFrame) -> Option<(Solved, Self)> {
+        let s = within_tolerance(&frame.rules, &mut self.columns, &self.rows);
         s.x.iter().all(|x| x.is_finite()).then_some((s, self))
     }
 
@@ -305,6 +305,7 @@ impl Problem {
             rest: self.rest,
             columns: Arc::new(self.columns),
             column_of: self.column_of,
+            estimates: s.x,
             residual: Arc::new(s.residual),
             left: Arc::new(left),
             values,

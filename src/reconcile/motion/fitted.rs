@@ -46,6 +46,8 @@ pub struct MotionFit {
     pub columns: Arc<Vec<PriorColumn>>,
     /// What they stand for.
     pub column_of: Vec<ColumnOf>,
+    /// What the last round found for each; for a fault by how much it moved.
+    pub estimates: Vec<f64>,
     /// Whitened residual, priors at its end.
     pub residual: Arc<Vec<f64>>,
     /// Residual of each equation with nuisance at its estimate.

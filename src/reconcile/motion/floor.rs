@@ -7,16 +7,9 @@ use super::gls::{PriorColumn, solved};
 use super::noise::{Background, Whitener, covariance};
 use super::part::Part;
 use super::response::responses;
+use crate::reconcile::rules::MotionRules;
 use rustfft::num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-
-/// Declared noise may be wrong by this factor: it is a data sheet's, or was estimated at rest.
-pub const NOISE_FACTOR: f64 = 1.5;
-/// What no job declares (a weak coupling to the other side or axle, a rate that wanders) is taken to be as large as what this one does: the
-/// squared size of tolerances counts twice in a limit.
-const UNDECLARED: f64 = 2.0;
-/// Share of complete models that stay below a limit.
-const CONFIDENCE: f64 = 0.99;
 
 /// Squared floors of one equation, over the squared size of what was measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -35,11 +28,11 @@ impl Floor {
         (self.noise + self.tolerance).sqrt()
     }
 
-    /// The most that a complete model leaves: noise wrong by [`NOISE_FACTOR`], tolerances as they are in one job of a hundred, and as much
-    /// again that nobody declared.
-    pub fn limit(&self) -> f64 {
-        let noise = self.noise * NOISE_FACTOR * NOISE_FACTOR;
-        (noise + UNDECLARED * self.tolerance_limit).sqrt()
+    /// The most that a complete model leaves: noise wrong by its factor, tolerances as they are in one job of a hundred, and as much again that
+    /// nobody declared.
+    pub fn limit(&self, rules: &MotionRules) -> f64 {
+        let noise = self.noise * rules.noise_factor * rules.noise_factor;
+        (noise + rules.undeclared * self.tolerance_limit).sqrt()
     }
 
     /// Mean of squares.
@@ -124,19 +117,19 @@ pub fn floors(
             Floor {
                 noise: noise / whole,
                 tolerance: mean,
-                tolerance_limit: quantile(mean, square),
+                tolerance_limit: quantile(mean, square, 1.0 - frame.rules.false_rate),
             }
         })
         .collect()
 }
 
 /// Quantile of a quadratic form of normal deviates with eigenvalues of that sum and sum of squares.
-fn quantile(sum: f64, squares: f64) -> f64 {
+fn quantile(sum: f64, squares: f64, share: f64) -> f64 {
     if !(sum > 0.0 && squares > 0.0) {
         return 0.0;
     }
     let freedom = sum * sum / squares;
-    ChiSquared::new(freedom).map_or(sum, |c| sum / freedom * c.inverse_cdf(CONFIDENCE))
+    ChiSquared::new(freedom).map_or(sum, |c| sum / freedom * c.inverse_cdf(share))
 }
 
 /// What one sd of each tolerance leaves in every equation of `judged`.

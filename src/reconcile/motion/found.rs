@@ -1,12 +1,9 @@
-//! What a search found, and what it takes to be named.
+//! What a search found.
 
 use super::channel_check::BrokenChannel;
 use super::fitted::MotionFit;
 use crate::reconcile::search::Scored;
 
-/// Log evidence that an effect must bring to be named: odds of 400, so that a set of up to three effects holds a chance one in fewer than
-/// one job of a hundred.
-pub(super) const DECISIVE: f64 = 6.0;
 /// What a search found: all sets that were scored, best first, and the best one.
 pub(super) struct Found {
     /// The analyst's model under sensor noise alone.
@@ -17,4 +14,15 @@ pub(super) struct Found {
     pub best: Scored<MotionFit>,
     /// Channels that show by themselves that they can't be relied on.
     pub broken: Vec<BrokenChannel>,
+}
+
+/// Other sets, nearest first; sets that merely add to the best are no rivals. Where nothing is named, what came nearest.
+pub(super) fn other_sets<'a>(
+    best: &'a Scored<MotionFit>,
+    all: &'a [Scored<MotionFit>],
+) -> impl Iterator<Item = &'a Scored<MotionFit>> {
+    all.iter().filter(|s| {
+        let adds = best.set.iter().all(|m| s.set.contains(m));
+        !s.set.is_empty() && (best.set.is_empty() || !adds)
+    })
 }

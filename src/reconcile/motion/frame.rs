@@ -1,5 +1,6 @@
 //! What the dynamic search starts from.
 
+use crate::reconcile::rules::MotionRules;
 use crate::series::channels::Channels;
 use crate::series::spectrum::Band;
 use crate::stop::Stop;
@@ -39,6 +40,8 @@ pub struct MotionFrame {
     pub corrections: Vec<Adjustment>,
     /// Names of units.
     pub units: UnitNames,
+    /// Thresholds of names.
+    pub rules: MotionRules,
     /// Cuts the search short; what it found is then of no use.
     pub stop: Stop,
 }

@@ -7,29 +7,18 @@ use super::detectable::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
 use super::fitted::MotionFit;
-use super::floor::NOISE_FACTOR;
-use super::found::{DECISIVE, Found};
+use super::found::{Found, other_sets};
 use super::gap::{Proof, RecordGap, fitted_gap, proof, proof_gap};
 use super::limits::{beyond_tolerance, stands_out};
+use super::next::next_measurement;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
 use super::scorer::MotionScorer;
-use super::sentences::{next_measurement, remains};
+use super::sentences::remains;
 use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
+use crate::reconcile::rules::MotionRules;
 use crate::reconcile::search::{Scored, settle};
 use crate::vehicle::motion::VehicleError;
-
-/// Log evidence that is a hint: odds of three.
-const HINT: f64 = 1.0;
-/// Rivals within this log evidence (odds of 20) can't be told apart.
-const CLOSE: f64 = 3.0;
-/// Share of an effect's own power that its form may leave: stretch is integrated from noisy accelerations and nonlinear terms are formed
-/// from it, to about a fifth of their amplitude at the worst (the lower band edge).
-const FORM: f64 = 0.04;
-
-/// Share of what other effects of the vehicle take that a further one must take beside them: forms are made from noisy stretch to about a
-/// twentieth of their amplitude within the band, and what a form leaves of itself looks like another one.
-const NEXT_FORM: f64 = 0.0025;
 
 /// Gaps of a model.
 struct Gaps {
@@ -51,12 +40,13 @@ impl Gaps {
 
     /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges.
     /// `excess` is the squared size of what named effects took, over that of what was measured.
-    fn at_floor(&self, excess: f64) -> bool {
+    fn at_floor(&self, rules: &MotionRules, excess: f64) -> bool {
         let within = |g: &Option<RecordGap>| {
-            g.as_ref()
-                .is_some_and(|g| g.gap.powi(2) <= g.floor.limit().powi(2) + FORM * excess)
+            g.as_ref().is_some_and(|g| {
+                g.gap.powi(2) <= g.floor.limit(rules).powi(2) + rules.form * excess
+            })
         };
-        self.reduced_chi2 < NOISE_FACTOR * NOISE_FACTOR
+        self.reduced_chi2 < rules.noise_factor * rules.noise_factor
             || within(&self.fitted) && within(&self.proof)
     }
 }
@@ -86,6 +76,7 @@ pub(super) fn judged(
         broken,
     } = found;
     let frame = scorer.frame;
+    let rules = &frame.rules;
     let empty = all.iter().find(|s| s.set.is_empty()).cloned();
     let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
     let best = nameable(scorer, &all, best);
@@ -101,17 +92,17 @@ pub(super) fn judged(
     let excess = (taken(&before.fitted) - taken(&after.fitted)).max(0.0);
     let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
     let decided = !best.set.is_empty()
-        && evidence > DECISIVE
-        && stands_out(&best.fit)
-        && after.at_floor(excess)
+        && evidence > rules.decisive
+        && stands_out(rules, &best.fit)
+        && after.at_floor(rules, excess)
         && gap.after < gap.before;
     let hint = all
         .iter()
         .find(|s| !s.set.is_empty())
-        .is_some_and(|s| s.log_evidence - null_evidence > HINT);
+        .is_some_and(|s| s.log_evidence - null_evidence > rules.hint);
     let verdict = if !broken.is_empty() || decided {
         Verdict::Named
-    } else if !before.at_floor(0.0) {
+    } else if !before.at_floor(rules, 0.0) {
         Verdict::Unknown
     } else if hint && best.set.is_empty() {
         Verdict::BelowDetectability
@@ -141,11 +132,11 @@ pub(super) fn judged(
         best_attempt: attempt,
         covariance,
         corrections: stated(frame, &best.fit.parts),
-        remains: remains(verdict, chi, left, judged_by, after.proof.as_ref()),
-        next_measurement: next_measurement(scorer, verdict, &rivals),
+        remains: remains(rules, verdict, chi, left, judged_by, after.proof.as_ref()),
+        next_measurement: next_measurement(scorer, verdict, &best, &all),
         rivals,
         evidence,
-        decisive: DECISIVE,
+        decisive: rules.decisive,
         gap,
         judged_by,
         before: before.proof,
@@ -214,7 +205,7 @@ fn nameable(
             };
             power(&rest).is_none_or(|without| {
                 let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
-                let least = tolerance + NEXT_FORM * others.max(0.0);
+                let least = tolerance + frame.rules.next_form * others.max(0.0);
                 without - own.gap * own.gap > least
             })
         })
@@ -224,7 +215,7 @@ fn nameable(
         return best;
     }
     let rest: Vec<Scored<MotionFit>> = all.iter().filter(|s| fine(s)).cloned().collect();
-    settle(&rest, DECISIVE).unwrap_or(best)
+    settle(&rest, frame.rules.decisive).unwrap_or(best)
 }
 
 /// A channel that can't be relied on, as an effect.
@@ -263,7 +254,7 @@ fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
         .collect()
 }
 
-/// Other sets, nearest first; sets that merely add to the best are no rivals. Where nothing is named, what came nearest.
+/// The first of [`other_sets`], in words and numbers.
 fn rivals(
     scorer: &MotionScorer,
     best: &Scored<MotionFit>,
@@ -271,11 +262,7 @@ fn rivals(
 ) -> Vec<Rival> {
     /// As many as anyone reads.
     const MOST: usize = 4;
-    all.iter()
-        .filter(|s| {
-            let adds = best.set.iter().all(|m| s.set.contains(m));
-            !s.set.is_empty() && (best.set.is_empty() || !adds)
-        })
+    other_sets(best, all)
         .take(MOST)
         .map(|s| {
             let difference = best.log_evidence - s.log_evidence;
@@ -287,7 +274,8 @@ fn rivals(
                     .collect(),
                 evidence_difference: difference,
                 gap_after: proof_gap(scorer.frame, &s.fit).map_or(f64::NAN, |g| g.gap),
-                indistinguishable: !best.set.is_empty() && difference.abs() < CLOSE,
+                indistinguishable: !best.set.is_empty()
+                    && difference.abs() < scorer.frame.rules.indistinguishable,
             }
         })
         .collect()

@@ -6,28 +6,30 @@ use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::gls::{PriorColumn, Solved, solved};
 use super::part::ColumnOf;
+use crate::reconcile::rules::MotionRules;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-/// Rate at which a job of healthy channels may have one beyond its limit.
-const FALSE_RATE: f64 = 0.01;
-
 /// Standard deviations of a declared tolerance that no channel of a healthy job exceeds but in one job of a hundred: the normal quantile
 /// of both tails, shared by `n` gains and delays.
-pub fn tolerance_limit(n: usize) -> f64 {
-    let tail = FALSE_RATE / (2.0 * n.max(1) as f64);
+pub fn tolerance_limit(rules: &MotionRules, n: usize) -> f64 {
+    let tail = rules.false_rate / (2.0 * n.max(1) as f64);
     Normal::new(0.0, 1.0).map_or(3.0, |z| z.inverse_cdf(1.0 - tail))
 }
 
 /// The solution with every nuisance within what a healthy job has ([`tolerance_limit`]): priors of those that would leave it are
 /// narrowed until they stay. Without this a model that fits badly is silenced by channels that read nothing at all.
-pub fn within_tolerance(columns: &mut [PriorColumn], target: &[f64]) -> Solved {
+pub fn within_tolerance(
+    rules: &MotionRules,
+    columns: &mut [PriorColumn],
+    target: &[f64],
+) -> Solved {
     /// Narrowing settles in a few rounds; what is left beyond is small.
     const ROUNDS: usize = 6;
     /// Beyond the limit by less than this share is at it.
     const SLACK: f64 = 1.05;
     let declared: Vec<Option<f64>> = columns.iter().map(|c| c.prior).collect();
-    let most = tolerance_limit(declared.iter().flatten().count());
+    let most = tolerance_limit(rules, declared.iter().flatten().count());
     let mut s = solved(columns, target);
     for _ in 0..ROUNDS {
         let mut beyond = false;
@@ -78,7 +80,7 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
             )
         })
         .count();
-    let limit = tolerance_limit(tolerances);
+    let limit = tolerance_limit(&frame.rules, tolerances);
     let beyond = |off: f64, tolerance: f64, sigma: f64| off.abs() > limit * tolerance.hypot(sigma);
     let of = |is: fn(&Change) -> Option<f64>| -> Vec<f64> {
         let parts = fit.parts.iter().zip(&fit.sizes);
@@ -89,8 +91,8 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
     let gains = of(|c| matches!(c, Change::Gain { .. }).then_some(1.0));
     let delays = of(|c| matches!(c, Change::Delay { .. }).then_some(0.0));
     let n = fit.design.channels.len();
-    if are_healthy(&gains, n, frame.gain_tolerance)
-        || are_healthy(&delays, n, frame.sync_tolerance_s)
+    if are_healthy(&frame.rules, &gains, n, frame.gain_tolerance)
+        || are_healthy(&frame.rules, &delays, n, frame.sync_tolerance_s)
     {
         return false;
     }
@@ -126,7 +128,7 @@ pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
 /// Whether several faults of a kind are what `n` healthy channels may have together: what all of them have in common shows in nothing, so
 /// that the channels without a fault may be off as well, the other way. Sum of squares about the mean of all, over the tolerance, against
 /// the chi-square of n - 1 degrees that one healthy job in a hundred exceeds.
-fn are_healthy(off: &[f64], n: usize, tolerance: f64) -> bool {
+fn are_healthy(rules: &MotionRules, off: &[f64], n: usize, tolerance: f64) -> bool {
     if off.len() < 2 || n < 2 || tolerance <= 0.0 {
         return false;
     }
@@ -134,7 +136,7 @@ fn are_healthy(off: &[f64], n: usize, tolerance: f64) -> bool {
     let about: f64 = off.iter().map(|x| (x - mean).powi(2)).sum();
     let rest = n.saturating_sub(off.len()) as f64 * mean * mean;
     let chi2 = (about + rest) / (tolerance * tolerance);
-    let most = ChiSquared::new((n - 1) as f64).map(|c| c.inverse_cdf(1.0 - FALSE_RATE));
+    let most = ChiSquared::new((n - 1) as f64).map(|c| c.inverse_cdf(1.0 - rules.false_rate));
     most.is_ok_and(|most| chi2 < most)
 }
 
@@ -147,7 +149,7 @@ const LONGEST_DELAY_S: f64 = 0.15;
 const MOST_CLOCK_PPM: f64 = 1e4;
 
 /// Whether every effect's size is one that nature allows.
-pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
+pub fn plausible(rules: &MotionRules, candidates: &[Candidate], fit: &MotionFit) -> bool {
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
         let Some([x, _]) = sizes.first() else {
             return true;
@@ -172,7 +174,7 @@ pub fn plausible(candidates: &[Candidate], fit: &MotionFit) -> bool {
                     .get(p.candidate)
                     .is_none_or(|c| c.sign == Sign::Any)
                     || *x > 0.0;
-                signed && stiffness_is_sensible(shape, *x, fit)
+                signed && stiffness_is_sensible(rules, shape, *x, fit)
             }
         }
     })
@@ -196,8 +198,8 @@ fn is_upright(fit: &MotionFit) -> bool {
 
 /// Whether every effect that has a size has one beyond its own scatter: three and a half standard deviations are what the evidence of a
 /// name, odds of 400, comes to.
-pub fn stands_out(fit: &MotionFit) -> bool {
-    let least = (2.0 * super::found::DECISIVE).sqrt();
+pub fn stands_out(rules: &MotionRules, fit: &MotionFit) -> bool {
+    let least = (2.0 * rules.decisive).sqrt();
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
         let neutral = match p.shape {
             Change::Gain { .. } => 1.0,
@@ -220,12 +222,10 @@ fn is_seen(fit: &MotionFit, done: impl Fn(f64) -> f64) -> bool {
     done(end - margin) - done(begin + margin) >= 0.5
 }
 
-/// Stiffness within a gap, as a share of that beyond it, that parts free play from a stop: both are the same law, two slopes.
-const PLAY: f64 = 0.2;
-
 /// Free play leaves next to nothing of the spring within its gap, an end stop a spring that works; a spring that changes keeps a positive
 /// stiffness.
-fn stiffness_is_sensible(shape: &Change, size: f64, fit: &MotionFit) -> bool {
+fn stiffness_is_sensible(rules: &MotionRules, shape: &Change, size: f64, fit: &MotionFit) -> bool {
+    let play = rules.play;
     let Change::Terms { link, terms } = shape else {
         return true;
     };
@@ -238,10 +238,10 @@ fn stiffness_is_sensible(shape: &Change, size: f64, fit: &MotionFit) -> bool {
         return true;
     };
     match terms.first() {
-        Some(Term::DeadZone { .. }) => k - size < PLAY * k && k - size > -PLAY * k,
+        Some(Term::DeadZone { .. }) => k - size < play * k && k - size > -play * k,
         Some(Term::BumpStop {
             side: Side::Both, ..
-        }) => k > PLAY * (k + size),
+        }) => k > play * (k + size),
         Some(Term::StiffnessChange { at_s, over_s }) => {
             let seen = is_seen(fit, |t_s| share_done(*at_s, *over_s, t_s));
             seen && k > 0.0 && k + size > 0.0

@@ -4,7 +4,7 @@
 //! - [`response`], [`noise`], [`gls`]: how sensor noise enters, and least squares that respects it
 //! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
 //! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict
-//! - [`sits`]: where, when and at which size a gap is largest
+//! - [`sits`]: where, when and at which size a gap is largest; `next`: what to measure next
 //! - [`simulated`]: what was named, by simulation
 
 pub mod alias;
@@ -32,6 +32,7 @@ mod growing;
 pub mod judge;
 pub mod limits;
 pub mod moments;
+mod next;
 pub mod noise;
 pub mod outcome;
 pub mod part;

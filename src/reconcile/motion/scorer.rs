@@ -37,8 +37,6 @@ pub struct Forms {
     own: Vec<(usize, usize, Vec<usize>)>,
 }
 
-/// Share of the measured quantity left at which a fit has lost its way: its parameters are those of no vehicle, and no start for others.
-pub(super) const LOST: f64 = 0.3;
 /// Fall of the squared residual below which a form's constant isn't refined.
 const WORTH_REFINING: f64 = 30.0;
 /// Steps of refinement, each finer.
@@ -372,7 +370,8 @@ impl Scorer for MotionScorer<'_> {
                 Effort::Settled,
             )
         };
-        let lost = start.is_some_and(|f| share(&f.design, &f.left, &f.values) > LOST);
+        let lost =
+            start.is_some_and(|f| share(&f.design, &f.left, &f.values) > self.frame.rules.lost);
         let anew = if lost { from_there(None) } else { None };
         let first = (from_there(start).into_iter().chain(anew))
             .min_by(|a, b| a.misfit().total_cmp(&b.misfit()))?;

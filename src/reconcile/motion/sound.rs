@@ -4,7 +4,6 @@ use super::channel_check::BrokenChannel;
 use super::detectable::smallest_sizes;
 use super::effect::library;
 use super::fit::{Effort, fit};
-use super::found::DECISIVE;
 use super::frame::MotionFrame;
 use super::gap::{Proof, proof, proof_gap};
 use super::judge::{broken_effect, gap_of, shares_left};
@@ -90,7 +89,7 @@ pub(super) fn outcome_of_dead(
         corrections: frame.corrections.clone(),
         rivals: vec![],
         evidence: 0.0,
-        decisive: DECISIVE,
+        decisive: frame.rules.decisive,
         gap: gap_of(&gap, &gap, judged_by),
         judged_by,
         before: gap.clone(),

@@ -6,10 +6,8 @@ use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use crate::vehicle::layout::Measures;
 
-/// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
-const ZERO_G: f64 = 0.05;
 /// Squared deviates of the accelerometers' means from gravity times the gain that a fit gives them, their zeros unknown within
-/// [`ZERO_G`]. A channel without its static part says nothing.
+/// what data sheets state. A channel without its static part says nothing.
 pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     let adjust = adjustments(frame, &fit.parts);
     let gain = |channel: &str| -> f64 {
@@ -28,7 +26,7 @@ pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {
             let in_g = mean / frame.gravity;
             STATIC
                 .contains(&in_g.abs())
-                .then(|| ((in_g - gain(&s.channel)) / ZERO_G).powi(2))
+                .then(|| ((in_g - gain(&s.channel)) / frame.rules.zero_g).powi(2))
         })
         .sum()
 }

@@ -7,21 +7,7 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::Detectable;
 
-/// A name on a truck that has nothing: one in a hundred at most.
-const FALSE_NAMES: f64 = 0.01;
-
-/// Log evidence beyond its prior cost that an effect must raise to be named: ln(1 / 0.01).
-///
-/// Where nothing is wrong, the mean of a likelihood ratio is one, and so is that of the sum of all of them over effects and places with
-/// prior weights that sum to one. By Markov's inequality the sum, and each of its terms, passes 100 in one case of a hundred at most,
-/// however many places are searched.
-pub const DECISIVE: f64 = 4.605_170_185_988_091;
-const _: () = assert!(FALSE_NAMES * 100.0 == 1.0);
-
-/// Rivals within this log evidence can't be told apart: odds below twenty to one.
-pub(super) const INDISTINGUISHABLE: f64 = 3.0;
-
-/// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and [`DECISIVE`].
+/// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and what names it.
 /// Of effects that may sit at many places which overlap (stretches of a card, notes of a run), those of `also` alone are listed.
 pub fn detectable(
     frame: &StrainFrame,
@@ -76,7 +62,7 @@ pub fn detectable(
                     .map(|l| s * s * l - (s * s * l).ln_1p())
                     .sum::<f64>()
             };
-            let needed = DECISIVE - c.log_prior;
+            let needed = frame.rules.decisive - c.log_prior;
             let (mut low, mut high) = (1e-6, 1e3);
             for _ in 0..60 {
                 let middle = f64::sqrt(low * high);
@@ -145,7 +131,8 @@ fn smallest(
         0.5 * precision.quadratic_sparse(&x)
     };
     let curvature = 2.0 * power(step) / (step * step);
-    let needed = DECISIVE - c.log_prior + 0.5 * (prior_sd * prior_sd * curvature).ln_1p();
+    let needed =
+        frame.rules.decisive - c.log_prior + 0.5 * (prior_sd * prior_sd * curvature).ln_1p();
     if c.effect
         .parameters()
         .iter()

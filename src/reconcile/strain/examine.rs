@@ -1,6 +1,5 @@
 //! The workflow on static strain: find, name, judge, show.
 
-use super::detect::DECISIVE;
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::judge::{adequacy_of, at_floor, judge, named};
@@ -13,12 +12,14 @@ use crate::reconcile::outcome::Outcome;
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
 
 /// How far the search looks in static problems: three effects at once are as many as a few runs can part, with noise as a fourth.
-const BREADTH: Breadth = Breadth {
-    largest: 4,
-    beam: 4,
-    tries: 6,
-    decisive: DECISIVE,
-};
+fn breadth(frame: &StrainFrame) -> Breadth {
+    Breadth {
+        largest: 4,
+        beam: 4,
+        tries: 6,
+        decisive: frame.rules.decisive,
+    }
+}
 
 /// Judges `frame` with the effects of the library that `only` lists (all, where it is empty).
 pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
@@ -38,13 +39,13 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     for _ in 0..PASSES {
         let mut likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);
         all = match all.len() {
-            0 => search(&mut likelihood, BREADTH),
-            n => search_near(&mut likelihood, BREADTH, &all[..n.min(KEPT)]),
+            0 => search(&mut likelihood, breadth(frame)),
+            n => search_near(&mut likelihood, breadth(frame), &all[..n.min(KEPT)]),
         };
         if frame.stop.is_asked() {
             break;
         }
-        let found = settle(&all, DECISIVE).and_then(|found| {
+        let found = settle(&all, frame.rules.decisive).and_then(|found| {
             let contenders = &all[..all.len().min(KEPT)];
             best_by_own_covariance(frame, candidates, &mut likelihood, contenders, &found)
         });
@@ -80,11 +81,11 @@ pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
         let mut names = likelihood.names_only();
         let mut named = named_instead(&mut names, candidates, &all[..all.len().min(KEPT)]);
         // What a form stood in for need not be near it: the names are looked through from the start as well.
-        named.extend(search(&mut names, BREADTH));
+        named.extend(search(&mut names, breadth(frame)));
         named.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         named.dedup_by(|a, b| a.set == b.set);
-        let found =
-            settle(&named, DECISIVE).filter(|s| at_floor(&adequacy_of(frame, candidates, s)));
+        let found = settle(&named, frame.rules.decisive)
+            .filter(|s| at_floor(frame, &adequacy_of(frame, candidates, s)));
         all.extend(named);
         all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         all.dedup_by(|a, b| a.set == b.set);
@@ -138,7 +139,7 @@ fn named_instead(
             plain.extend(likelihood.score(&set, Some((s, None))));
         }
     }
-    search_near(likelihood, BREADTH, &plain)
+    search_near(likelihood, breadth(likelihood.frame), &plain)
 }
 
 /// The set without noise that was stated too small, where it reaches the floor without.
@@ -153,7 +154,7 @@ fn without_needless_noise(
         .iter()
         .find(|s| s.set == kept && s.set.len() < best.set.len());
     plain
-        .filter(|s| at_floor(&adequacy_of(frame, candidates, s)))
+        .filter(|s| at_floor(frame, &adequacy_of(frame, candidates, s)))
         .cloned()
         .unwrap_or(best)
 }
@@ -171,7 +172,7 @@ fn without_needless_names(
             s.set.len() + 1 == best.set.len()
                 && s.set.iter().all(|c| best.set.contains(c))
                 && !named_part(candidates, &s.set).is_empty()
-                && at_floor(&adequacy_of(proofs.frame, candidates, s))
+                && at_floor(proofs.frame, &adequacy_of(proofs.frame, candidates, s))
         };
         let left: Vec<&Scored<Fit>> = all.iter().filter(fewer).collect();
         if left.is_empty() {

@@ -3,7 +3,7 @@
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
 use crate::reconcile::Observations;
-use crate::reconcile::effect::{Amplitudes, SizedAmplitudes};
+use crate::reconcile::rules::StrainRules;
 use crate::sensitivity::Uncertainty;
 use crate::stop::Stop;
 
@@ -143,6 +143,9 @@ pub struct StrainFrame {
     pub other_loads: Vec<(String, Vec<f64>)>,
     /// Loads that the model has as nuisance loads: found anew in every run, before, after and in the floor alike.
     pub nuisance: Vec<NuisanceLoad>,
+    /// Usual change of a wheel force by ground that is not flat, where the job has it: found anew in every run as nuisance loads are; zero where
+    /// it has none.
+    pub ground: f64,
     /// Microstrain per degree of a uniform temperature change, by gauge.
     pub thermal_uniform: Option<Vec<f64>>,
     /// Microstrain per degree of a temperature gradient, by gauge.
@@ -164,6 +167,8 @@ pub struct StrainFrame {
     pub scatter: Vec<Scatter>,
     /// Where S was calibrated: how far it may be off, microstrain per kN of the wheel loads, and what repeats of one loading scatter by.
     pub learnt: Option<Uncertainty>,
+    /// Thresholds of names.
+    pub rules: StrainRules,
     /// Cuts the search short; what it found is then of no use.
     pub stop: Stop,
 }
@@ -192,26 +197,6 @@ impl StrainFrame {
     /// Number of columns of `influence`.
     pub fn n_columns(&self) -> usize {
         self.load_names.len() + N_PAYLOAD_COLUMNS
-    }
-
-    /// The nuisance loads of the model as amplitudes of their stated sizes: as much may repeat in all runs as differs from run to run.
-    pub fn nuisance_amplitudes(&self) -> Option<SizedAmplitudes> {
-        if self.nuisance.is_empty() {
-            return None;
-        }
-        let sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
-        let amplitudes = Amplitudes {
-            patterns: self.nuisance.iter().map(|n| n.per_unit.clone()).collect(),
-            kinds: (0..sizes.len()).collect(),
-            usual: sizes.clone(),
-            steady: sizes.clone(),
-            unit: "1",
-            plausible: f64::INFINITY,
-        };
-        Some(SizedAmplitudes {
-            amplitudes,
-            sizes: [sizes.as_slice(), &sizes].concat(),
-        })
     }
 
     /// Root mean square of the wheel loads over all runs, kN; one where there are none.

@@ -1,7 +1,7 @@
 //! What is said of the best set of effects: named or not, and what else could be.
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
-use super::detect::{INDISTINGUISHABLE, detectable};
+use super::detect::detectable;
 use super::explanation::{Explanation, discrepancy, ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
 use super::gap::rms;
@@ -23,30 +23,19 @@ use rayon::prelude::*;
 /// Rivals beyond this log evidence are not worth naming.
 const WORTH_NAMING: f64 = 25.0;
 
-/// Limits of what counts as at the floor.
-mod limit {
-    /// A stated noise comes from some twenty repeats, or from a data sheet: it is known to 15 % (1 / sqrt(2 * 20)).
-    pub(super) const NOISE_KNOWN: f64 = 1.15;
-    /// Deviate of a chi-square over all that one case in a thousand has by chance.
-    pub(super) const DEVIATE: f64 = 3.1;
-    /// Deviate of a single gauge or run. Of fifty of them one passes 3.5 by chance in one case of a hundred; noise that is 15 % above what
-    /// is stated brings that to 4.
-    pub(super) const PART: f64 = 4.0;
-    /// Noise up to twice the stated one is noise that was stated too small; more is something else.
-    pub(super) const NOISE: f64 = 2.0;
-}
-
-pub(super) fn at_floor(a: &Adequacy) -> bool {
+/// Whether what a set leaves is what noise and stated uncertainty leave.
+pub(super) fn at_floor(frame: &StrainFrame, a: &Adequacy) -> bool {
+    let rules = &frame.rules;
     let inside = |reduced: f64, n: f64| {
-        let known = limit::NOISE_KNOWN * limit::NOISE_KNOWN;
-        deviate_estimated(reduced * n / known, n, a.from) <= limit::DEVIATE
+        let known = rules.noise_known * rules.noise_known;
+        deviate_estimated(reduced * n / known, n, a.from) <= rules.deviate
     };
     let held = a.n_held_out == 0.0 || inside(a.held_out, a.n_held_out);
     let parts = a
         .gauges
         .iter()
         .chain(&a.runs)
-        .all(|m| m.deviate <= limit::PART);
+        .all(|m| m.deviate <= rules.part);
     inside(a.fit, a.n_fit) && held && parts
 }
 
@@ -188,7 +177,7 @@ pub(super) fn judge(
     let frame = proofs.frame;
     let before = adequacy(frame, &[], &[], 0);
     let (after, noise) = reach(frame, candidates, best, &before);
-    let reached = at_floor(&after) && noise <= limit::NOISE;
+    let reached = at_floor(frame, &after) && noise <= frame.rules.noise;
     let rivals = rival_sets(frame, candidates, all, best);
     // As its rivals are.
     let level = |s: &Scored<Fit>| own_evidence(frame, candidates, s);
@@ -234,7 +223,7 @@ pub(super) fn judge(
             .map(|e| e.id.clone())
             .collect(),
         no_fall: (!attempt.is_empty() && !falls).then_some([gap.before, gap.after]),
-        noise: (noise > limit::NOISE).then_some(noise),
+        noise: (noise > frame.rules.noise).then_some(noise),
         doubt,
         is_told: unmodelled.is_some(),
     });
@@ -249,7 +238,7 @@ pub(super) fn judge(
             ids: ids(candidates, &s.set),
             evidence_difference: level - s.log_evidence,
             gap_after: validated(proofs, candidates, s).0.after,
-            indistinguishable: level - s.log_evidence < INDISTINGUISHABLE,
+            indistinguishable: level - s.log_evidence < frame.rules.indistinguishable,
         })
         .collect();
     let left = remains(
@@ -281,13 +270,13 @@ pub(super) fn judge(
         smooth: curve(frame, candidates, best),
         noise_factor: noise,
         gap,
-        sits: sits(&channels, &worst_first(&before.gauges, limit::PART)),
+        sits: sits(&channels, &worst_first(&before.gauges, frame.rules.part)),
         channels,
         loads: loads_before_after(frame, &explained.members, &explained.unknown),
         reduced_chi2: [before.fit, after.fit, after.held_out],
-        gauges_off_before: worst_first(&before.gauges, limit::PART),
-        gauges_off: worst_first(&after.gauges, limit::PART),
-        runs_off: worst_first(&after.runs, limit::PART),
+        gauges_off_before: worst_first(&before.gauges, frame.rules.part),
+        gauges_off: worst_first(&after.gauges, frame.rules.part),
+        runs_off: worst_first(&after.runs, frame.rules.part),
         remains: match standing.doubt.filter(|_| fewer.is_some()) {
             Some(unsure) => format!("{left}; {unsure}"),
             None => left,

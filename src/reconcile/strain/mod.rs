@@ -15,6 +15,7 @@ mod learnt;
 mod likelihood;
 mod neighbours;
 mod next;
+mod nuisance;
 mod optimum;
 mod own_covariance;
 mod prediction;
@@ -32,7 +33,6 @@ mod validation;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, covariance, read_patterns};
-pub use detect::DECISIVE;
 pub use examine::{examine, examine_with};
 pub use extended::{corrected_readings, extended_state};
 pub use frame::{
@@ -41,6 +41,7 @@ pub use frame::{
 };
 pub use gap::{FoundAnew, Judged, judged};
 pub use likelihood::{Fit, Likelihood};
+pub use nuisance::ground_patterns;
 pub use prediction::{predict, read_all};
 pub use recovered::loads_before_after;
 pub use state::{Part, StrainState};

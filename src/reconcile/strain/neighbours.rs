@@ -4,8 +4,6 @@ use super::frame::StrainFrame;
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::outcome::NamedEffect;
 
-/// A gauge is a neighbour within this many usual distances from gauge to nearest gauge.
-const NEAR: f64 = 2.5;
 /// From as many faults of gauges and cards on, cards count as well: one card beside one gauge is an amplifier and a gauge.
 const WITH_CARDS: usize = 3;
 /// Gains that bridges and amplifiers are wired wrong by lie outside of this; within, strain that goes another way looks the same.
@@ -41,7 +39,7 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
     let mut off: Vec<(usize, usize)> = at.iter().enumerate().flat_map(of).collect();
     off.sort_unstable_by_key(|o| o.1);
     off.dedup_by_key(|o| o.1);
-    let near = NEAR * usual_distance(frame)?;
+    let near = frame.rules.near * usual_distance(frame)?;
     // A card alone is a card, however near its gauges lie to each other.
     let close = |a: &(usize, usize), b: &(usize, usize)| {
         a.0 != b.0 && distance(frame, a.1, b.1).is_some_and(|d| d <= near)

@@ -4,7 +4,6 @@
 //! with it. Under the covariance of the model without effects a fault of the channel itself therefore looks worse than a form that leaves
 //! the covariance alone, and amplitudes of the form win. Contenders are compared each under its own covariance.
 
-use super::detect::DECISIVE;
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::{Candidate, Stage};
@@ -34,7 +33,7 @@ pub(super) fn best_by_own_covariance(
     let own = |s: Scored<Fit>| under_own_covariance(frame, candidates, &s.set, &s);
     let scored: Vec<Option<Scored<Fit>>> = first.into_par_iter().map(own).collect();
     let all: Vec<Scored<Fit>> = scored.into_iter().flatten().collect();
-    settle(&all, DECISIVE)
+    settle(&all, frame.rules.decisive)
 }
 
 /// A set under the covariance of the prediction that its members make with the parameters that they have in `near`.

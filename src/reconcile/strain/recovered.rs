@@ -66,9 +66,10 @@ fn recover(
         .iter()
         .map(|&(k, g)| frame.observations.value(k, g) - rest[g])
         .collect();
-    // The loads are to be found: their measured values and noise stay out.
+    // The loads are to be found: their measured values and noise stay out, and so does the ground, which is in them.
     let mut free = frame.clone();
     free.load_noise = 0.0;
+    free.ground = 0.0;
     let covariance = covariance(&free, members, &used, unknown);
     let s = Matrix::from_fn(used.len(), n_l, |i, l| columns[l][used.0[i].1]);
     let scale = |l: usize| {

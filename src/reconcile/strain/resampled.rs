@@ -1,7 +1,6 @@
 //! How often a set of effects wins when the runs are drawn anew.
 
 use super::covariance::Selection;
-use super::detect::INDISTINGUISHABLE;
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
@@ -40,7 +39,7 @@ pub(super) fn drawings_won(
             return false;
         };
         let apart = a.iter().zip(b).map(|(x, y)| (x - y).abs()).sum::<f64>();
-        a.len() == b.len() && apart < INDISTINGUISHABLE
+        a.len() == b.len() && apart < frame.rules.indistinguishable
     };
     let stands_for: Vec<usize> = (0..sets.len())
         .map(|k| if alike(k) { 0 } else { k })

@@ -1,6 +1,5 @@
 //! A smooth error of the model against the best set of names: alone, and in the place of some of them.
 
-use super::detect::{DECISIVE, INDISTINGUISHABLE};
 use super::explanation::{discrepancy, named_part};
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
@@ -19,7 +18,7 @@ pub(super) fn is_smooth(candidates: &[Candidate], c: usize) -> bool {
 
 /// The smooth error, with as few of the names of `best` as it needs, where it leads what is left without it and explains these runs as well as
 /// all of them do: its log evidence
-/// is at most [`INDISTINGUISHABLE`] behind, or behind by less than the names that it saves must each raise ([`DECISIVE`]).
+/// can't be told from theirs, or is behind by less than the names that it saves must each raise.
 ///
 /// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, H the Hessian at the best theta: what a
 /// curve that can take many shapes explains costs as many data as shapes.
@@ -68,22 +67,26 @@ pub(super) fn smooth_instead(
         };
         ranked.sort_by(|a, b| most(b).total_cmp(&most(a)));
     }
-    let found = settle(&tried, DECISIVE)?;
+    let found = settle(&tried, frame.rules.decisive)?;
     // Each under the covariance of its own prediction, as sets of names are compared.
     let found = under_own_covariance(frame, candidates, &found.set, &found)?;
     // A curve that leads nothing explains nothing, however near it comes to the names.
     let rest = found.set.iter().copied();
     let rest: Vec<usize> = rest.filter(|c| !is_smooth(candidates, *c)).collect();
     let without = under_own_covariance(frame, candidates, &rest, &found)?;
-    if found.log_evidence < without.log_evidence + DECISIVE {
+    if found.log_evidence < without.log_evidence + frame.rules.decisive {
         return None;
     }
-    let saved = DECISIVE * (best.set.len() as f64 - found.set.len() as f64);
+    let saved = frame.rules.decisive * (best.set.len() as f64 - found.set.len() as f64);
     // One factor for all gauges is a curve itself: another curve near it is no rival unless it explains more.
     let only_scale = (names.iter().filter(|c| !found.set.contains(c)))
         .filter_map(|&c| candidates.get(c))
         .all(|c| matches!(c.effect.extension(frame, &[]), Extension::Scale(_)));
-    let margin = if only_scale { 0.0 } else { INDISTINGUISHABLE };
+    let margin = if only_scale {
+        0.0
+    } else {
+        frame.rules.indistinguishable
+    };
     (best.log_evidence - found.log_evidence < saved.max(margin)).then_some(found)
 }
 

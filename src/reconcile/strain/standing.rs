@@ -46,7 +46,7 @@ impl Standing {
             let holding = holding.filter(|(s, _)| s.set.contains(c));
             holding.map(|(_, won)| won).sum::<usize>()
         };
-        let stands = |c: &usize| 2 * holds(c) >= DRAWINGS;
+        let stands = |c: &usize| holds(c) as f64 >= frame.rules.drawings * DRAWINGS as f64;
         let standing: Vec<usize> = names.iter().copied().filter(stands).collect();
         let doubt = if standing.len() == names.len() {
             None

@@ -4,13 +4,13 @@ use super::columns::declare_written;
 use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
-use crate::app::reconcile::{Added, Reconciled, StrainPart};
+use crate::app::reconcile::{Added, MarkedStiffness, Reconciled, StrainPart};
 use crate::model::{Model, Vec3};
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
 use crate::report::figure::GaugePoints;
 use crate::report::page::Page;
-use crate::report::scene::{Mark, Pointing, Scene, fields_of, mark_of_gap};
+use crate::report::scene::{Field, FieldValues, Mark, Pointing, Scene, fields_of, mark_of_gap};
 use crate::report::strain::{GapReport, RunStrain, reconcile_page};
 use std::fmt::Write;
 
@@ -41,14 +41,24 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
         let at = Vec3::from(g.position?) / metres;
         Some(mark_of_gap(at, gap))
     };
-    let marks: Vec<Mark> = gauges.filter_map(mark).collect();
+    let mut marks: Vec<Mark> = gauges.filter_map(mark).collect();
+    for m in &mut marks {
+        m.note.push_str(&smooth_note(found, &m.name));
+    }
+    marks.extend(found.marked.iter().filter_map(mark_of_place));
     // Where S is given there is no model to draw: the gauges alone.
     let nothing = Model::default();
     let fields = found.fields.as_ref();
     let scene = (!marks.is_empty()).then(|| Scene {
         model: fields.map_or(&nothing, |f| f.model()),
         marks,
-        fields: fields.map_or_else(Vec::new, |f| fields_of(job, f)),
+        fields: fields.map_or_else(Vec::new, |f| {
+            let shells = f.model().shells.len();
+            let places = found.marked.iter().filter(|m| !m.shells.is_empty());
+            let mut list: Vec<Field> = places.map(|m| field_of_place(m, shells)).collect();
+            list.extend(fields_of(job, f));
+            list
+        }),
         arrows: Vec::new(),
         length: job.units.unit(crate::units::Quantity::Length).name,
         pointing: Pointing::Nothing,
@@ -61,6 +71,52 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
         strain: &run_strain(found),
         findings: &outcome.findings,
     })
+}
+
+/// What is said of a gauge where a smooth error of the model is drawn.
+fn smooth_note(found: &StrainPart, gauge: &str) -> String {
+    let own = found.smooth.iter().filter(|s| s.gauge == gauge);
+    own.map(|s| {
+        let load = s
+            .load
+            .as_ref()
+            .map_or_else(String::new, |l| format!(" of {l}"));
+        let half = HALF_WIDTH * s.sd;
+        format!("; strain{load} times {:.3} ± {half:.3}", s.factor)
+    })
+    .collect()
+}
+
+/// Half width of the 95 % interval, standard deviations.
+const HALF_WIDTH: f64 = 1.96;
+
+/// A joint or small region that is off, where it sits.
+fn mark_of_place(m: &MarkedStiffness) -> Option<Mark> {
+    Some(Mark {
+        name: m.id.clone(),
+        at: m.at?,
+        axes: None,
+        surface: None,
+        note: format!("stiffness times {:.3}", m.factor),
+        gap: None,
+    })
+}
+
+/// The shells whose stiffness is off, coloured by how much.
+fn field_of_place(m: &MarkedStiffness, n_shells: usize) -> Field<'static> {
+    let mut values = vec![[f64::NAN; 2]; n_shells];
+    for &s in &m.shells {
+        if let Some(v) = values.get_mut(s) {
+            *v = [(m.factor - 1.0).abs(); 2];
+        }
+    }
+    let (way, id) = (if m.factor < 1.0 { "less" } else { "more" }, &m.id);
+    Field {
+        name: format!("stiffness {way} than the model's: {id}"),
+        unit: "%".into(),
+        values: FieldValues::Magnitudes(values),
+        scale: 100.0,
+    }
 }
 
 /// What was added to the model: effect, path, old and new value.

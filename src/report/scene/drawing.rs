@@ -49,8 +49,12 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     let options = |names: Vec<&str>| {
         html! { @for (i, name) in names.iter().enumerate() { option value=(i) { (name) } } }
     };
-    // Circles of a gap are seen best on plain grey.
-    let plain = scene.marks.iter().any(|m| m.gap.is_some());
+    // Circles of a gap are seen best on plain grey; where an effect lies, its colour comes first.
+    let shows_places = matches!(
+        scene.fields.first().map(|f| &f.values),
+        Some(FieldValues::Magnitudes(_))
+    );
+    let plain = scene.marks.iter().any(|m| m.gap.is_some()) && !shows_places;
     let signed = match scene.fields.iter().all(|f| f.values.is_signed()) {
         true => ", signed",
         false => "",
@@ -100,10 +104,12 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
 
 /// What the colours are.
 fn coloured(scene: &Scene) -> &'static str {
-    if scene.fields.iter().all(|f| f.values.is_signed()) {
-        "Strain"
-    } else {
-        "Stress"
+    let mut signed = scene.fields.iter().map(|f| f.values.is_signed());
+    let first = signed.next();
+    match (first, signed.all(|s| Some(s) == first)) {
+        (Some(false), true) => "Stress",
+        (_, true) => "Strain",
+        (_, false) => "Colour",
     }
 }
 

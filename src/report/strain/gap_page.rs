@@ -2,9 +2,9 @@
 
 use crate::finding::Finding;
 use crate::reconcile::effect::Extension;
-use crate::reconcile::{NamedEffect, Outcome, Verdict};
+use crate::reconcile::{NamedEffect, Outcome, SmoothAt, Verdict};
 use crate::report::covariance::covariance_block;
-use crate::report::figure::{GaugePoints, agreement, gap_by_channel};
+use crate::report::figure::{GaugePoints, IntervalRow, agreement, gap_by_channel, intervals};
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 
@@ -61,6 +61,7 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
         )));
         sections.push(section);
     }
+    sections.extend(smooth_section(outcome));
     if !outcome.rivals.is_empty() {
         sections.push(rivals(outcome));
     }
@@ -231,6 +232,45 @@ fn scatter_of(points: &[GaugePoints], kind: usize) -> Option<f64> {
     let squares: Vec<f64> = all.map(square).filter(|v| v.is_finite()).collect();
     let n = squares.len();
     (n > 0).then(|| (squares.iter().sum::<f64>() / n as f64).sqrt())
+}
+
+/// The smooth error of the model over the gauges, along the structure's longest direction.
+fn smooth_section(outcome: &Outcome) -> Option<Section> {
+    /// Half width of the 95 % interval, standard deviations.
+    const HALF_WIDTH: f64 = 1.96;
+    let at = |s: &SmoothAt, axis: usize| s.place_m[axis];
+    let extent = |axis: usize| {
+        let places = || outcome.smooth.iter().map(|s| at(s, axis));
+        places().fold(f64::NEG_INFINITY, f64::max) - places().fold(f64::INFINITY, f64::min)
+    };
+    let longest = (0..3).max_by(|a, b| extent(*a).total_cmp(&extent(*b)))?;
+    let mut sorted: Vec<&SmoothAt> = outcome.smooth.iter().collect();
+    sorted.sort_by(|a, b| at(a, longest).total_cmp(&at(b, longest)));
+    let mut groups: Vec<(String, Vec<IntervalRow>)> = Vec::new();
+    for s in sorted {
+        let name = s.load.clone().unwrap_or_else(|| "all loads".into());
+        let half = HALF_WIDTH * s.sd;
+        let row = (
+            format!("{} at {:.2} m", s.gauge, at(s, longest)),
+            [s.factor - half, s.factor, s.factor + half],
+        );
+        match groups.iter_mut().find(|g| g.0 == name) {
+            Some(g) => g.1.push(row),
+            None => groups.push((name, vec![row])),
+        }
+    }
+    let axis = ["x", "y", "z"][longest];
+    (!groups.is_empty()).then(|| {
+        Section::new(
+            "The smooth error of the model",
+            vec![
+                Block::Figure(intervals(&groups, "strain over what the model predicts")),
+                Block::Note(format!(
+                    "Bars: 95 % interval. Gauges in the order of their {axis}; at 1 the model is right."
+                )),
+            ],
+        )
+    })
 }
 
 fn verdict(outcome: &Outcome) -> Vec<Block> {

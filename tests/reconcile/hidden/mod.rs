@@ -64,6 +64,7 @@ pub fn plain_frame(
     loads: Vec<f64>,
 ) -> StrainFrame {
     StrainFrame {
+        rules: Default::default(),
         stop: Default::default(),
         tensors: vec![Vec::new(); gauges.len()],
         payload: vec![[0.0; 3]; observations.runs.len()],
@@ -80,6 +81,7 @@ pub fn plain_frame(
         wheel_forces: WheelForces::Measured,
         other_loads: Vec::new(),
         nuisance: Vec::new(),
+        ground: 0.0,
         thermal_uniform: None,
         thermal_gradient: None,
         masses: Vec::new(),

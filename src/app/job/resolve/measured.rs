@@ -113,6 +113,20 @@ pub(super) fn runs(
         ("measured", WheelForces::Measured),
         ("flat_ground_model", WheelForces::FlatGroundModel),
     ];
+    let wheel_forces = c.choose(
+        &raw.wheel_forces,
+        "runs.wheel_forces",
+        &sources,
+        WheelForces::Measured,
+    );
+    if let (Some(ground), WheelForces::Measured) = (&raw.ground, wheel_forces) {
+        c.fault(
+            ground,
+            "runs.ground",
+            "measured wheel forces hold what the ground does",
+            "write `wheel_forces = \"flat_ground_model\"` beside it, or leave it out",
+        );
+    }
     Some(Runs {
         file: c.named(&raw.file, "runs.file")?,
         columns: raw
@@ -123,12 +137,8 @@ pub(super) fn runs(
         units: units(c, raw.units.as_ref(), default, "runs.units"),
         stated_units: stated(raw.units.as_ref()),
         noise,
-        wheel_forces: c.choose(
-            &raw.wheel_forces,
-            "runs.wheel_forces",
-            &sources,
-            WheelForces::Measured,
-        ),
+        wheel_forces,
+        ground: c.positive(&raw.ground, "runs.ground"),
         line: c.line(section),
     })
 }

@@ -20,6 +20,8 @@ pub struct Runs {
     pub noise: RunNoise,
     /// Measured or computed.
     pub wheel_forces: WheelForces,
+    /// Usual change of a computed wheel force by ground that is not flat, 1 sd, in the file's unit of force.
+    pub ground: Option<f64>,
     /// Line of the job.
     pub line: u32,
 }

@@ -1,0 +1,193 @@
+//! The measurement that would separate what a record can't, by what each of several is expected to say.
+//!
+//! Every explanation is taken for true in turn; the others predict the same measurement, their parameters free as far as the record at hand
+//! leaves them, and what they miss, over noise, is the expected difference of log evidence ([`worth`]). What could be measured is in
+//! [`measurement`], what an explanation predicts of it in [`view`] and, at rest, in [`bench`].
+
+mod bench;
+mod known;
+mod measurement;
+mod obeying;
+mod view;
+mod worth;
+
+use self::known::Known;
+use self::measurement::{Measurement, measurements};
+use self::view::{View, view};
+use self::worth::expected;
+use super::fitted::MotionFit;
+use super::found::other_sets;
+use super::scorer::MotionScorer;
+use crate::reconcile::outcome::Verdict;
+use crate::reconcile::search::{Scored, Scorer};
+
+/// Expected difference of log evidence that is worth a measurement: as much as names an effect over another, and half of it again lost to
+/// what no model foresees.
+const WORTH: f64 = 5.0;
+/// Difference of log evidence at which one is sure: odds of 10^10.
+const SURE: f64 = 25.0;
+/// Rivals that a measurement is held against.
+const MOST: usize = 3;
+/// What an explanation is called that holds no effect.
+const AS_IT_IS: &str = "the model as it is";
+/// Where nothing that comes near could be separated.
+const LEFT_OUT: &str = "measure what the model leaves out: the other side and axle, spring travel, a second accelerometer on each body";
+
+/// A measurement with the least log evidence that it is expected to bring between the first explanation and each of the others.
+struct Weighed {
+    measurement: Measurement,
+    worth: Vec<f64>,
+}
+
+impl Weighed {
+    /// Pairs that it separates, then all that it brings. No pair counts for more than it takes to be sure: of several that are as sure the
+    /// first one is the least trouble.
+    fn rank(&self) -> (usize, f64) {
+        let separated = self.worth.iter().filter(|w| **w > WORTH).count();
+        (separated, self.worth.iter().map(|w| w.min(SURE)).sum())
+    }
+
+    /// Whether nothing could say more.
+    fn is_sure(&self) -> bool {
+        self.worth.iter().all(|w| *w >= SURE)
+    }
+}
+
+/// What would separate the explanations that come nearest, quantified where a measurement does.
+pub(super) fn next_measurement(
+    scorer: &MotionScorer,
+    verdict: Verdict,
+    best: &Scored<MotionFit>,
+    all: &[Scored<MotionFit>],
+) -> String {
+    let list = explanations(scorer, verdict, best, all);
+    let names: Vec<String> = list.iter().map(|s| name(scorer, s)).collect();
+    let weighed = match list.len() {
+        0 | 1 => None,
+        _ if scorer.is_stopped() => None,
+        _ => best_of(scorer, &list),
+    };
+    let others = names.get(1..).unwrap_or_default().join(", ");
+    let first = names.first().map_or(AS_IT_IS, String::as_str);
+    let said = weighed.map(|w| {
+        let each: Vec<String> = (names.iter().skip(1).zip(&w.worth))
+            .map(|(name, worth)| format!("from {name} {worth:.0}"))
+            .collect();
+        let words = w.measurement.words(scorer.frame);
+        (
+            words,
+            format!(
+                "expected difference of log evidence of {first}: {}",
+                each.join(", ")
+            ),
+        )
+    });
+    match (verdict, said) {
+        (Verdict::Named, Some((words, each))) => format!("{} ({each}).", capital(&words)),
+        (Verdict::Named, None) if !others.is_empty() => format!(
+            "No road, sensor or mass of those that were weighed separates {first} from {others}: take them for one."
+        ),
+        (Verdict::Named, None) => "None needed; another road would confirm it.".into(),
+        (Verdict::Unknown, Some((words, each))) => format!(
+            "{}: it would say most of what comes nearest ({each}); or {LEFT_OUT}.",
+            capital(&words)
+        ),
+        (Verdict::Unknown, None) => format!("{}.", capital(LEFT_OUT)),
+        (Verdict::BelowDetectability, Some((words, each))) => {
+            format!(
+                "{}: it would show the hint or end it ({each}).",
+                capital(&words)
+            )
+        }
+        (Verdict::None | Verdict::BelowDetectability, _) => {
+            "A rougher road or longer record would show smaller effects.".into()
+        }
+    }
+}
+
+/// What is to be separated, the first from the others: the best set and those that the record can't tell from it; where nothing is named, the
+/// set that comes nearest and the best one of another kind; of a hint, the model without it.
+fn explanations<'a>(
+    scorer: &MotionScorer,
+    verdict: Verdict,
+    best: &'a Scored<MotionFit>,
+    all: &'a [Scored<MotionFit>],
+) -> Vec<&'a Scored<MotionFit>> {
+    let empty = all.iter().find(|s| s.set.is_empty());
+    let nearest = match best.set.is_empty() {
+        true => all.iter().find(|s| !s.set.is_empty()),
+        false => Some(best),
+    };
+    let Some(nearest) = nearest.filter(|_| verdict != Verdict::None) else {
+        return vec![];
+    };
+    let others = || other_sets(nearest, all);
+    let level = nearest.log_evidence;
+    let close: Vec<_> = others()
+        .filter(|s| (level - s.log_evidence).abs() < scorer.frame.rules.indistinguishable)
+        .take(MOST)
+        .collect();
+    let kinds = |s: &Scored<MotionFit>| -> Vec<String> {
+        let family = |&c: &usize| scorer.candidates[c].family().to_owned();
+        s.set.iter().map(family).collect()
+    };
+    let rest = match verdict {
+        Verdict::BelowDetectability => empty.into_iter().collect(),
+        Verdict::Unknown if close.is_empty() => {
+            let other_kind = others().find(|s| kinds(s) != kinds(nearest));
+            other_kind.or(empty).into_iter().collect()
+        }
+        Verdict::Named | Verdict::Unknown | Verdict::None => close,
+    };
+    std::iter::once(nearest).chain(rest).collect()
+}
+
+/// The measurement that separates most; `None` where none is worth it.
+fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed> {
+    let frame = scorer.frame;
+    let known: Vec<Known> = list.iter().map(|s| Known::of(frame, &s.fit)).collect();
+    let mut best: Option<Weighed> = None;
+    for measurement in measurements(frame, known.first()?.fit) {
+        if scorer.is_stopped() {
+            return None;
+        }
+        let seen: Vec<Option<View>> = known
+            .iter()
+            .map(|k| view(frame, &measurement, k, &scorer.background))
+            .collect();
+        let between = |a: usize, b: usize| -> f64 {
+            let (Some(truth), Some(other)) = (&seen[a], &seen[b]) else {
+                return 0.0;
+            };
+            expected(&known[b], other, truth).unwrap_or(0.0)
+        };
+        let worth: Vec<f64> = (1..known.len())
+            .map(|k| between(0, k).min(between(k, 0)))
+            .collect();
+        let weighed = Weighed { measurement, worth };
+        let better = |b: &Weighed| weighed.rank() > b.rank();
+        if weighed.rank().0 > 0 && best.as_ref().is_none_or(better) {
+            best = Some(weighed);
+        }
+        if best.as_ref().is_some_and(Weighed::is_sure) {
+            break;
+        }
+    }
+    best
+}
+
+fn name(scorer: &MotionScorer, s: &Scored<MotionFit>) -> String {
+    let ids: Vec<&str> = (s.set.iter())
+        .map(|&c| scorer.candidates[c].id.as_str())
+        .collect();
+    match ids.is_empty() {
+        true => AS_IT_IS.into(),
+        false => ids.join(" + "),
+    }
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    let first = letters.next().map(|c| c.to_uppercase().to_string());
+    first.unwrap_or_default() + letters.as_str()
+}
