@@ -208,8 +208,8 @@ impl Filter {
         }
     }
 
-    /// The estimate from the gauges `used`; `None` where none reads.
-    fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
+    /// The estimate from the gauges `used` alone; `None` where none reads.
+    pub fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
         if used.is_empty() {
             return None;
         }

@@ -2,6 +2,7 @@
 
 use super::compared::Reference;
 use super::day::{Day, FileHead, GaugeDay, LoadDay};
+use super::gauge_history::is_misread;
 use super::name::by_day;
 use crate::series::rainflow::{DamageInterval, DamageParts, Ratio, Tally};
 use serde::Serialize;
@@ -95,6 +96,10 @@ pub struct Vehicle {
     pub hours: f64,
     /// Loads, in the order of the job.
     pub loads: Vec<VehicleLoad>,
+    /// Whether the loads of a day can't be relied on.
+    pub doubtful: Vec<bool>,
+    /// Whether the record of a day names a cause that makes gains and zeros of that day what they are not.
+    pub misread: Vec<bool>,
     /// Readings of each gauge, a day each, in order.
     pub gauges: Vec<(String, Vec<GaugeDay>)>,
 }
@@ -241,6 +246,8 @@ pub(super) fn vehicle(
         name: name.to_owned(),
         days: list.iter().map(|f| f.0.day.clone()).collect(),
         records: list.iter().map(record).collect(),
+        doubtful: list.iter().map(|f| f.1.is_doubtful()).collect(),
+        misread: list.iter().map(|f| is_misread(&f.1.findings)).collect(),
         hours,
         loads,
         gauges,
