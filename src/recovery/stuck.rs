@@ -39,28 +39,26 @@ pub fn check(
 ) -> Vec<Stuck> {
     let n = s.gauges.len();
     let least = (samples.len() / PART).max(LEAST);
-    let runs: Vec<(usize, [usize; 2])> = (0..n)
-        .flat_map(|g| runs_of(samples, g, least).into_iter().map(move |r| (g, r)))
-        .collect();
+    let of_gauge = |g: usize| {
+        let runs = runs_of(samples, g, least).into_iter();
+        runs.map(move |(gives, run)| (g, gives, run))
+    };
+    let runs: Vec<(usize, Gives, [usize; 2])> = (0..n).flat_map(of_gauge).collect();
     if runs.is_empty() {
         return Vec::new();
     }
     let mut rows: Vec<Vec<f64>> = samples.iter().map(|s| s.1.to_vec()).collect();
-    for (g, [from, to]) in &runs {
+    for (g, _, [from, to]) in &runs {
         for v in rows.iter_mut().take(*to).skip(*from) {
             v[*g] = f64::NAN;
         }
     }
-    let dead = |(g, [from, to]): &(usize, [usize; 2])| {
+    let dead = |(g, gives, [from, to]): &(usize, Gives, [usize; 2])| {
         let part = &rows[*from..*to];
-        let gives = match samples[*from].1[*g].is_finite() {
-            true => Gives::OneValue,
-            false => Gives::Nothing,
-        };
         let number = |j: usize| samples.get(j).map_or(usize::MAX, |s| s.0);
-        is_dead(s, part, *g, gives, least, errors, noise_factor).then(|| Stuck {
+        is_dead(s, part, *g, *gives, least, errors, noise_factor).then(|| Stuck {
             gauge: *g,
-            gives,
+            gives: *gives,
             span: [number(*from), number(*to - 1)],
             within: [from.checked_sub(1).map_or(0, number), number(*to)],
         })
@@ -68,22 +66,19 @@ pub fn check(
     runs.iter().filter_map(dead).collect()
 }
 
-/// From where to where (the latter left out) a gauge gives one value or nothing, `least` samples or more.
-fn runs_of(samples: &[(usize, &[f64])], gauge: usize, least: usize) -> Vec<[usize; 2]> {
+/// From where to where (the latter left out) a gauge gives nothing, or one value, `least` samples or more: of one value those that have a number
+/// count.
+fn runs_of(samples: &[(usize, &[f64])], gauge: usize, least: usize) -> Vec<(Gives, [usize; 2])> {
     let value = |j: usize| samples[j].1.get(gauge).copied().unwrap_or(f64::NAN);
-    let same = |a: f64, b: f64| a == b || !(a.is_finite() || b.is_finite());
-    let mut out = Vec::new();
-    let mut from = 0;
-    for to in 1..=samples.len() {
-        if to < samples.len() && same(value(to), value(from)) {
-            continue;
-        }
-        if to - from >= least {
-            out.push([from, to]);
-        }
-        from = to;
-    }
-    out
+    let (known, blank): (Vec<usize>, Vec<usize>) =
+        (0..samples.len()).partition(|j| value(*j).is_finite());
+    let one_value = known.chunk_by(|a, b| value(*a) == value(*b));
+    let nothing = blank.chunk_by(|a, b| a + 1 == *b);
+    let runs = one_value.map(|run| (Gives::OneValue, run));
+    let runs = runs.chain(nothing.map(|run| (Gives::Nothing, run)));
+    runs.filter(|(_, run)| run.len() >= least)
+        .filter_map(|(gives, run)| Some((gives, [*run.first()?, *run.last()? + 1])))
+        .collect()
 }
 
 /// Whether the gauges that read in a part tell that gauge `g` is dead there: one that gives nothing by reading, one that gives one value by a strain

@@ -57,43 +57,82 @@ impl Still {
         };
         self.first.iter().zip(&self.varies).map(gives).collect()
     }
+
+    /// What each column gives in all of `record`, of which the rows looked at are some; `columns` are theirs. Where none varies the vehicle may stand
+    /// still, and every number counts as a signal.
+    ///
+    /// # Errors
+    /// What can't be decoded.
+    pub fn throughout(
+        &self,
+        record: &Record,
+        columns: &[Option<usize>],
+    ) -> Result<Vec<Gives>, SeriesError> {
+        let mut all = self.columns();
+        if !all.contains(&Gives::Signal) {
+            let still = all.iter_mut().filter(|g| **g == Gives::OneValue);
+            still.for_each(|g| *g = Gives::Signal);
+        }
+        for (gives, column) in all.iter_mut().zip(columns) {
+            if *gives != Gives::Signal {
+                let span = extent(record, *column, *gives, [0, 0], [0, usize::MAX])?;
+                if span != (0..record.clock.samples) {
+                    *gives = Gives::Signal;
+                }
+            }
+        }
+        Ok(all)
+    }
 }
 
-/// The samples about first and last sample `span` in which a column gives what it gives there, of those after and before `within`.
+/// The samples about first and last sample `span` in which a column gives what it `gives` there, of those after and before `within`. A sample
+/// without a number neither begins nor ends a part of one value.
 ///
 /// # Errors
 /// What can't be decoded.
 pub fn extent(
     record: &Record,
     column: Option<usize>,
+    gives: Gives,
     [first, last]: [usize; 2],
     within: [usize; 2],
 ) -> Result<Range<usize>, SeriesError> {
-    let same = |a: f64, b: f64| a == b || !(a.is_finite() || b.is_finite());
-    let (mut from, mut to) = (first, last + 1);
-    let (mut value, mut alive) = (None, false);
+    let (mut from, mut to) = (None, last + 1);
+    let (mut value, mut ended) = (None, false);
     for piece in 0..record.n_pieces() {
         let (begin, end) = record.span(piece);
         let is_at_begin = begin <= first && end > within[0];
         let is_at_end = begin <= within[1] && end > last;
-        if alive || !(is_at_begin || is_at_end) {
+        if ended || !(is_at_begin || is_at_end) {
             continue;
         }
         record.read(piece, &[column], &mut |block| {
             for (at, v) in (block.first..).zip(block.values) {
-                let as_before = value.is_some_and(|before| same(*v, before));
-                if at <= first && !as_before {
-                    (from, value) = (at, Some(*v));
+                let belongs = match gives {
+                    Gives::Nothing => !v.is_finite(),
+                    Gives::OneValue | Gives::Signal => {
+                        !v.is_finite() || value.is_none_or(|one| one == *v)
+                    }
+                };
+                if at <= first && !belongs {
+                    from = Some(if gives == Gives::Nothing { at + 1 } else { at });
                 }
-                alive |= at > last && !as_before;
-                if at > last && !alive {
+                from = from.or(Some(at));
+                if v.is_finite() && (at <= first || value.is_none()) {
+                    value = Some(*v);
+                }
+                ended |= at > last && !belongs;
+                if at > last && !ended {
                     to = at + 1;
                 }
             }
-            ControlFlow::Continue(())
+            match ended {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            }
         })?;
     }
-    Ok(from..to)
+    Ok(from.unwrap_or(first)..to)
 }
 
 /// Takes readings out of rows of `n` columns, the first row being sample `first`: those of columns in their spans.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 pub const GAUGES: usize = 5;
 /// Microstrain per kN.
-const S: [[f64; 2]; GAUGES] = [
+pub const S: [[f64; 2]; GAUGES] = [
     [10.0, 1.0],
     [-8.0, 3.0],
     [2.0, 9.0],

@@ -1,6 +1,6 @@
 //! Gauges and days that are wrong in part: what is left out, what stays in the sums and is said to be in doubt, who is named.
 
-use super::command::{GAUGES, SAMPLES, findings_of, fleet, folder, table_of};
+use super::command::{GAUGES, S, SAMPLES, findings_of, fleet, folder, table_of};
 use serde_json::Value;
 use std::path::Path;
 
@@ -94,6 +94,41 @@ fn a_vehicle_that_stands_for_half_a_day_has_no_dead_gauge() {
     let (_, result) = fleet(&dir, "out", &files, &[]);
     let found = findings_of(&result, &["warning", "error"]);
     assert!(found.iter().all(|f| f[0] != "dead_channel"), "{found:?}");
+}
+
+/// The first second is all that is looked at beforehand.
+#[test]
+fn who_stands_at_first_and_a_gauge_that_wakes_late_are_at_work_afterwards() {
+    let (dir, files) = folder("wakes");
+    let (_, whole) = fleet(&dir, "before", &files, &[]);
+    let standing = S.map(|row| row[0] * 3.0 - row[1] * 2.0);
+    let stands = table_of(1, 4, None, |i, y| {
+        if i < 600 {
+            *y = standing;
+        }
+    });
+    write(&dir, "T1_4.csv", stands);
+    let wakes = table_of(2, 4, None, |i, y| y[0] = if i < 600 { 5.0 } else { y[0] });
+    write(&dir, "T2_4.csv", wakes);
+    let (code, result) = fleet(&dir, "out", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let found = findings_of(&result, &["warning", "error"]);
+    assert!(
+        found
+            .iter()
+            .all(|f| f[1].starts_with("T2 ") || f[0] == "samples-with-gaps"),
+        "{found:?}"
+    );
+    let parts = &result["vehicles"][2]["gauges"][0]["dead_parts"];
+    assert_eq!(parts.as_array().unwrap().len(), 1, "{parts}");
+    assert_eq!(number(&parts[0]["from"]), 0.0);
+    assert!(
+        (number(&parts[0]["to"]) - 6.0 / 3600.0).abs() < 1e-9,
+        "{parts}"
+    );
+    for ([a, _], [b, _]) in loads(&whole, 2).iter().zip(loads(&result, 2)) {
+        assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+    }
 }
 
 #[test]

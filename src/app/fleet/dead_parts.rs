@@ -29,7 +29,7 @@ pub(super) fn dead_parts(
         .into_iter()
         .map(|stuck| {
             let column = r.columns.get(stuck.gauge).copied().flatten();
-            let span = extent(record, column, stuck.span, stuck.within);
+            let span = extent(record, column, stuck.gives, stuck.span, stuck.within);
             let span = span.map_err(|e| e.to_string())?;
             Ok((stuck.gauge, stuck.gives, span))
         })

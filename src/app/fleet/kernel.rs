@@ -262,7 +262,10 @@ impl Kernel {
         let mut alive = Vec::new();
         let mut looked = Still::new(n);
         looked.look(&sampled);
-        for (&(g, c, scale), gives) in found.iter().zip(looked.columns()) {
+        // What one gives in a part alone is told by those who read there.
+        let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
+        let given = looked.throughout(record, &columns);
+        for (&(g, c, scale), gives) in found.iter().zip(given.map_err(|e| e.to_string())?) {
             let name = all.gauges.get(g).map_or("", String::as_str);
             match gives {
                 Gives::Signal => alive.push((g, c, scale)),

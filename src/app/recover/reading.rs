@@ -14,7 +14,7 @@ use crate::recovery::stuck::Stuck;
 use crate::recovery::{Sums, clock};
 use crate::series::record::csv::Layout;
 use crate::series::record::{self as series, Clock, Options, is_format, open_record};
-use crate::series::still;
+use crate::series::still::{self, Gives, Still};
 use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
@@ -96,7 +96,17 @@ impl Record {
     /// A piece that can't be read.
     pub fn extent(&self, stuck: &Stuck) -> Result<Range<usize>, Fault> {
         let column = self.columns.get(stuck.gauge).and_then(|c| c.0);
-        let found = still::extent(&self.inner, column, stuck.span, stuck.within);
+        let found = still::extent(&self.inner, column, stuck.gives, stuck.span, stuck.within);
+        found.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// What the gauges give in all of the record, of which the rows in `looked` are some.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn throughout(&self, looked: &Still) -> Result<Vec<Gives>, Fault> {
+        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
+        let found = looked.throughout(&self.inner, &columns);
         found.map_err(|e| record_fault(&self.file, &e))
     }
 
