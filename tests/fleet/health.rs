@@ -1,6 +1,7 @@
 //! Gauges and days that are wrong in part: what is left out, what stays in the sums and is said to be in doubt, who is named.
 
 use super::command::{GAUGES, S, SAMPLES, findings_of, fleet, folder, table_of};
+use super::program::{JOB, scratch};
 use serde_json::Value;
 use std::path::Path;
 
@@ -159,6 +160,62 @@ fn damage_of_days_that_the_loads_do_not_explain_is_told_with_its_share() {
         let words = format!("{} {:.1} %", load["load"].as_str().unwrap(), 100.0 * share);
         assert!(told[2].contains(&words), "{words}: {}", told[2]);
     }
+}
+
+/// One gauge alone reads the second load, and dies at noon.
+#[test]
+fn a_load_that_is_known_in_a_part_of_the_hours_has_the_damage_of_that_part() {
+    let dir = scratch("part");
+    std::fs::write(dir.join("job.toml"), JOB).unwrap();
+    write(
+        &dir,
+        "S.csv",
+        "gauge,A.FZ,B.FZ\nG0,10,0\nG1,-8,0\nG2,5,0\nG3,0,7\n".into(),
+    );
+    let record = |dead: &str| {
+        let mut text = "time,G0,G1,G2,G3\n".to_owned();
+        for i in 0..1200 {
+            let turn = std::f64::consts::TAU * f64::from(i) / 40.0;
+            let (a, b) = (5.0 * turn.cos(), 4.0 * turn.sin());
+            let last = match i >= 600 {
+                true => dead.to_owned(),
+                false => format!("{:.6}", 7.0 * b),
+            };
+            let time = f64::from(i) * 0.01;
+            let [x, y, z] = [10.0, -8.0, 5.0].map(|s| s * a);
+            text += &format!("{time:.2},{x:.6},{y:.6},{z:.6},{last}\n");
+        }
+        text
+    };
+    let file = ["T1_1.csv".to_owned()];
+    let mut all = Vec::new();
+    for (out, dead) in [("nothing", ""), ("stuck", "12.5")] {
+        write(&dir, "T1_1.csv", record(dead));
+        let (code, result) = fleet(&dir, out, &file, &[]);
+        assert_eq!(code, 0, "{result}");
+        let load = |l: usize| &result["vehicles"][0]["loads"][l];
+        let whole = number(&result["vehicles"][0]["hours"]);
+        assert_eq!(number(&load(0)["hours"]), whole);
+        assert!((number(&load(1)["hours"]) / whole - 0.5).abs() < 1e-9);
+        // Fifteen periods of a range of 8 kN.
+        let damage = number(&load(1)["damage"]);
+        assert!(
+            (damage / (15.0 * 8.0_f64.powi(5)) - 1.0).abs() < 0.05,
+            "{damage}"
+        );
+        // One vehicle is the mean of all, of each load by its own hours.
+        for l in 0..2 {
+            assert!((number(&load(l)["relative"]) - 1.0).abs() < 1e-9);
+            assert!(number(&load(l)["damage_low"]) < number(&load(l)["damage_high"]));
+        }
+        let found = findings_of(&result, &["warning"]);
+        let part = found.iter().find(|f| f[0] == "load-known-in-part");
+        assert_eq!(part.unwrap_or_else(|| panic!("{found:?}"))[1], "T1 B.FZ");
+        let dead = found.iter().find(|f| f[0] == "dead_channel");
+        assert_eq!(dead.unwrap_or_else(|| panic!("{found:?}"))[1], "T1 G3");
+        all.push(damage);
+    }
+    assert_eq!(all[0], all[1]);
 }
 
 #[test]

@@ -124,6 +124,14 @@ pub struct Day {
 }
 
 impl Day {
+    /// Time of the samples that give a load of it, hours: where the gauges that read tell some of the loads alone, it is less than that of the day.
+    pub fn hours_of(&self, load: &LoadDay) -> f64 {
+        let known = |l: &LoadDay| l.tally.samples.saturating_sub(l.tally.missing) as f64;
+        let most = self.loads.iter().map(known).fold(0.0, f64::max);
+        let share = if most > 0.0 { known(load) / most } else { 1.0 };
+        self.hours * share
+    }
+
     /// Whether the loads don't explain its strain: what they are, and what damage they do, can't be relied on.
     pub fn is_doubtful(&self) -> bool {
         self.findings.iter().any(|f| f.code == UNEXPLAINED)

@@ -71,6 +71,8 @@ pub struct VehicleLoad {
     pub name: String,
     /// Unit.
     pub unit: String,
+    /// Hours of all days in which it is known.
+    pub hours: f64,
     /// All days.
     pub tally: Tally,
     /// Damage with its interval.
@@ -212,10 +214,12 @@ pub(super) fn vehicle(
             .map(|(.., x)| damage_of(&x.tally, x).interval().value)
             .collect();
         let all = damage_of(&tally, &errors(&of_load, load));
+        let hours: f64 = of_load.iter().map(|d| d.1.hours_of(d.2)).sum();
         let done: Vec<(&Day, f64)> = of_load.iter().map(|d| d.1).zip(by_day.clone()).collect();
         loads.push(VehicleLoad {
             name: load.name.clone(),
             unit: load.unit.clone(),
+            hours,
             damage: all.interval(),
             to_reference: reference.and_then(|r| r.to(name, &load.name, &all, hours, &done)),
             tally,

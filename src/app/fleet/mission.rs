@@ -64,7 +64,6 @@ struct KindSums {
     key: MissionKind,
     files: usize,
     hours: f64,
-    squared_hours: f64,
     loads: Vec<LoadSums>,
 }
 
@@ -73,6 +72,8 @@ struct LoadSums {
     name: String,
     unit: String,
     damage: DamageParts,
+    /// Of the hours in which it is known, and of their squares.
+    hours: [f64; 2],
     /// Of squares of the days' damages, and of products with their hours.
     squares: [f64; 2],
     /// Smallest and largest value.
@@ -110,21 +111,24 @@ impl KindSums {
     fn add(&mut self, day: &Day) {
         self.files += 1;
         self.hours += day.hours;
-        self.squared_hours += day.hours * day.hours;
         for load in &day.loads {
             let parts = DamageParts::of(&load.tally, &load.scale, load.noise);
-            let squares = [parts.value * parts.value, parts.value * day.hours];
+            let known = day.hours_of(load);
+            let hours = [known, known * known];
+            let squares = [parts.value * parts.value, parts.value * known];
             let ends = [load.tally.min, load.tally.max].map(|e| e.map_or(f64::NAN, |e| e.value));
             match self.loads.iter_mut().find(|l| l.name == load.name) {
                 Some(l) => {
                     l.damage.add(1.0, &parts);
                     l.squares.iter_mut().zip(squares).for_each(|(a, b)| *a += b);
+                    l.hours.iter_mut().zip(hours).for_each(|(a, b)| *a += b);
                     l.ends = wider(l.ends, ends);
                 }
                 None => self.loads.push(LoadSums {
                     name: load.name.clone(),
                     unit: load.unit.clone(),
                     damage: parts,
+                    hours,
                     squares,
                     ends,
                     law: load.tally.law,
@@ -138,11 +142,12 @@ impl KindSums {
     ///
     /// # Reference
     /// W.G. Cochran, Sampling Techniques, 3rd ed. (1977), eq. 6.9.
-    fn between_days(&self, damage: f64, [squares, products]: [f64; 2]) -> Option<f64> {
+    fn between_days(&self, l: &LoadSums) -> Option<f64> {
         let n = self.files as f64;
-        let rate = damage / self.hours;
-        let sum = squares - 2.0 * rate * products + rate * rate * self.squared_hours;
-        (self.files > 1).then(|| n / (n - 1.0) * sum.max(0.0) / (self.hours * self.hours))
+        let ([hours, squared_hours], [squares, products]) = (l.hours, l.squares);
+        let rate = l.damage.value / hours;
+        let sum = squares - 2.0 * rate * products + rate * rate * squared_hours;
+        (self.files > 1).then(|| n / (n - 1.0) * sum.max(0.0) / (hours * hours))
     }
 }
 
@@ -153,7 +158,6 @@ impl MissionSums {
             key: key.clone(),
             files: 0,
             hours: 0.0,
-            squared_hours: 0.0,
             loads: Vec::new(),
         });
         (!keys.mission.is_empty()).then(|| Self {
@@ -201,12 +205,16 @@ impl MissionSums {
             let (mut by_kind, mut days, mut ends) = (Vec::new(), 0.0, [f64::NAN; 2]);
             for k in &self.kinds {
                 let l = k.loads.iter().find(|l| l.name == of_first.name)?;
-                let weight = self.hours * k.key.share / k.hours;
+                let [hours, _] = l.hours;
+                if !(hours > 0.0) {
+                    return None;
+                }
+                let weight = self.hours * k.key.share / hours;
                 all.add(weight, &l.damage);
-                days += weight * k.files as f64;
+                days += self.hours * k.key.share / k.hours * k.files as f64;
                 ends = wider(ends, l.ends);
-                by_kind.push(l.damage.value.max(0.0) / k.hours);
-                let of_kind = k.between_days(l.damage.value, l.squares);
+                by_kind.push(l.damage.value.max(0.0) / hours);
+                let of_kind = k.between_days(l);
                 let times = (self.hours * k.key.share).powi(2);
                 between = between.zip(of_kind).map(|(a, b)| a + times * b);
             }

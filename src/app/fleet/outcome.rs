@@ -21,6 +21,8 @@ pub struct VehicleLoadAnswer {
     pub load: String,
     /// Unit of `max`, `min`; damage is in its power.
     pub unit: String,
+    /// Hours in which it is known: those of its damage.
+    pub hours: f64,
     /// Largest value, and its day.
     pub max: Option<f64>,
     /// Day of the largest value.
@@ -204,15 +206,16 @@ impl VehicleAnswer {
 
     /// Sets the damage of each relative to that of all.
     pub(super) fn compare(all: &mut [Self]) {
-        let hours: f64 = all.iter().map(|v| v.hours).sum();
-        let mut damage: BTreeMap<String, f64> = BTreeMap::new();
+        let mut sums: BTreeMap<String, [f64; 2]> = BTreeMap::new();
         for l in all.iter().flat_map(|v| &v.loads) {
-            *damage.entry(l.load.clone()).or_insert(0.0) += l.damage;
+            let [damage, hours] = sums.entry(l.load.clone()).or_default();
+            *damage += l.damage;
+            *hours += l.hours;
         }
         for v in all {
             for l in &mut v.loads {
-                let of_all = damage.get(&l.load).map_or(f64::NAN, |d| d / hours);
-                l.relative = l.damage / v.hours / of_all;
+                let of_all = sums.get(&l.load).map_or(f64::NAN, |[d, hours]| d / hours);
+                l.relative = l.damage / l.hours / of_all;
             }
         }
     }
@@ -262,6 +265,7 @@ impl VehicleLoadAnswer {
             from_to: l.tally.cycles,
             levels: l.tally.levels,
             load: l.name,
+            hours: l.hours,
             unit: l.unit,
         }
     }
@@ -352,6 +356,7 @@ impl Fleet {
             out.extend(dead.filter_map(|g| g.dead(&v.name, v.days.len())));
             out.extend(v.gain_changes());
             out.extend(in_doubt(v));
+            out.extend(v.loads.iter().filter_map(|l| known_in_part(v, l)));
             out.extend(v.loads.iter().filter_map(|l| mostly_noise(&v.name, l)));
         }
         out
@@ -372,6 +377,23 @@ fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
         let subject = format!("{vehicle} {}", l.load);
         Finding::new(Severity::Warning, "damage-of-noise", subject, message, remedy)
             .with_numbers(share, MOST)
+    })
+}
+
+/// Says that a load is known for less time than others are: its damage is that of fewer hours.
+fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
+    /// Of the hours: so much damage more is well within what days differ by.
+    const MISSING: f64 = 0.05;
+    let missing = 1.0 - l.hours / v.hours;
+    (missing > MISSING).then(|| {
+        let message = format!(
+            "the gauges that read tell it in {:.4} of {:.4} hours alone, and its damage is that of these",
+            l.hours, v.hours
+        );
+        let remedy = "repair the gauges that its days lack, or add some; until then compare its damage an hour";
+        let subject = format!("{} {}", v.name, l.load);
+        let found = Finding::new(Severity::Warning, "load-known-in-part", subject, message, remedy);
+        found.with_numbers(missing, MISSING)
     })
 }
 

@@ -80,6 +80,20 @@ pub(super) struct Part {
     pub by_gauges: BTreeMap<Vec<usize>, u64>,
 }
 
+impl Part {
+    /// Counts the samples of loads in which some gauge gave nothing.
+    fn count_gaps(&mut self, recovered: &SampleLoads) {
+        for gain in recovered.gaps.iter().filter_map(|g| g.1.as_deref()) {
+            match self.by_gauges.get_mut(&gain.used) {
+                Some(n) => *n += 1,
+                None => {
+                    self.by_gauges.insert(gain.used.clone(), 1);
+                }
+            }
+        }
+    }
+}
+
 impl Recovering {
     /// A piece of the record, decoded and recovered.
     ///
@@ -111,14 +125,7 @@ impl Recovering {
             recovered.gaps.clear();
             self.filter
                 .loads_of(&strain, 1.0, &mut recovered, &mut part.missing);
-            for gain in recovered.gaps.iter().filter_map(|g| g.1.as_deref()) {
-                match part.by_gauges.get_mut(&gain.used) {
-                    Some(n) => *n += 1,
-                    None => {
-                        part.by_gauges.insert(gain.used.clone(), 1);
-                    }
-                }
-            }
+            part.count_gaps(&recovered);
             let loads = &mut recovered.values;
             for row in loads.chunks_exact_mut(k) {
                 row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);

@@ -123,7 +123,7 @@ fn table(fleet: &Fleet) -> String {
             "{},{},{},{},{}",
             csv_cell(&v.name),
             v.files,
-            cell(v.hours),
+            cell(l.hours),
             csv_cell(&l.load),
             numbers.map(cell).join(",")
         );

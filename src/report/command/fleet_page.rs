@@ -33,7 +33,7 @@ pub(super) fn page(o: &Outcome<Fleet>) -> Page {
     for (v, l) in o.rows() {
         let row = (
             v.name.clone(),
-            [l.damage_low, l.damage, l.damage_high].map(|d| d / v.hours),
+            [l.damage_low, l.damage, l.damage_high].map(|d| d / l.hours),
         );
         match by_load.iter_mut().find(|g| g.0 == l.load) {
             Some(group) => group.1.push(row),
@@ -327,7 +327,7 @@ fn vehicles(o: &Outcome<Fleet>) -> Section {
         vec![
             v.name.clone(),
             v.files.to_string(),
-            number(v.hours),
+            number(l.hours),
             l.load.clone(),
             l.unit.clone(),
             number(l.max.unwrap_or(f64::NAN)),
