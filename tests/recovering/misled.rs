@@ -32,6 +32,18 @@ fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
     };
     let (code, said, blank, _) = recover("died-blank", &died(""), "");
     assert_eq!(code, 0, "{said}");
+    // Without G3 a sample tells A to .90 of the noise, with it to .73.
+    let (_, _, clean, _) = recover("died-not", &table("time", 400, as_is), "");
+    let width = |r: &serde_json::Value| {
+        let of = |key: &str| r["damage"][0][key].as_f64().unwrap();
+        (of("damage_high") - of("damage_low")) / of("damage")
+    };
+    assert!(
+        width(&blank) > 1.05 * width(&clean),
+        "{} {}",
+        width(&blank),
+        width(&clean)
+    );
     for value in ["0", "-37.5"] {
         let (code, said, r, _) = recover("died", &died(value), "");
         assert_eq!(code, 0, "{said}");

@@ -17,21 +17,8 @@ pub(super) fn noise_of(r: &Recovering) -> Vec<f64> {
     let all = r.filter.sigma(&zeros);
     let samples = r.samples.max(1) as f64;
     let mut squares: Vec<f64> = all.iter().map(|s| s * s).collect();
-    // From border to border the same gauges read.
-    let ends = r.blank.iter().flat_map(|(_, span)| [span.start, span.end]);
-    let mut ends: Vec<usize> = ends.collect();
-    ends.sort_unstable();
-    for border in ends.windows(2) {
-        let [from, to] = border else { continue };
-        let is_dead = |g: &usize| r.blank.iter().any(|(d, s)| d == g && s.contains(from));
-        let left: Vec<usize> = (0..r.used.len()).filter(|g| !is_dead(g)).collect();
-        if from == to || left.len() == r.used.len() {
-            continue;
-        }
-        let Some(gain) = r.filter.estimate(left) else {
-            continue;
-        };
-        let share = (to - from) as f64 / samples;
+    for (stretch, gain) in r.filter.stretches(&r.blank) {
+        let share = stretch.len() as f64 / samples;
         let of_part = r.filter.sigma_with(&gain, &zeros);
         for ((sum, s), all) in squares.iter_mut().zip(of_part).zip(&all) {
             // A load that is not told there has no noise either.

@@ -10,8 +10,18 @@ use crate::recovery::Readings;
 use crate::recovery::stuck::check;
 use crate::sensitivity::Sensitivity;
 use crate::series::still::{Gives, blank};
+use std::ops::Range;
 
-/// The record without such readings, said as findings, and readings of samples spread over it: where a gauge is dead, the others tell the loads.
+/// A record without the readings of gauges where they are dead.
+pub(super) struct Living {
+    pub record: Record,
+    /// Of samples spread over it.
+    pub readings: Vec<Readings>,
+    /// Dead parts: gauge of S, and samples.
+    pub dead: Vec<(usize, Range<usize>)>,
+}
+
+/// The record without such readings, said as findings: where a gauge is dead, the others tell the loads.
 ///
 /// # Errors
 /// A piece that can't be read.
@@ -21,7 +31,7 @@ pub(super) fn without_dead_parts(
     record: Record,
     s: &Sensitivity,
     zero: &[f64],
-) -> Result<(Record, Vec<Readings>), Faults> {
+) -> Result<Living, Faults> {
     let mut samples = spread_readings(task, &record, zero)?;
     let looked: Vec<(usize, &[f64])> = samples.iter().map(|r| (r.0, &*r.1.strain)).collect();
     // Names alone, without S, say nothing of what others expect.
@@ -29,7 +39,7 @@ pub(super) fn without_dead_parts(
         true => Vec::new(),
         false => check(s, &looked, task.errors, task.noise_factor),
     };
-    let mut parts = Vec::new();
+    let (mut parts, mut blanked) = (Vec::new(), Vec::new());
     for dead in &stuck {
         let span = record.extent(dead)?;
         let [what, why] = match dead.gives {
@@ -53,13 +63,18 @@ pub(super) fn without_dead_parts(
             .with_numbers(to - from, 0.0),
         );
         if dead.gives == Gives::OneValue {
-            parts.push((dead.gauge, span));
+            blanked.push((dead.gauge, span.clone()));
         }
+        parts.push((dead.gauge, span));
     }
     let n = s.gauges.len();
     for (at, readings) in &mut samples {
-        blank(&mut readings.strain, n, *at, &parts);
+        blank(&mut readings.strain, n, *at, &blanked);
     }
     let readings = samples.into_iter().map(|r| r.1).collect();
-    Ok((record.without(parts), readings))
+    Ok(Living {
+        record: record.without(blanked),
+        readings,
+        dead: parts,
+    })
 }

@@ -3,7 +3,7 @@
 use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
-use super::dead_parts::without_dead_parts;
+use super::dead_parts::{Living, without_dead_parts};
 use super::files;
 use super::judged::{check_times, content, judge};
 use super::reading::{Record, block};
@@ -48,7 +48,11 @@ pub(super) fn record(
         units,
         sums: combinations,
     } = listed(task.job, &sensitivity)?;
-    let (record, readings) = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    let Living {
+        record,
+        readings,
+        dead,
+    } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
     let judged = judge(task, &sensitivity, readings);
     let filter = filter(work, task, judged, &sensitivity, zero, &combinations)?;
     check_times(work, &record)?;
@@ -59,6 +63,7 @@ pub(super) fn record(
         file: record.file().to_owned(),
         names,
         units,
+        stretches: filter.stretches(&dead),
         filter,
         first_s,
         step_s,
@@ -114,7 +119,8 @@ pub(super) fn look(
         return Err(unusable(task).into());
     }
     check_times(work, &record)?;
-    let (record, readings) = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    let living = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    let (record, readings) = (living.record, living.readings);
     let mut impossible = 0;
     in_groups(work, &record, &mut |group| {
         let pieces = group.par_iter();
