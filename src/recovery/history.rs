@@ -9,6 +9,7 @@ use super::sums::Sums;
 use super::types::Widening;
 use crate::sensitivity::Sensitivity;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::{Arc, PoisonError, RwLock};
 
 /// Sets of silent gauges whose estimate is kept: what is not kept is formed anew for every sample that needs it.
@@ -208,8 +209,8 @@ impl Filter {
         }
     }
 
-    /// The estimate from the gauges `used`; `None` where none reads.
-    fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
+    /// The estimate from the gauges `used` alone; `None` where none reads.
+    pub fn estimate(&self, used: Vec<usize>) -> Option<Arc<Gain>> {
         if used.is_empty() {
             return None;
         }
@@ -233,6 +234,23 @@ impl Filter {
         new
     }
 
+    /// Stretches of a record in which some of its gauges are dead (`dead`: gauge and samples), in order, each with the estimate from the others;
+    /// none where no other reads.
+    pub fn stretches(&self, dead: &[(usize, Range<usize>)]) -> Vec<(Range<usize>, Arc<Gain>)> {
+        let ends = dead.iter().flat_map(|(_, part)| [part.start, part.end]);
+        let mut ends: Vec<usize> = ends.collect();
+        ends.sort_unstable();
+        ends.dedup();
+        let of_stretch = |border: &[usize]| {
+            let [from, to] = border else { return None };
+            let is_dead = |g: &usize| dead.iter().any(|(d, part)| d == g && part.contains(from));
+            let left: Vec<usize> = (0..self.n_gauges()).filter(|g| !is_dead(g)).collect();
+            let some = left.len() < self.n_gauges();
+            some.then(|| Some((*from..*to, self.estimate(left)?)))?
+        };
+        ends.windows(2).filter_map(of_stretch).collect()
+    }
+
     /// Standard deviation of each load of a sample with loads `f`, all gauges reading.
     pub fn sigma(&self, f: &[f64]) -> Vec<f64> {
         self.whole.sigma(f, &self.widening)
@@ -253,9 +271,13 @@ impl Filter {
         self.widening.coverage_factor
     }
 
-    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads.
-    pub fn sigma_of_change(&self, l: usize, change: &[f64]) -> f64 {
-        self.whole.sigma_of_change(l, change, &self.widening)
+    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads (NaN where one is not known), by the estimate
+    /// that was taken; of all gauges where it is `None`.
+    pub fn sigma_of_change(&self, gain: Option<&Gain>, l: usize, change: &[f64]) -> f64 {
+        let known = |v: &f64| if v.is_finite() { *v } else { 0.0 };
+        let known: Vec<f64> = change.iter().map(known).collect();
+        let gain = gain.unwrap_or(&self.whole);
+        gain.sigma_of_change(l, &known, &self.widening)
     }
 
     /// The estimate from all gauges.

@@ -3,8 +3,8 @@
 //! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`])
 //! and records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no
 //! load can make, across the runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and
-//! [`plausible`] say whether readings and loads can be what they are taken for. [`calibrated`] is the same for a calibrated S,
-//! [`suspects`] and [`unlike`] its judges.
+//! [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead. [`calibrated`] is the same
+//! for a calibrated S, [`suspects`] and [`unlike`] its judges.
 
 mod by_calibration;
 pub mod calibrated;
@@ -25,6 +25,7 @@ mod runs;
 mod samples;
 mod solve;
 mod solved;
+pub mod stuck;
 mod sums;
 mod suspects;
 mod types;

@@ -1,9 +1,11 @@
 //! A gauge whose error stands out of the others', and what it does to the loads.
 
-use super::interval::NORMAL_95;
+use super::errors::ErrorModel;
+use super::gain::Gain;
+use super::interval::{NORMAL_95, student_95};
 use super::residuals::{GaugeTest, Joint};
 use super::solved::Solved;
-use super::types::{GAUGE_SUSPECT, Shift, ShiftKind, Widening};
+use super::types::{GAUGE_SUSPECT, Readings, Shift, ShiftKind, Widening};
 use crate::finding::{Finding, Severity};
 use crate::linalg::tail::student_tail;
 use crate::sensitivity::Sensitivity;
@@ -28,7 +30,13 @@ pub(super) struct Suspects {
 /// The gauge whose gain or zero error stands out most, where chance doesn't make it so: an error where it shifts a wanted load by more
 /// than the half width of its interval, else a warning, or a note where chance is not quite ruled out. Either way the intervals are widened
 /// by what it does.
-pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> Suspects {
+pub(super) fn check(
+    s: &Sensitivity,
+    readings: &[Readings],
+    solved: &Solved,
+    errors: ErrorModel,
+    joint: Option<&Joint>,
+) -> Suspects {
     let mut out = Suspects {
         findings: Vec::new(),
         shifts: Vec::new(),
@@ -56,13 +64,21 @@ pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> 
     };
     let (ratio, load) = worst_shift(s, solved, &shift);
     let name = s.gauges.get(test.gauge).map_or("", String::as_str);
-    let half = NORMAL_95 * (test.size / test.t).abs();
+    // Stated errors, or what is left without this gauge where that is more.
+    let wider = half_width(joint, test);
+    let half = wider * (test.size / test.t).abs();
     let size = match test.kind {
-        ShiftKind::Gain => format!(
-            "{:+.1} % (+- {:.1} %) of the strain that the others make of it",
-            100.0 * test.size,
-            100.0 * half
-        ),
+        ShiftKind::Gain => {
+            let [size, half] = match by_others(s, readings, solved, errors, test.gauge) {
+                Some([size, sigma]) => [size, wider * sigma],
+                None => [test.size, half],
+            };
+            format!(
+                "{:+.1} % (+- {:.1} %) of the strain that the others make of it",
+                100.0 * size,
+                100.0 * half
+            )
+        }
         ShiftKind::Offset => format!(
             "{:+.1} (+- {:.1}) microstrain from what the others make of it",
             test.size / MICROSTRAIN,
@@ -96,6 +112,86 @@ pub(super) fn check(s: &Sensitivity, solved: &Solved, joint: Option<&Joint>) -> 
     );
     out.shifts.push(shift);
     out
+}
+
+/// Share of the squares of the expected strain that noise may make of them at most: with more, a gain can't be told.
+const OF_NOISE: f64 = 0.5;
+
+/// The share by which a gauge reads more than the others make of it, and its standard deviation; `None` where the others don't tell.
+///
+/// With the others' estimate `f` of the loads, its part `p = s f` at the gauge and the reading `y` of the gauge, run by run, the gain is
+/// `1 + g = sum y p / (sum p^2 - n v)`: `v`, the variance that the others' noise gives to p, would make p^2 too large (errors in variables). With
+/// a the shares of the others' readings in p, and `q_l = sum f_l p / sum p^2`, its variance is
+/// `(N + (1 + g)^2 v) / sum p^2` by noise and `(1 + g)^2 rel^2 sum_l q_l^2 (S_l^2 + sum_h a_h^2 S_hl^2)` by the errors of the coefficients, the
+/// same in all runs.
+///
+/// # Reference
+/// W.A. Fuller, Measurement Error Models (1987), eq. 1.2.3.
+fn by_others(
+    s: &Sensitivity,
+    readings: &[Readings],
+    solved: &Solved,
+    errors: ErrorModel,
+    gauge: usize,
+) -> Option<[f64; 2]> {
+    let k = s.loads.len();
+    let (pattern, _) = solved.patterns.first()?;
+    let others: Vec<usize> = pattern
+        .used
+        .iter()
+        .copied()
+        .filter(|h| *h != gauge)
+        .collect();
+    let gain = Gain::new(s, &others, errors, pattern.noise_factor, &solved.typical)?;
+    let own: Vec<f64> = s.values.row(gauge).iter().copied().collect();
+    if (0..k).any(|l| own[l] != 0.0 && !gain.is_seen(l)) {
+        return None;
+    }
+    let share = |i: usize| (0..k).map(|l| own[l] * gain.gain[(l, i)]).sum::<f64>();
+    let shares: Vec<f64> = (0..others.len()).map(share).collect();
+    let noise = errors.noise_variance(pattern.noise_factor);
+    let of_others = noise * shares.iter().map(|a| a * a).sum::<f64>();
+    let (mut runs, mut with, mut squares) = (0.0, 0.0, 0.0);
+    let mut by_load = vec![0.0; k];
+    for r in pattern.runs.iter().filter_map(|i| readings.get(*i)) {
+        let loads = gain.loads(&r.strain);
+        let p: f64 = own.iter().zip(&loads).map(|(s, f)| s * f).sum();
+        runs += 1.0;
+        with += r.strain[gauge] * p;
+        squares += p * p;
+        by_load
+            .iter_mut()
+            .zip(&loads)
+            .for_each(|(q, f)| *q += f * p);
+    }
+    let expected = squares - runs * of_others;
+    if !(expected > OF_NOISE * squares) {
+        return None;
+    }
+    let factor = with / expected;
+    // Runs in which another set of gauges reads may be all that name it.
+    if !factor.is_finite() {
+        return None;
+    }
+    let of_load = |l: usize| {
+        let others = others.iter().zip(&shares);
+        let others = others.map(|(h, a)| (a * s.values[(*h, l)]).powi(2));
+        (by_load[l] / expected).powi(2) * (own[l] * own[l] + others.sum::<f64>())
+    };
+    let model = errors.model_rel.powi(2) * (0..k).map(of_load).sum::<f64>();
+    let by_noise = (noise + factor * factor * of_others) / expected;
+    Some([factor - 1.0, (by_noise + factor * factor * model).sqrt()])
+}
+
+/// Half width of a 95 % interval over the standard deviation that stated errors make: by the scale of what is left without the gauge, where that
+/// is larger.
+fn half_width(joint: &Joint, test: &GaugeTest) -> f64 {
+    let free = (joint.dof - 1) as f64;
+    let rest = (joint.chi2 - test.t * test.t) / free;
+    match rest > 1.0 {
+        true => student_95(free) * rest.sqrt(),
+        false => NORMAL_95,
+    }
 }
 
 /// Chance of an error as large by a gauge that is right; where the residuals without it are larger than stated, by their own scale.

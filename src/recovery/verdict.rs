@@ -103,7 +103,7 @@ pub(super) fn check(
     verdict
         .findings
         .extend(size_finding(&evidence, &sizes, errors));
-    let gauges = outlier::check(s, solved, joints.first());
+    let gauges = outlier::check(s, readings, solved, errors, joints.first());
     verdict.findings.extend(gauges.findings);
     for w in verdict.by_run.iter_mut().chain([&mut verdict.widening]) {
         w.shifts.clone_from(&gauges.shifts);

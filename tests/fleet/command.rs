@@ -6,16 +6,16 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-const GAUGES: usize = 5;
+pub const GAUGES: usize = 5;
 /// Microstrain per kN.
-const S: [[f64; 2]; GAUGES] = [
+pub const S: [[f64; 2]; GAUGES] = [
     [10.0, 1.0],
     [-8.0, 3.0],
     [2.0, 9.0],
     [1.0, -11.0],
     [6.0, 6.0],
 ];
-const SAMPLES: usize = 1200;
+pub const SAMPLES: usize = 1200;
 
 /// Loads of a day, kN: waves whose size differs by vehicle and day.
 fn loads(vehicle: usize, day: usize) -> Vec<[f64; 2]> {
@@ -42,7 +42,7 @@ fn table(vehicle: usize, day: usize, left_out: Option<usize>, dead: Option<usize
 }
 
 /// A day's table of readings that `change` has wronged, given the sample and its readings.
-fn table_of(
+pub fn table_of(
     vehicle: usize,
     day: usize,
     left_out: Option<usize>,
@@ -66,7 +66,7 @@ fn table_of(
 }
 
 /// A folder with job and sixty records of three vehicles.
-fn folder(name: &str) -> (PathBuf, Vec<String>) {
+pub fn folder(name: &str) -> (PathBuf, Vec<String>) {
     let dir = scratch(name);
     std::fs::write(dir.join("job.toml"), JOB).unwrap();
     let mut s = String::from("gauge,A.FZ,B.FZ\n");
@@ -85,7 +85,7 @@ fn folder(name: &str) -> (PathBuf, Vec<String>) {
     (dir, files)
 }
 
-fn fleet(dir: &Path, out: &str, files: &[String], more: &[&str]) -> (i32, Value) {
+pub fn fleet(dir: &Path, out: &str, files: &[String], more: &[&str]) -> (i32, Value) {
     program::fleet(dir, out, files, more)
 }
 
@@ -94,7 +94,7 @@ fn csv(dir: &Path, out: &str) -> String {
 }
 
 /// Code, subject and message of the findings of some severities.
-fn findings_of(result: &Value, severities: &[&str]) -> Vec<[String; 3]> {
+pub fn findings_of(result: &Value, severities: &[&str]) -> Vec<[String; 3]> {
     let list = result["findings"].as_array().unwrap();
     let of = |f: &&Value| severities.contains(&f["severity"].as_str().unwrap());
     let words = |f: &Value| ["code", "subject", "message"].map(|k| f[k].as_str().unwrap().into());

@@ -348,6 +348,73 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
     );
 }
 
+/// T1 has G0 and G3 exchanged from day 7 on, T2 has G1 at .7 of its gain.
+#[test]
+fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
+    let names: Vec<(String, String)> = (1..=2)
+        .flat_map(|v| (1..=12_u32).map(move |d| (v, d)))
+        .map(|(v, d)| {
+            let text = record(4.0 + f64::from(d % 3), PERIODS, |_, y| match (v, d) {
+                (1, 7..) => y.swap(0, 3),
+                (2, 7..) => y[1] *= 0.7,
+                _ => {}
+            });
+            (format!("T{v}_{d}.csv"), text)
+        })
+        .collect();
+    let records: Vec<(&str, String)> = names.iter().map(|n| (n.0.as_str(), n.1.clone())).collect();
+    let dir = folder("one_name", "", &records);
+    let files: Vec<&str> = records.iter().map(|r| r.0).collect();
+    let (_, result) = fleet(&dir, &files, &[]);
+    let swaps = found(&result, "gauge_swap");
+    assert_eq!(swaps.len(), 1, "{swaps:?}");
+    assert_eq!(swaps[0][0], "T1 G0, G3");
+    let gains = found(&result, "gauge_gain");
+    assert!(gains.iter().all(|f| f[0].starts_with("T2")), "{gains:?}");
+    let own = gains.iter().find(|f| f[0] == "T2 G1");
+    let [_, message] = own.unwrap_or_else(|| panic!("{gains:?}"));
+    assert!(
+        message.contains("is 1.00 before 7 and 0.70 from then on"),
+        "{message}"
+    );
+}
+
+/// Days of one load that go up to one value and never back: the cycles between days are all there is but for half of each.
+#[test]
+fn what_closes_between_the_days_of_a_mission_is_bounded() {
+    let job = "mission_hours = 10\n[[fleet.mission]]\nname = \"all\"\nshare = 1.0\n";
+    let records: Vec<(String, String)> = (1..=12)
+        .map(|d| (format!("T1_{d}.csv"), record(4.0, 1, right)))
+        .collect();
+    let records: Vec<(&str, String)> = records.iter().map(|r| (&*r.0, r.1.clone())).collect();
+    let dir = folder("between", job, &records);
+    let files: Vec<&str> = records.iter().map(|r| r.0).collect();
+    let (code, result) = fleet(&dir, &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let mission = &result["mission"];
+    assert!(
+        mission["statement"]
+            .as_str()
+            .unwrap()
+            .contains("between days")
+    );
+    // As many days as have ten hours, half a cycle of the largest range each.
+    let days = 10.0 / hours(1);
+    let at_most = number(&mission["loads"][0]["between_days_at_most"]);
+    is_close(at_most, days * 0.5 * 8.0_f64.powi(SLOPE));
+    // Laid end to end, the days of the vehicle hold no more than their sum and that.
+    let load = &result["vehicles"][0]["loads"][0];
+    let single: f64 = load["by_day"].as_array().unwrap().iter().map(number).sum();
+    let bound = 12.0 * at_most / days;
+    let joined = number(&load["damage_counted"]);
+    assert!(
+        joined <= 1.001 * (single + bound),
+        "{joined} {single} {bound}"
+    );
+    let table = std::fs::read_to_string(dir.join("out/fleet_mission.csv")).unwrap();
+    assert!(table.starts_with("load,hours,damage,damage_low,damage_high,between_days_at_most\n"));
+}
+
 /// Writes what `sha256sum` lists of the records of a result.
 fn list_digests(dir: &Path, result: &Value) {
     let files = result["files"].as_array().unwrap();

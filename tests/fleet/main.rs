@@ -4,4 +4,5 @@ mod command;
 mod compared;
 #[path = "../drawn/mod.rs"]
 mod drawn;
+mod health;
 mod program;

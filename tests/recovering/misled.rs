@@ -20,6 +20,59 @@ fn a_channel_stuck_at_one_value_counts_as_one_that_is_left_out() {
 }
 
 #[test]
+fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
+    let died = |value: &'static str| {
+        table("time", 400, move |i, g, v| {
+            if g == 2 && i >= 150 {
+                value.into()
+            } else {
+                v.to_string()
+            }
+        })
+    };
+    let (code, said, blank, _) = recover("died-blank", &died(""), "");
+    assert_eq!(code, 0, "{said}");
+    // Without G3 a sample tells A to .90 of the noise, with it to .73.
+    let (_, _, clean, _) = recover("died-not", &table("time", 400, as_is), "");
+    let width = |r: &serde_json::Value| {
+        let of = |key: &str| r["damage"][0][key].as_f64().unwrap();
+        (of("damage_high") - of("damage_low")) / of("damage")
+    };
+    assert!(
+        width(&blank) > 1.05 * width(&clean),
+        "{} {}",
+        width(&blank),
+        width(&clean)
+    );
+    for value in ["0", "-37.5"] {
+        let (code, said, r, _) = recover("died", &died(value), "");
+        assert_eq!(code, 0, "{said}");
+        let findings = r["findings"].as_array().unwrap();
+        let names = |f: &serde_json::Value| {
+            let message = f["message"].as_str().unwrap();
+            f["code"] == "gauge-silent"
+                && f["subject"] == "G3"
+                && message.contains("one and the same value from t = 1.500000 s to t = 3.990000 s")
+        };
+        assert!(findings.iter().any(names), "{findings:?}");
+        assert!(r["damage"][0]["damage"].as_f64().unwrap() > 0.0);
+        assert_eq!(r["damage"], blank["damage"]);
+        assert_eq!(r["loads"], blank["loads"]);
+    }
+}
+
+#[test]
+fn a_truck_that_stops_has_no_stuck_channels() {
+    // Rounded readings of loads that don't change from sample 150 on.
+    let still = |_: usize, g: usize| super::strain(250.0, 130.0)[g].round().to_string();
+    let text = table("time", 400, |i, g, v| {
+        if i >= 150 { still(i, g) } else { v.to_string() }
+    });
+    let (_, said, r, _) = recover("stopped", &text, "");
+    assert!(!codes(&r).contains(&"gauge-silent".to_owned()), "{said}");
+}
+
+#[test]
 fn a_truck_that_stands_still_has_no_stuck_channels() {
     // Rounded readings of a load that doesn't change: every channel gives one value.
     let parked = table("time", 1, as_is);

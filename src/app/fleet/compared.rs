@@ -28,8 +28,8 @@ pub struct ReferenceAnswer {
 /// The reference with its damage.
 pub(super) struct Reference {
     pub answer: ReferenceAnswer,
-    /// By load.
-    loads: BTreeMap<String, DamageParts>,
+    /// By load, with the hours in which it is known.
+    loads: BTreeMap<String, (DamageParts, f64)>,
     /// Gauges that read.
     gauges: BTreeSet<String>,
 }
@@ -52,7 +52,7 @@ impl Reference {
         let day = kept.day(file)?;
         let parts = day.loads.iter().map(|l| {
             let of_load = DamageParts::of(&l.tally, &l.scale, l.noise);
-            (l.name.clone(), of_load)
+            (l.name.clone(), (of_load, day.hours_of(l)))
         });
         Some(Self {
             loads: parts.collect(),
@@ -77,7 +77,7 @@ impl Reference {
         hours: f64,
         days: &[(&Day, f64)],
     ) -> Option<Ratio> {
-        let own = self.loads.get(load)?;
+        let (own, own_hours) = self.loads.get(load)?;
         let (mut alike, mut all) = (0.0, 0.0);
         for (day, done) in days {
             let own = day.gauges.iter().filter(|g| g.sd.is_finite());
@@ -93,7 +93,7 @@ impl Reference {
             cycles: vehicle == self.answer.vehicle,
         };
         let ratio = damage.over(own, shared)?;
-        Some(ratio.times(self.answer.hours / hours))
+        Some(ratio.times(own_hours / hours))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::app::whole_file::Stamp;
 use crate::finding::Finding;
+use crate::recovery::UNEXPLAINED;
 use crate::series::rainflow::Tally;
 use crate::series::rainflow::absent::number;
 use serde::{Deserialize, Serialize};
@@ -49,6 +50,8 @@ pub struct GaugeDay {
     pub leverage: f64,
     /// Samples without a reading.
     pub missing: u64,
+    /// Parts of the record in which it is dead, hours from the first sample: it gives nothing, or one and the same value.
+    pub dead: Vec<[f64; 2]>,
 }
 
 /// A finding of the record.
@@ -98,6 +101,7 @@ impl GaugeDay {
             offset: f64::NAN,
             leverage: f64::NAN,
             missing: u64::MAX,
+            dead: Vec::new(),
         }
     }
 }
@@ -117,6 +121,21 @@ pub struct Day {
     pub gauges: Vec<GaugeDay>,
     /// Findings of the record.
     pub findings: Vec<DayFinding>,
+}
+
+impl Day {
+    /// Time of the samples that give a load of it, hours: where the gauges that read tell some of the loads alone, it is less than that of the day.
+    pub fn hours_of(&self, load: &LoadDay) -> f64 {
+        let known = |l: &LoadDay| l.tally.samples.saturating_sub(l.tally.missing) as f64;
+        let most = self.loads.iter().map(known).fold(0.0, f64::max);
+        let share = if most > 0.0 { known(load) / most } else { 1.0 };
+        self.hours * share
+    }
+
+    /// Whether the loads don't explain its strain: what they are, and what damage they do, can't be relied on.
+    pub fn is_doubtful(&self) -> bool {
+        self.findings.iter().any(|f| f.code == UNEXPLAINED)
+    }
 }
 
 /// A file and what became of it.

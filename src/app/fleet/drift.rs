@@ -1,6 +1,7 @@
 //! `zero_drift`: a gauge whose zero moves over the days of a vehicle, by the words of `reconcile`.
 
-use super::outcome::{GaugeHistory, VehicleAnswer, gain_changes};
+use super::gauge_history::GaugeHistory;
+use super::outcome::VehicleAnswer;
 use crate::finding::{Finding, Severity};
 use crate::linalg::tail::student_tail;
 use crate::recovery::{ALARM, ErrorModel};
@@ -26,10 +27,11 @@ struct Trend {
     weight: f64,
 }
 
-/// The line by least squares; `None` where it does not rise out of the scatter, with a chance of [`ALARM`] over `gauges`, or not out of noise and
-/// the model's error.
-fn trend(g: &GaugeHistory, errors: &ErrorModel, gauges: usize) -> Option<Trend> {
+/// The line by least squares; `None` where it does not rise out of the scatter, with a chance of [`ALARM`] over all gauges, or not out of noise
+/// and the model's error.
+fn trend(g: &GaugeHistory, v: &VehicleAnswer, errors: &ErrorModel) -> Option<Trend> {
     let known = g.offset.iter().enumerate();
+    let known = known.filter(|(i, _)| v.misread.get(*i) != Some(&true));
     let known: Vec<(usize, f64)> = known.filter_map(|(i, v)| Some((i, (*v)?))).collect();
     let n = known.len() as f64;
     let (first, last) = (known.first()?.0, known.last()?.0);
@@ -53,7 +55,7 @@ fn trend(g: &GaugeHistory, errors: &ErrorModel, gauges: usize) -> Option<Trend> 
     let means = g.mean.iter().flatten().fold(0.0_f64, |m, v| m.max(v.abs()));
     let noise = errors.noise / MICROSTRAIN;
     let small = noise.max(OF_MODEL * errors.model_rel * means);
-    let by_chance = 2.0 * gauges as f64 * student_tail(t, n - 2.0);
+    let by_chance = 2.0 * v.gauges.len() as f64 * student_tail(t, n - 2.0);
     let leverage = g.leverage.get(last).copied().filter(|h| h.is_finite());
     (by_chance < ALARM && moved.abs() > small).then(|| Trend {
         moved,
@@ -67,12 +69,12 @@ fn trend(g: &GaugeHistory, errors: &ErrorModel, gauges: usize) -> Option<Trend> 
 /// The gauge of a vehicle whose zero moves most, where one does. A gain that changed moves the means of all gauges with the loads' mean: where one
 /// did, that is told alone.
 pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
-    if v.gauges.iter().any(|g| gain_changes(v, g).is_some()) {
+    if v.gain_changes().next().is_some() {
         return None;
     }
     let trends = v.gauges.iter();
     let moving: Vec<(&GaugeHistory, Trend)> = trends
-        .filter_map(|g| Some((g, trend(g, errors, v.gauges.len())?)))
+        .filter_map(|g| Some((g, trend(g, v, errors)?)))
         .collect();
     let worst = moving.iter();
     let (g, t) = worst.max_by(|a, b| a.1.weight.total_cmp(&b.1.weight))?;

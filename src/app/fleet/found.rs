@@ -5,10 +5,10 @@ use super::judged::OF_SAMPLES;
 use super::merge::Status;
 use super::name::by_day;
 use crate::finding::explain::code;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::recovery::{ALARM, GAUGE_SUSPECT, UNEXPLAINED};
 use statrs::distribution::{Binomial, DiscreteCDF};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Said of a right record with a chance of [`ALARM`], and less.
 const BY_CHANCE: [&str; 2] = [GAUGE_SUSPECT, "residual-above-stated-errors"];
@@ -33,6 +33,8 @@ struct Alike<'a> {
     day: &'a str,
     path: &'a str,
     first: &'a DayFinding,
+    /// Vehicles whose records they are.
+    vehicles: BTreeSet<&'a str>,
 }
 
 /// One finding for all records that say the same of the same subject; a vehicle each, but for what all have in common.
@@ -58,7 +60,9 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> 
                 day: &file.day,
                 path: &file.path,
                 first: f,
+                vehicles: BTreeSet::new(),
             });
+            alike.vehicles.insert(&file.vehicle);
             // Of one vehicle the first is that of the first day, on which it began.
             if !vehicle.is_empty() && by_day(&file.day, alike.day).is_lt() {
                 (alike.day, alike.path, alike.first) = (&file.day, &file.path, f);
@@ -70,6 +74,11 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> 
     grouped
         .into_iter()
         .filter_map(|((_, vehicle, subject), alike)| {
+            // What one vehicle alone has is that vehicle's.
+            let vehicle = match alike.vehicles.first() {
+                Some(one) if alike.vehicles.len() == 1 => one,
+                _ => vehicle,
+            };
             let of = records.get(vehicle).copied().unwrap_or(0);
             is_told(&alike, of).then(|| told(vehicle, subject, &alike, of))?
         })
@@ -100,12 +109,19 @@ fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Option<Findin
         true => format!(" ({})", f.subject),
         false => String::new(),
     };
+    let of_vehicles = match vehicle {
+        "" => {
+            let names: Vec<&str> = alike.vehicles.iter().copied().collect();
+            format!(" ({})", few(&names))
+        }
+        _ => String::new(),
+    };
     Some(Finding {
         severity: Severity::named(&f.severity)?,
         code: code(&f.code)?.code,
         subject: subject.join(" "),
         message: format!(
-            "{} of {of} records, the first {}{samples}: {}",
+            "{} of {of} records{of_vehicles}, the first {}{samples}: {}",
             alike.n, alike.path, f.message
         ),
         measured: f.measured,
@@ -137,6 +153,7 @@ mod tests {
                 day: "",
                 path: "",
                 first: &first,
+                vehicles: BTreeSet::new(),
             };
             is_told(&alike, of)
         };

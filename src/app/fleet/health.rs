@@ -222,6 +222,7 @@ impl Sums {
             offset: out * r / m / MICROSTRAIN,
             leverage,
             missing: self.missing,
+            dead: Vec::new(),
         }
     }
 }

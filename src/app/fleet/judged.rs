@@ -106,6 +106,11 @@ impl Judged {
         self.spread.values().cloned().collect()
     }
 
+    /// The same, each with its number.
+    pub fn numbered(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.spread.iter().map(|(at, strain)| (*at, &**strain))
+    }
+
     /// What recovery makes of all of them, and, where the loads explain these, of the extremes alone: among two hundred a single wrong one may
     /// drown. None where no gauge reads.
     pub fn recovered(

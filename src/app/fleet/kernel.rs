@@ -1,10 +1,12 @@
 //! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
 
 use super::day::{Day, DayFinding, GaugeDay, LoadDay};
+use super::dead_parts::{blank_of, dead_parts, told_dead};
 use super::exchange::exchanged;
 use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, UnderWay, counted};
+use super::scale::{noise_of, scales};
 use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
@@ -24,11 +26,23 @@ use crate::series::record::Record;
 use crate::series::still::{Gives, Still};
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::ControlFlow;
 
 /// Pieces of a record that are looked at beforehand.
 const LOOKED_AT: usize = 10;
+
+/// What a record gives in one pass.
+struct Pass {
+    counters: Vec<Counter>,
+    health: Health,
+    missing: Missing,
+    judged: Judged,
+    /// Samples in which some gauge gave nothing, by the gauges that read.
+    by_gauges: BTreeMap<Vec<usize>, u64>,
+    /// Of each load, report unit: what its cycles are counted with.
+    noise: Vec<f64>,
+}
 
 /// What all records of a job share.
 pub struct Kernel {
@@ -60,7 +74,6 @@ impl Kernel {
     /// # Errors
     /// Why loads can't be had of it.
     pub fn day(&self, record: &Record) -> Result<Day, String> {
-        let text = |e: SeriesError| e.to_string();
         let mut findings = Vec::new();
         let second = match self.time_unit_s {
             Some(unit) if !record.is_time_unit_stated() => unit,
@@ -70,25 +83,74 @@ impl Kernel {
         findings.extend(irregular.into_iter().map(DayFinding::from));
         let cut = record.left_out().map(|_| may_be_cut("last line"));
         findings.extend(cut.map(DayFinding::from));
-        let r = self.prepared(record, &mut findings)?;
+        let mut r = self.prepared(record, &mut findings)?;
+        let mut pass = self.pass(record, &r)?;
+        let dead = dead_parts(record, &r, &pass.judged, self.errors, self.noise_factor)?;
+        r.blank = blank_of(&dead);
+        if !r.blank.is_empty() {
+            // Once more, without the readings of gauges where they are dead.
+            pass = self.pass(record, &r)?;
+        }
+        let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
+        findings.extend(gaps.into_iter().map(DayFinding::from));
+        let judged = std::mem::take(&mut pass.judged);
+        let widened = self.judge(
+            &r,
+            judged,
+            |i| second * record.clock.time_s(i),
+            &mut findings,
+        );
+        let filter = widened.as_ref().unwrap_or(&r.filter);
+        let scales = scales(&r, filter, pass.missing.whole, &pass.by_gauges);
+        let loads = pass.counters.into_iter().zip(&self.sensitivity.loads);
+        let loads = loads
+            .zip(&self.units)
+            .zip(pass.noise.iter().zip(scales))
+            .map(|(((c, load), unit), (noise, scale))| LoadDay {
+                name: load.name.clone(),
+                unit: unit.name.clone(),
+                noise: *noise,
+                scale,
+                tally: c.finish(),
+            });
+        let leverage = &r.filter.whole().leverage;
+        // A time without readings does no damage that is counted.
+        let missing = &pass.missing;
+        let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
+        let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
+        let hours = |samples: f64| samples / record.clock.rate_hz * second / 3600.0;
+        findings.extend(told_dead(&dead, &mut gauges, hours));
+        gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
+        let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
+        gauges.sort_by_key(place);
+        Ok(Day {
+            rate_hz: record.clock.rate_hz / second,
+            hours: hours(known as f64),
+            missing: record.clock.missing,
+            loads: loads.collect(),
+            gauges,
+            findings,
+        })
+    }
+
+    /// The record, recovered and counted.
+    fn pass(&self, record: &Record, r: &Recovering) -> Result<Pass, String> {
         let k = self.sensitivity.loads.len();
-        let zero_sigma = r.filter.sigma(&vec![0.0; k]);
-        let noise: Vec<f64> = zero_sigma
-            .iter()
-            .zip(&r.factors)
-            .map(|(s, f)| s * f)
-            .collect();
-        let mut counters: Vec<Counter> = (0..k)
-            .map(|l| {
-                let at = |v: &[f64]| v.get(l).copied().unwrap_or(1.0);
-                Counter::new(l, k, at(&noise), at(&self.widths), self.law)
-            })
-            .collect();
-        let mut health = Health::new(&r.s);
-        let mut judged = Judged::new(r.used.len(), k, record.clock.samples);
+        let noise = noise_of(r);
+        let counter = |l: usize| {
+            let at = |v: &[f64]| v.get(l).copied().unwrap_or(1.0);
+            Counter::new(l, k, at(&noise), at(&self.widths), self.law)
+        };
+        let mut pass = Pass {
+            counters: (0..k).map(counter).collect(),
+            health: Health::new(&r.s),
+            missing: Missing::new(k),
+            judged: Judged::new(r.used.len(), k, record.clock.samples),
+            by_gauges: BTreeMap::new(),
+            noise,
+        };
         let here = self.under_way.begin();
         let mut pieces = 0..record.n_pieces();
-        let mut missing = Missing::new(k);
         let mut parts: Vec<Part> = Vec::new();
         // While some pieces are decoded, the ones before them are counted.
         while !pieces.is_empty() {
@@ -96,54 +158,20 @@ impl Kernel {
             let decode = || group.par_iter().map(|p| r.part(record, *p));
             let (next, ()) = rayon::join(
                 || decode().collect::<Result<_, _>>(),
-                || counted(&mut counters, &parts),
+                || counted(&mut pass.counters, &parts),
             );
-            parts = next.map_err(text)?;
+            parts = next.map_err(|e: SeriesError| e.to_string())?;
             for part in &mut parts {
-                health.merge(&part.health);
-                missing.merge(&part.missing);
-                judged.merge(std::mem::take(&mut part.judged));
+                pass.health.merge(&part.health);
+                pass.missing.merge(&part.missing);
+                pass.judged.merge(std::mem::take(&mut part.judged));
+                for (gauges, n) in std::mem::take(&mut part.by_gauges) {
+                    *pass.by_gauges.entry(gauges).or_insert(0) += n;
+                }
             }
         }
-        counted(&mut counters, &parts);
-        let gaps = check_gaps("samples", &r.sensitivity, &missing);
-        findings.extend(gaps.into_iter().map(DayFinding::from));
-        let widened = self.judge(
-            &r,
-            judged,
-            |i| second * record.clock.time_s(i),
-            &mut findings,
-        );
-        let scales = self.scale_covariances(widened.as_ref().unwrap_or(&r.filter), &r.factors);
-        let loads = counters
-            .into_iter()
-            .zip(&self.sensitivity.loads)
-            .zip(&self.units);
-        let loads =
-            loads
-                .zip(noise.iter().zip(scales))
-                .map(|(((c, load), unit), (noise, scale))| LoadDay {
-                    name: load.name.clone(),
-                    unit: unit.name.clone(),
-                    noise: *noise,
-                    scale,
-                    tally: c.finish(),
-                });
-        let leverage = &r.filter.whole().leverage;
-        // A time without readings does no damage that is counted.
-        let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
-        let mut gauges = health.days(&r.sensitivity.gauges, leverage);
-        gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
-        let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
-        gauges.sort_by_key(place);
-        Ok(Day {
-            rate_hz: record.clock.rate_hz / second,
-            hours: known as f64 / record.clock.rate_hz * second / 3600.0,
-            missing: record.clock.missing,
-            loads: loads.collect(),
-            gauges,
-            findings,
-        })
+        counted(&mut pass.counters, &parts);
+        Ok(pass)
     }
 
     /// What recovery's judge says of samples of the record, and the estimate with the intervals that its residuals call for; `None` where the
@@ -234,7 +262,10 @@ impl Kernel {
         let mut alive = Vec::new();
         let mut looked = Still::new(n);
         looked.look(&sampled);
-        for (&(g, c, scale), gives) in found.iter().zip(looked.columns()) {
+        // What one gives in a part alone is told by those who read there.
+        let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
+        let given = looked.throughout(record, &columns);
+        for (&(g, c, scale), gives) in found.iter().zip(given.map_err(|e| e.to_string())?) {
             let name = all.gauges.get(g).map_or("", String::as_str);
             match gives {
                 Gives::Signal => alive.push((g, c, scale)),
@@ -257,6 +288,7 @@ impl Kernel {
         let names = silent.filter_map(|f| all.gauges.get(f.0)).cloned();
         Ok(Recovering {
             silent: names.collect(),
+            samples: record.clock.samples,
             ..self.recovering(&alive, &alive_values)?
         })
     }
@@ -345,42 +377,12 @@ impl Kernel {
             columns: alive.iter().map(|a| Some(a.1)).collect(),
             scale: [0, 1].map(|i| alive.iter().map(|a| a.2[i]).collect()),
             zero,
+            blank: Vec::new(),
+            samples: 0,
             s: by_row,
             used,
             factors,
         })
-    }
-
-    /// Covariance of the errors of scale of each load with every load: what the filter's variance gains where one load acts alone.
-    fn scale_covariances(&self, filter: &Filter, factors: &[f64]) -> Vec<Vec<f64>> {
-        let k = factors.len();
-        let zero_sigma = filter.sigma(&vec![0.0; k]);
-        // Large enough that noise is nothing beside it.
-        const FAR: f64 = 1e6;
-        let mut out = vec![vec![0.0; k * k]; k];
-        for m in 0..k {
-            let one = self
-                .sensitivity
-                .scales()
-                .get(m)
-                .copied()
-                .filter(|s| *s > 0.0)
-                .unwrap_or(1.0);
-            let mut f = vec![0.0; k];
-            if let Some(slot) = f.get_mut(m) {
-                *slot = FAR * one;
-            }
-            for (l, sigma) in filter.sigma(&f).iter().enumerate() {
-                let own = zero_sigma.get(l).copied().unwrap_or(0.0);
-                let per = (sigma * sigma - own * own).max(0.0) / (FAR * one).powi(2);
-                let units =
-                    factors.get(l).copied().unwrap_or(1.0) / factors.get(m).copied().unwrap_or(1.0);
-                if let Some(slot) = out.get_mut(l).and_then(|row| row.get_mut(m * k + m)) {
-                    *slot = per * units * units;
-                }
-            }
-        }
-        out
     }
 }
 

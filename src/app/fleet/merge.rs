@@ -2,6 +2,7 @@
 
 use super::compared::Reference;
 use super::day::{Day, FileHead, GaugeDay, LoadDay};
+use super::gauge_history::is_misread;
 use super::name::by_day;
 use crate::series::rainflow::{DamageInterval, DamageParts, Ratio, Tally};
 use serde::Serialize;
@@ -70,6 +71,8 @@ pub struct VehicleLoad {
     pub name: String,
     /// Unit.
     pub unit: String,
+    /// Hours of all days in which it is known.
+    pub hours: f64,
     /// All days.
     pub tally: Tally,
     /// Damage with its interval.
@@ -95,6 +98,10 @@ pub struct Vehicle {
     pub hours: f64,
     /// Loads, in the order of the job.
     pub loads: Vec<VehicleLoad>,
+    /// Whether the loads of a day can't be relied on.
+    pub doubtful: Vec<bool>,
+    /// Whether the record of a day names a cause that makes gains and zeros of that day what they are not.
+    pub misread: Vec<bool>,
     /// Readings of each gauge, a day each, in order.
     pub gauges: Vec<(String, Vec<GaugeDay>)>,
 }
@@ -207,10 +214,12 @@ pub(super) fn vehicle(
             .map(|(.., x)| damage_of(&x.tally, x).interval().value)
             .collect();
         let all = damage_of(&tally, &errors(&of_load, load));
+        let hours: f64 = of_load.iter().map(|d| d.1.hours_of(d.2)).sum();
         let done: Vec<(&Day, f64)> = of_load.iter().map(|d| d.1).zip(by_day.clone()).collect();
         loads.push(VehicleLoad {
             name: load.name.clone(),
             unit: load.unit.clone(),
+            hours,
             damage: all.interval(),
             to_reference: reference.and_then(|r| r.to(name, &load.name, &all, hours, &done)),
             tally,
@@ -241,6 +250,8 @@ pub(super) fn vehicle(
         name: name.to_owned(),
         days: list.iter().map(|f| f.0.day.clone()).collect(),
         records: list.iter().map(record).collect(),
+        doubtful: list.iter().map(|f| f.1.is_doubtful()).collect(),
+        misread: list.iter().map(|f| is_misread(&f.1.findings)).collect(),
         hours,
         loads,
         gauges,

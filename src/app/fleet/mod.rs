@@ -7,9 +7,11 @@
 mod asked;
 mod compared;
 pub mod day;
+mod dead_parts;
 mod drift;
 mod exchange;
 mod found;
+mod gauge_history;
 mod health;
 mod judged;
 pub mod kept;
@@ -20,12 +22,14 @@ pub mod name;
 mod outcome;
 mod prepared;
 mod recovering;
+mod scale;
 
 pub use compared::ReferenceAnswer;
+pub use gauge_history::{DeadPart, GaugeHistory};
 pub use kept::digests_of;
 pub use merge::{RecordOf, SampleOf};
 pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
-pub use outcome::{FileAnswer, Fleet, GaugeHistory, VehicleAnswer, VehicleLoadAnswer};
+pub use outcome::{FileAnswer, Fleet, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
 use super::context::{Context, Files};

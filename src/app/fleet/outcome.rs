@@ -1,22 +1,18 @@
 //! The answer of `fleet`.
 
 use super::compared::{Compared, ReferenceAnswer};
-use super::day::{DayFinding, FileHead, GaugeDay};
+use super::day::{DayFinding, FileHead};
 use super::found::of_records;
+use super::gauge_history::GaugeHistory;
 use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
 use crate::app::job::{Fleet as FleetKeys, Job};
 use crate::app::outcome::Answer;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::series::rainflow::{DamageInterval, Ratio};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
-const DEAD: f64 = 0.01;
-/// A share of days on which a finding must stand before it is told of the vehicle as a whole.
-const OFF: f64 = 0.1;
 
 /// A load of a vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -25,6 +21,8 @@ pub struct VehicleLoadAnswer {
     pub load: String,
     /// Unit of `max`, `min`; damage is in its power.
     pub unit: String,
+    /// Hours in which it is known: those of its damage.
+    pub hours: f64,
     /// Largest value, and its day.
     pub max: Option<f64>,
     /// Day of the largest value.
@@ -63,6 +61,8 @@ pub struct VehicleLoadAnswer {
     pub to_target: Option<Ratio>,
     /// Damage of each day by itself.
     pub by_day: Vec<f64>,
+    /// Share of it that days did whose loads can't be relied on.
+    pub doubtful_share: f64,
     /// Width of a class.
     #[serde(skip)]
     pub width: f64,
@@ -75,26 +75,6 @@ pub struct VehicleLoadAnswer {
     /// Rises through the lower border of each class.
     #[serde(skip)]
     pub levels: Vec<(i32, u64)>,
-}
-
-/// A gauge of a vehicle over its days.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct GaugeHistory {
-    /// Its name.
-    pub name: String,
-    /// Days on which it gave nothing or one value.
-    pub dead_days: Vec<String>,
-    /// Mean reading of each day, microstrain.
-    pub mean: Vec<Option<f64>>,
-    /// Noise of each day, microstrain.
-    pub noise: Vec<Option<f64>>,
-    /// Gain against what the other gauges predict, each day.
-    pub gain: Vec<Option<f64>>,
-    /// Mean reading less what the other gauges predict, each day, microstrain.
-    pub offset: Vec<Option<f64>>,
-    /// Its share in its own prediction, each day.
-    #[serde(skip)]
-    pub leverage: Vec<f64>,
 }
 
 /// A vehicle.
@@ -112,8 +92,13 @@ pub struct VehicleAnswer {
     pub hours: f64,
     /// Loads, in the order of the job.
     pub loads: Vec<VehicleLoadAnswer>,
+    /// Days whose loads can't be relied on, as findings of their records say: they count, and are no better for it.
+    pub doubtful_days: Vec<String>,
     /// Gauges.
     pub gauges: Vec<GaugeHistory>,
+    /// Whether the record of a day names a cause that makes gains and zeros of that day what they are not.
+    #[serde(skip)]
+    pub misread: Vec<bool>,
 }
 
 /// A file.
@@ -192,37 +177,52 @@ impl VehicleAnswer {
             gauges: v
                 .gauges
                 .iter()
-                .map(|(name, days)| history(name, days, &v.days))
+                .map(|(name, days)| GaugeHistory::of(name, days, &v.days))
                 .collect(),
             loads: v
                 .loads
                 .into_iter()
-                .map(|l| VehicleLoadAnswer::of(l, keys))
+                .map(|l| VehicleLoadAnswer::of(l, keys, &v.doubtful))
                 .collect(),
+            doubtful_days: v
+                .days
+                .iter()
+                .zip(&v.doubtful)
+                .filter(|d| *d.1)
+                .map(|d| d.0.clone())
+                .collect(),
+            misread: v.misread,
             records: v.records,
             name: v.name,
             days: v.days,
         }
     }
 
+    /// Gains that are other ones from some day on.
+    pub(super) fn gain_changes(&self) -> impl Iterator<Item = Finding> {
+        let gauges = self.gauges.iter();
+        gauges.filter_map(|g| g.gain_change(&self.name, &self.days, &self.misread))
+    }
+
     /// Sets the damage of each relative to that of all.
     pub(super) fn compare(all: &mut [Self]) {
-        let hours: f64 = all.iter().map(|v| v.hours).sum();
-        let mut damage: BTreeMap<String, f64> = BTreeMap::new();
+        let mut sums: BTreeMap<String, [f64; 2]> = BTreeMap::new();
         for l in all.iter().flat_map(|v| &v.loads) {
-            *damage.entry(l.load.clone()).or_insert(0.0) += l.damage;
+            let [damage, hours] = sums.entry(l.load.clone()).or_default();
+            *damage += l.damage;
+            *hours += l.hours;
         }
         for v in all {
             for l in &mut v.loads {
-                let of_all = damage.get(&l.load).map_or(f64::NAN, |d| d / hours);
-                l.relative = l.damage / v.hours / of_all;
+                let of_all = sums.get(&l.load).map_or(f64::NAN, |[d, hours]| d / hours);
+                l.relative = l.damage / l.hours / of_all;
             }
         }
     }
 }
 
 impl VehicleLoadAnswer {
-    fn of(l: VehicleLoad, keys: &FleetKeys) -> Self {
+    fn of(l: VehicleLoad, keys: &FleetKeys, doubtful: &[bool]) -> Self {
         let DamageInterval {
             value,
             low,
@@ -235,6 +235,9 @@ impl VehicleLoadAnswer {
         } = l.damage;
         let [max_at, min_at] = l.extremes;
         let day = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), |s| s.day.clone());
+        let total: f64 = l.by_day.iter().sum();
+        let days = l.by_day.iter().zip(doubtful).filter(|d| *d.1);
+        let in_doubt: f64 = days.map(|d| d.0).sum();
         let target = keys.target.iter().find(|t| t.load == l.name);
         Self {
             max: l.tally.max.map(|e| e.value),
@@ -256,11 +259,13 @@ impl VehicleLoadAnswer {
             to_reference: l.to_reference,
             to_target: target.map(|t| Ratio { value, low, high }.times(1.0 / t.damage)),
             by_day: l.by_day,
+            doubtful_share: if total > 0.0 { in_doubt / total } else { 0.0 },
             width: l.tally.width,
             range_pairs: l.tally.range_pairs(),
             from_to: l.tally.cycles,
             levels: l.tally.levels,
             load: l.name,
+            hours: l.hours,
             unit: l.unit,
         }
     }
@@ -347,94 +352,15 @@ impl Fleet {
         }
         out.extend(of_records(files, status));
         for v in &self.vehicles {
-            for g in &v.gauges {
-                if let Some(first) = g.dead_days.first() {
-                    let n = g.dead_days.len();
-                    let message = format!(
-                        "gives nothing, or one and the same value, on {n} of {} days, the first {first}",
-                        v.days.len()
-                    );
-                    let remedy = "repair it; its days were recovered from the other gauges where they can tell the loads";
-                    let subject = format!("{} {}", v.name, g.name);
-                    out.push(
-                        Finding::new(Severity::Warning, "dead_channel", subject, message, remedy)
-                            .with_numbers(n as f64, 0.0),
-                    );
-                }
-                out.extend(gain_changes(v, g));
-            }
+            let dead = v.gauges.iter();
+            out.extend(dead.filter_map(|g| g.dead(&v.name, v.days.len())));
+            out.extend(v.gain_changes());
+            out.extend(in_doubt(v));
+            out.extend(v.loads.iter().filter_map(|l| known_in_part(v, l)));
             out.extend(v.loads.iter().filter_map(|l| mostly_noise(&v.name, l)));
         }
         out
     }
-}
-
-fn history(name: &str, days: &[GaugeDay], names: &[String]) -> GaugeHistory {
-    let mut sds: Vec<f64> = days
-        .iter()
-        .map(|d| d.sd)
-        .filter(|s| s.is_finite())
-        .collect();
-    sds.sort_by(f64::total_cmp);
-    let typical = sds.get(sds.len() / 2).copied().unwrap_or(0.0);
-    let finite = |x: f64| x.is_finite().then_some(x);
-    let dead = |d: &GaugeDay| !d.sd.is_finite() || d.sd <= DEAD * typical;
-    GaugeHistory {
-        name: name.to_owned(),
-        dead_days: days
-            .iter()
-            .zip(names)
-            .filter(|(d, _)| dead(d))
-            .map(|(_, n)| n.clone())
-            .collect(),
-        mean: days.iter().map(|d| finite(d.mean)).collect(),
-        noise: days.iter().map(|d| finite(d.noise)).collect(),
-        gain: days.iter().map(|d| finite(d.gain)).collect(),
-        offset: days.iter().map(|d| finite(d.offset)).collect(),
-        leverage: days.iter().map(|d| d.leverage).collect(),
-    }
-}
-
-/// A gain that is far from what it was before, from one day on.
-pub(super) fn gain_changes(v: &VehicleAnswer, g: &GaugeHistory) -> Option<Finding> {
-    let known: Vec<(usize, f64)> = g
-        .gain
-        .iter()
-        .enumerate()
-        .filter_map(|(i, x)| Some((i, (*x)?)))
-        .collect();
-    let median = |list: &[(usize, f64)]| {
-        let mut values: Vec<f64> = list.iter().map(|x| x.1).collect();
-        values.sort_by(f64::total_cmp);
-        values.get(values.len() / 2).copied()
-    };
-    // Two days before and two after, so that one odd day is no change.
-    let cut = (2..known.len().saturating_sub(1)).max_by(|a, b| {
-        let jump = |c: usize| {
-            let (before, after) = known.split_at(c);
-            (median(after).unwrap_or(0.0) - median(before).unwrap_or(0.0)).abs()
-        };
-        jump(*a).total_cmp(&jump(*b))
-    })?;
-    let (before, after) = known.split_at(cut);
-    let (was, is) = (median(before)?, median(after)?);
-    let apart = after
-        .iter()
-        .all(|x| (x.1 - was).abs() > 0.5 * (is - was).abs())
-        && before
-            .iter()
-            .all(|x| (x.1 - is).abs() > 0.5 * (is - was).abs());
-    let day = v.days.get(after.first()?.0)?;
-    (apart && (is - was).abs() > OFF).then(|| {
-        Finding::new(
-            Severity::Warning,
-            "gauge_gain",
-            format!("{} {}", v.name, g.name),
-            format!("its gain against the other gauges is {was:.2} before {day} and {is:.2} from then on"),
-            "look at its lead wires, amplifier and glue",
-        )
-        .with_numbers(is - was, OFF)
-    })
 }
 
 /// Says that what noise makes of the ranges is most of the damage that was counted.
@@ -452,4 +378,39 @@ fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
         Finding::new(Severity::Warning, "damage-of-noise", subject, message, remedy)
             .with_numbers(share, MOST)
     })
+}
+
+/// Says that a load is known for less time than others are: its damage is that of fewer hours.
+fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
+    /// Of the hours: so much damage more is well within what days differ by.
+    const MISSING: f64 = 0.05;
+    let missing = 1.0 - l.hours / v.hours;
+    (missing > MISSING).then(|| {
+        let message = format!(
+            "the gauges that read tell it in {:.4} of {:.4} hours alone, and its damage is that of these",
+            l.hours, v.hours
+        );
+        let remedy = "repair the gauges that its days lack, or add some; until then compare its damage an hour";
+        let subject = format!("{} {}", v.name, l.load);
+        let found = Finding::new(Severity::Warning, "load-known-in-part", subject, message, remedy);
+        found.with_numbers(missing, MISSING)
+    })
+}
+
+/// Says which share of a vehicle's damage days did whose loads can't be relied on.
+fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
+    let first = v.doubtful_days.first()?;
+    let share = |l: &VehicleLoadAnswer| format!("{} {:.1} %", l.load, 100.0 * l.doubtful_share);
+    let shares: Vec<String> = v.loads.iter().map(share).collect();
+    let most = v.loads.iter().map(|l| l.doubtful_share).fold(0.0, f64::max);
+    let message = format!(
+        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums \
+         know nothing of it",
+        v.doubtful_days.len(),
+        v.days.len(),
+        few(&shares)
+    );
+    let remedy = "put right what the findings of these records name, or leave the records out";
+    let found = Finding::new(Severity::Error, "damage-in-doubt", &v.name, message, remedy);
+    Some(found.with_numbers(most, 0.0))
 }

@@ -8,8 +8,10 @@ use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
 use crate::series::rainflow::Counter;
 use crate::series::record::Record;
+use crate::series::still::blank;
 use rayon::prelude::*;
-use std::ops::ControlFlow;
+use std::collections::BTreeMap;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Samples gone through together: their strain stays in the nearest cache. The thinned residuals of [`Health`] begin anew with each.
@@ -60,10 +62,14 @@ pub(super) struct Recovering {
     /// Strain of one unit of each column, and of none.
     pub scale: [Vec<f64>; 2],
     pub zero: Vec<f64>,
+    /// Readings that are taken for none, since the gauge is dead there: used gauge and samples.
+    pub blank: Vec<(usize, Range<usize>)>,
     /// S of the used gauges, strain per report unit.
     pub s: Vec<Vec<f64>>,
     /// Report units per job unit, by load.
     pub factors: Vec<f64>,
+    /// Samples of the record.
+    pub samples: usize,
 }
 
 /// What a piece of a record gives.
@@ -73,6 +79,22 @@ pub(super) struct Part {
     pub health: Health,
     pub missing: Missing,
     pub judged: Judged,
+    /// Samples in which some gauge gave nothing, by the gauges that read.
+    pub by_gauges: BTreeMap<Vec<usize>, u64>,
+}
+
+impl Part {
+    /// Counts the samples of loads in which some gauge gave nothing.
+    fn count_gaps(&mut self, recovered: &SampleLoads) {
+        for gain in recovered.gaps.iter().filter_map(|g| g.1.as_deref()) {
+            match self.by_gauges.get_mut(&gain.used) {
+                Some(n) => *n += 1,
+                None => {
+                    self.by_gauges.insert(gain.used.clone(), 1);
+                }
+            }
+        }
+    }
 }
 
 impl Recovering {
@@ -88,6 +110,7 @@ impl Recovering {
             health: Health::new(&self.s),
             missing: Missing::new(k),
             judged: Judged::new(n, k, record.clock.samples),
+            by_gauges: BTreeMap::new(),
         };
         let [factors, offsets] = &self.scale;
         let (mut strain, mut recovered) = (Vec::new(), SampleLoads::default());
@@ -102,10 +125,12 @@ impl Recovering {
                         *out = v * a + b;
                     }
                 }
+                blank(&mut strain, n, first, &self.blank);
                 recovered.values.clear();
                 recovered.gaps.clear();
                 self.filter
                     .loads_of(&strain, 1.0, &mut recovered, &mut part.missing);
+                part.count_gaps(&recovered);
                 let loads = &mut recovered.values;
                 for row in loads.chunks_exact_mut(k) {
                     row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);

@@ -119,7 +119,12 @@ fn damage_of(
             .zip(&head.units)
             .map(|((a, b), u)| (b - a) / u.factor)
             .collect();
-        let sigma = wider * head.filter.sigma_of_change(l, &change) * head.units[l].factor;
+        // The worse known end is that of the change.
+        let by_end = [cycle.from, cycle.to].map(|point| {
+            let gain = head.estimate_at(point.at);
+            head.filter.sigma_of_change(gain, l, &change)
+        });
+        let sigma = wider * by_end[0].max(by_end[1]) * head.units[l].factor;
         damage.add(&cycle, sigma);
     };
     let mut count = Rainflow::default();

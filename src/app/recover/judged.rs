@@ -22,17 +22,11 @@ const TYPICAL: usize = 20_000;
 const LOOKED_AT: usize = 8;
 
 /// What samples over the record say of the loads asked for, of the gauges, and of the intervals.
-pub(super) fn judge(
-    task: &Task,
-    record: &Record,
-    s: &Sensitivity,
-    zero: &[f64],
-) -> Result<Recovery, Faults> {
-    let readings = spread_readings(task, record, zero)?;
-    Ok(recover_samples(s, readings, task.errors))
+pub(super) fn judge(task: &Task, s: &Sensitivity, readings: Vec<Readings>) -> Recovery {
+    recover_samples(s, readings, task.errors)
 }
 
-/// Readings of samples spread over the record, less `zero`.
+/// Readings of samples spread over the record, less `zero`, each with the number of its sample.
 ///
 /// # Errors
 /// A piece that can't be read, a record without rows.
@@ -40,10 +34,10 @@ pub(super) fn spread_readings(
     task: &Task,
     record: &Record,
     zero: &[f64],
-) -> Result<Vec<Readings>, Faults> {
+) -> Result<Vec<(usize, Readings)>, Faults> {
     let n = record.n_columns();
     let pieces = record.n_pieces();
-    let mut readings: Vec<Readings> = Vec::new();
+    let mut readings: Vec<(usize, Readings)> = Vec::new();
     let spread = pieces.min(10);
     // A short record is judged on all of its samples, as the same rows would be as runs.
     let each = match pieces {
@@ -51,7 +45,9 @@ pub(super) fn spread_readings(
         _ => JUDGED.div_ceil(spread.max(1)),
     };
     for p in 0..spread {
-        let (times, values) = record.piece(p * pieces / spread).map_err(Faults::from)?;
+        let piece = p * pieces / spread;
+        let (times, values) = record.piece(piece).map_err(Faults::from)?;
+        let first = record.first_of(piece);
         let take = times.len().min(TYPICAL);
         let row = |i: usize| values.get(i * n..(i + 1) * n).unwrap_or_default();
         // In a gap there is nothing to judge.
@@ -64,7 +60,8 @@ pub(super) fn spread_readings(
         for i in (0..each).map(|i| measured[i * measured.len() / each]) {
             let row = row(i);
             let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
-            readings.push(Readings::of_sample(times[i], strain, task.noise_factor));
+            let readings_of = Readings::of_sample(times[i], strain, task.noise_factor);
+            readings.push((first + i, readings_of));
         }
     }
     if readings.is_empty() {

@@ -7,6 +7,7 @@ mod answer;
 mod combined;
 mod content;
 mod damage;
+mod dead_parts;
 mod files;
 mod history;
 mod judged;

@@ -10,11 +10,13 @@ use crate::app::job::{Job, Measured};
 use crate::finding::Finding;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::recovery::plausible::LARGEST_STRAIN;
+use crate::recovery::stuck::Stuck;
 use crate::recovery::{Sums, clock};
 use crate::series::record::csv::Layout;
 use crate::series::record::{self as series, Clock, Options, is_format, open_record};
+use crate::series::still::{self, Gives, Still};
 use crate::units::MICROSTRAIN;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 /// Whether a strain file is read as a record, a sample a row, rather than as runs.
@@ -32,6 +34,8 @@ pub(super) struct Record {
     micro: Vec<f64>,
     /// Columns that are read, and what puts their readings right.
     columns: Vec<(Option<usize>, Channel)>,
+    /// Readings that are taken for none: column that is read, and samples.
+    blank: Vec<(usize, Range<usize>)>,
     /// Seconds in the unit of its times.
     second: f64,
     /// Neither the file nor the job states the unit of its times.
@@ -66,6 +70,7 @@ impl Record {
             file: file.to_owned(),
             micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
+            blank: Vec::new(),
             second: match (unit_open, measured.time_unit_s) {
                 (true, Some(unit)) => unit,
                 _ => 1.0,
@@ -78,6 +83,41 @@ impl Record {
     /// The same, with the columns that are read.
     pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
         Self { columns, ..self }
+    }
+
+    /// The same, without readings: number of the column that is read, and samples.
+    pub fn without(self, blank: Vec<(usize, Range<usize>)>) -> Self {
+        Self { blank, ..self }
+    }
+
+    /// The samples of a part in which a gauge (the column that is read by its number) is dead.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn extent(&self, stuck: &Stuck) -> Result<Range<usize>, Fault> {
+        let column = self.columns.get(stuck.gauge).and_then(|c| c.0);
+        let found = still::extent(&self.inner, column, stuck.gives, stuck.span, stuck.within);
+        found.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// What the gauges give in all of the record, of which the rows in `looked` are some.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn throughout(&self, looked: &Still) -> Result<Vec<Gives>, Fault> {
+        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
+        let found = looked.throughout(&self.inner, &columns);
+        found.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// Number of the first sample of a piece.
+    pub fn first_of(&self, piece: usize) -> usize {
+        self.inner.span(piece).0
+    }
+
+    /// Time of a sample, s.
+    pub fn time_s(&self, sample: usize) -> f64 {
+        self.inner.clock.time_s(sample) * self.second
     }
 
     /// When its samples were taken, in the unit of the file's times.
@@ -126,6 +166,7 @@ impl Record {
                     |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro) * MICROSTRAIN;
                 strain.extend(row.iter().zip(&right).map(put_right));
             }
+            still::blank(&mut strain, n, block.first, &self.blank);
             sink(&strain);
             ControlFlow::Continue(())
         });
@@ -153,8 +194,7 @@ impl Record {
 
     fn times(&self, i: usize) -> Vec<f64> {
         let (from, to) = self.inner.span(i);
-        let time = |s| self.inner.clock.time_s(s) * self.second;
-        (from..to).map(time).collect()
+        (from..to).map(|s| self.time_s(s)).collect()
     }
 
     /// What is to be known of its times.

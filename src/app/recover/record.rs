@@ -3,8 +3,9 @@
 use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
+use super::dead_parts::{Living, without_dead_parts};
 use super::files;
-use super::judged::{check_times, content, judge, spread_readings};
+use super::judged::{check_times, content, judge};
 use super::reading::{Record, block};
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
@@ -17,7 +18,7 @@ use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
 use crate::recovery::history::Filter;
-use crate::recovery::{Gain, Readings, Sums, check_gaps, plausible};
+use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, plausible};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
@@ -47,7 +48,13 @@ pub(super) fn record(
         units,
         sums: combinations,
     } = listed(task.job, &sensitivity)?;
-    let filter = filter(work, task, &record, &sensitivity, zero, &combinations)?;
+    let Living {
+        record,
+        readings,
+        dead,
+    } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    let judged = judge(task, &sensitivity, readings);
+    let filter = filter(work, task, judged, &sensitivity, zero, &combinations)?;
     check_times(work, &record)?;
     let content = content(work, task, &record, &filter, &names)?;
     let about = record.clock().samples;
@@ -56,6 +63,7 @@ pub(super) fn record(
         file: record.file().to_owned(),
         names,
         units,
+        stretches: filter.stretches(&dead),
         filter,
         first_s,
         step_s,
@@ -111,7 +119,8 @@ pub(super) fn look(
         return Err(unusable(task).into());
     }
     check_times(work, &record)?;
-    let readings = spread_readings(task, &record, &zero)?;
+    let living = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    let (record, readings) = (living.record, living.readings);
     let mut impossible = 0;
     in_groups(work, &record, &mut |group| {
         let pieces = group.par_iter();
@@ -131,12 +140,11 @@ pub(super) fn look(
 fn filter(
     work: &mut Work,
     task: &Task,
-    record: &Record,
+    judged: Recovery,
     s: &Sensitivity,
     zero: Vec<f64>,
     combinations: &[Vec<(usize, f64)>],
 ) -> Result<Filter, Faults> {
-    let judged = judge(task, record, s, &zero)?;
     work.findings.extend(judged.findings.iter().cloned());
     let filter = Filter::new(
         s,

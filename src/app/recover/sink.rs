@@ -5,6 +5,7 @@ use crate::app::job::LoadFile;
 use crate::app::strain::LoadUnits;
 use crate::recovery::Gain;
 use crate::recovery::history::{Filter, SampleLoads};
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Takes the loads of a record as they are recovered.
@@ -62,12 +63,20 @@ pub struct RecordHead {
     pub stride: usize,
     /// What is to be made of the history.
     pub files: Vec<LoadFile>,
+    /// Stretches of samples in which some gauges are dead, and the estimate from the others.
+    pub stretches: Vec<(Range<usize>, Arc<Gain>)>,
 }
 
 impl RecordHead {
     /// Number of loads, combinations among them.
     pub fn n_loads(&self) -> usize {
         self.names.len()
+    }
+
+    /// The estimate of a sample in such a stretch; `None` where all gauges read.
+    pub fn estimate_at(&self, sample: usize) -> Option<&Gain> {
+        let stretch = self.stretches.iter().find(|s| s.0.contains(&sample));
+        stretch.map(|s| &*s.1)
     }
 
     /// Whether anything is made of the history that has to read all of it again.

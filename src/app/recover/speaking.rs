@@ -41,12 +41,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
         return Err(no_gauge_column(task.job, file).into());
     }
     let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
-    let mut given = columns_of_record(&record)?;
-    if !given.contains(&Gives::Signal) {
-        // Where nothing varies the truck may stand still.
-        let parked = given.iter_mut().filter(|g| **g == Gives::OneValue);
-        parked.for_each(|g| *g = Gives::Signal);
-    }
+    let given = columns_of_record(&record)?;
     if given.iter().any(|g| *g != Gives::Signal) {
         for (gives, what) in [
             (Gives::Nothing, "nothing"),
@@ -89,7 +84,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
     })
 }
 
-/// What the columns give over the record, looked at in ten pieces spread over it.
+/// What the columns give over the record, looked at in ten pieces spread over it; what one gives in all of these is held against the rest.
 fn columns_of_record(record: &Record) -> Result<Vec<Gives>, Faults> {
     let (n, pieces) = (record.n_columns(), record.n_pieces());
     let mut looked = Still::new(n);
@@ -102,5 +97,5 @@ fn columns_of_record(record: &Record) -> Result<Vec<Gives>, Faults> {
             break;
         }
     }
-    Ok(looked.columns())
+    Ok(record.throughout(&looked)?)
 }

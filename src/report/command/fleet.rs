@@ -73,9 +73,18 @@ impl Report for Outcome<Fleet> {
             count("copy")
         );
         for (v, l) in self.rows() {
+            let doubtful = match l.doubtful_share {
+                share if share > 0.0 => {
+                    format!(
+                        ", {:.1} % of it by days whose loads can't be relied on",
+                        100.0 * share
+                    )
+                }
+                _ => String::new(),
+            };
             let _ = writeln!(
                 text,
-                "{} {}: {} to {} {}, damage {} ({} to {})",
+                "{} {}: {} to {} {}, damage {} ({} to {}){doubtful}",
                 v.name,
                 l.load,
                 number(l.min.unwrap_or(f64::NAN)),
@@ -114,7 +123,7 @@ fn table(fleet: &Fleet) -> String {
             "{},{},{},{},{}",
             csv_cell(&v.name),
             v.files,
-            cell(v.hours),
+            cell(l.hours),
             csv_cell(&l.load),
             numbers.map(cell).join(",")
         );
@@ -257,18 +266,28 @@ fn relative(fleet: &Fleet) -> String {
     text
 }
 
-const MISSION: [(&str, &str); 5] = [
+const MISSION: [(&str, &str); 6] = [
     ("load", ""),
     ("hours", "h"),
     ("damage", "report unit to the power of the slope"),
     ("damage_low", "report unit to the power of the slope"),
     ("damage_high", "report unit to the power of the slope"),
+    (
+        "between_days_at_most",
+        "report unit to the power of the slope",
+    ),
 ];
 
 fn mission(m: &MissionAnswer) -> String {
     let mut text = MISSION.map(|f| f.0).join(",") + "\n";
     for l in &m.loads {
-        let numbers = [m.hours, l.damage, l.damage_low, l.damage_high];
+        let numbers = [
+            m.hours,
+            l.damage,
+            l.damage_low,
+            l.damage_high,
+            l.between_days_at_most,
+        ];
         let _ = writeln!(
             text,
             "{},{}",

@@ -1,6 +1,8 @@
 //! The report of `fleet`.
 
-use crate::app::fleet::{Fleet, MissionAnswer, SampleOf, VehicleAnswer, VehicleLoadAnswer};
+use crate::app::fleet::{
+    Fleet, GaugeHistory, MissionAnswer, SampleOf, VehicleAnswer, VehicleLoadAnswer,
+};
 use crate::app::outcome::Outcome;
 use crate::report::figure::{Line, Scale, intervals, lines};
 use crate::report::page::{Block, CellLink, Page, Paper, Section, figure_section};
@@ -31,7 +33,7 @@ pub(super) fn page(o: &Outcome<Fleet>) -> Page {
     for (v, l) in o.rows() {
         let row = (
             v.name.clone(),
-            [l.damage_low, l.damage, l.damage_high].map(|d| d / v.hours),
+            [l.damage_low, l.damage, l.damage_high].map(|d| d / l.hours),
         );
         match by_load.iter_mut().find(|g| g.0 == l.load) {
             Some(group) => group.1.push(row),
@@ -69,6 +71,9 @@ fn damage_unit(o: &Fleet) -> String {
     };
     format!("damage an hour, ({unit})^{}", o.slope)
 }
+
+/// Numbers of a gauge by day.
+type OfDays = fn(&GaugeHistory) -> &Vec<Option<f64>>;
 
 /// Gauges of a vehicle over its days.
 fn health(v: &VehicleAnswer) -> Section {
@@ -109,15 +114,19 @@ fn health(v: &VehicleAnswer) -> Section {
         .iter()
         .map(|g| {
             let ((m0, m1), (n0, _), (g0, g1)) = (ends(&g.mean), ends(&g.noise), ends(&g.gain));
+            let from = |day: &String| match g.dead_from(day) {
+                Some(hour) => format!("{day} from hour {hour:.3}"),
+                None => day.clone(),
+            };
             let dead = match g.dead_days.as_slice() {
                 [] => String::new(),
-                [one] => one.clone(),
-                [first, rest @ ..] => format!("{first} and {} more", rest.len()),
+                [one] => from(one),
+                [first, rest @ ..] => format!("{} and {} more", from(first), rest.len()),
             };
             vec![g.name.clone(), dead, m0, m1, n0, g0, g1]
         })
         .collect();
-    let mut blocks = vec![Block::table(&head, rows)];
+    let mut blocks = vec![Block::table(&head, rows).linked(health_links(v))];
     if x.len() > 1 && !drawn.is_empty() {
         blocks.push(Block::Figure(lines(
             &drawn,
@@ -125,8 +134,46 @@ fn health(v: &VehicleAnswer) -> Section {
             "mean reading, µε",
             Scale::Linear,
         )));
+        let of_gain: OfDays = |g| &g.gain;
+        for (what, of) in [
+            ("gain against the others", of_gain),
+            ("noise, µε", |g| &g.noise),
+        ] {
+            let series: Vec<(&str, Vec<f64>)> = v
+                .gauges
+                .iter()
+                .map(|g| (g.name.as_str(), plain(of(g))))
+                .collect();
+            let groups: Vec<(String, Vec<Line>)> = series
+                .iter()
+                .map(|(name, y)| ((*name).to_owned(), vec![Line { name, x: &x, y }]))
+                .collect();
+            blocks.push(Block::Figure(lines(&groups, "day", what, Scale::Linear)));
+        }
     }
     Section::new(format!("Gauges of {} over its days", v.name), blocks)
+}
+
+/// Where the numbers of [`health`] come from: of each gauge the record of the first day on which it was dead, of the first and of the last day.
+fn health_links(v: &VehicleAnswer) -> Vec<CellLink> {
+    let mut links = Vec::new();
+    for (row, g) in v.gauges.iter().enumerate() {
+        let died = g.dead_days.first();
+        let died = died.and_then(|day| v.days.iter().position(|d| d == day));
+        let died = died.and_then(|i| v.records.get(i));
+        let (first, last) = (v.records.first(), v.records.last());
+        for (column, record) in [
+            (1, died),
+            (2, first),
+            (3, last),
+            (4, first),
+            (5, first),
+            (6, last),
+        ] {
+            links.extend(record.map(|r| link(row, column, &r.path, &r.sha256)));
+        }
+    }
+    links
 }
 
 fn link(row: usize, column: usize, path: &str, sha256: &str) -> CellLink {
@@ -197,7 +244,7 @@ fn mission(m: &MissionAnswer) -> Section {
     });
     let head = ["kind of days", "share", "files", "hours measured"];
     let kinds = Block::table(&head, kinds.collect());
-    let mut head = vec!["load", "damage", "low", "high"];
+    let mut head = vec!["load", "damage", "low", "high", "between days, at most"];
     let by_kind: Vec<String> = m
         .kinds
         .iter()
@@ -205,7 +252,12 @@ fn mission(m: &MissionAnswer) -> Section {
         .collect();
     head.extend(by_kind.iter().map(String::as_str));
     let loads = m.loads.iter().map(|l| {
-        let numbers = [l.damage, l.damage_low, l.damage_high];
+        let numbers = [
+            l.damage,
+            l.damage_low,
+            l.damage_high,
+            l.between_days_at_most,
+        ];
         let numbers = numbers
             .into_iter()
             .chain(l.by_kind.iter().copied())
@@ -214,7 +266,8 @@ fn mission(m: &MissionAnswer) -> Section {
     });
     let loads = Block::table(&head, loads.collect());
     let note = "The interval (95 %) holds the errors of measurement: that of S, the same every day, and noise. How much days of one kind differ \
-                is sigma_days in result.json, and no part of it.";
+                is sigma_days in result.json, and no part of it. Cycles that close between days are left out of the damage; what they may add to it at most \
+                stands beside it.";
     let statement = Block::Text(m.statement.clone());
     Section::new(
         "Mission",
@@ -267,13 +320,14 @@ fn vehicles(o: &Outcome<Fleet>) -> Section {
         "low",
         "high",
         "damage an hour, mean 1",
+        "in doubt, %",
     ];
     let at = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), time_of);
     let cells = |(v, l): (&VehicleAnswer, &VehicleLoadAnswer)| {
         vec![
             v.name.clone(),
             v.files.to_string(),
-            number(v.hours),
+            number(l.hours),
             l.load.clone(),
             l.unit.clone(),
             number(l.max.unwrap_or(f64::NAN)),
@@ -284,12 +338,17 @@ fn vehicles(o: &Outcome<Fleet>) -> Section {
             number(l.damage_low),
             number(l.damage_high),
             number(l.relative),
+            match l.doubtful_share {
+                share if share > 0.0 => format!("{:.1}", 100.0 * share),
+                _ => String::new(),
+            },
         ]
     };
     let note = "Damage is the sum of ranges to the power of the slope, in that power of the load's unit; it compares, it is no life. \
                 Cycles are counted by four points, days of a vehicle one after the other as if they were one record; what closes no cycle \
                 counts half, as ASTM E1049 has it. The interval (95 %) holds the error of S, which is the same every day, the scatter of noise, \
-                which averages out, and what is left of the bias of noise, which is taken off.";
+                which averages out, and what is left of the bias of noise, which is taken off. What is in doubt was done on days whose strain the loads don't \
+                explain: it is in the sum, and the interval knows nothing of it.";
     let all: Vec<Vec<String>> = o.rows().map(cells).collect();
     let links = o.rows().enumerate().flat_map(|(row, (_, l))| {
         let ends = [(6, &l.max_at), (8, &l.min_at)];

@@ -72,8 +72,8 @@ fn written(fleet: &Fleet) -> Result<Vec<u8>, ParquetError> {
             n => {
                 let values: Vec<f64> = rows
                     .iter()
-                    .map(|(v, l)| match n {
-                        2 => v.hours,
+                    .map(|(_, l)| match n {
+                        2 => l.hours,
                         5 => l.max.unwrap_or(f64::NAN),
                         6 => l.min.unwrap_or(f64::NAN),
                         7 => l.damage,

@@ -78,7 +78,9 @@ impl Sums {
         let slope = count * law.derivative(range);
         self.scatter += 2.0 * slope * slope;
         for ((sum, from), to) in self.by_load.iter_mut().zip(from).zip(to) {
-            *sum += slope * change.signum() * (to - from);
+            let of_load = to - from;
+            // A load that is not known then adds no error that could be known.
+            *sum += slope * change.signum() * if of_load.is_finite() { of_load } else { 0.0 };
         }
     }
 }

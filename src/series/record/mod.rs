@@ -4,6 +4,8 @@
 //! tells them apart by their first bytes, passes once over the times ([`Clock`]) and gives a [`Record`], whose samples stand on even
 //! steps whatever the file held. Nothing is kept of a file but what lists its parts.
 
+#[cfg(feature = "parquet")]
+mod arrow;
 mod clock;
 mod column;
 pub mod csv;

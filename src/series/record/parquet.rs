@@ -1,5 +1,6 @@
 //! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
+use super::arrow::durations;
 use super::column::{Column, is_time, name_and_unit, seconds_in};
 use super::pages::Pages;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
@@ -43,10 +44,12 @@ pub struct Parquet {
 enum Meaning {
     Number(f64),
     Instant(f64),
+    /// Time that has passed.
+    Duration(f64),
 }
 
 impl Parquet {
-    /// The table in a file. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps, such
+    /// The table in a file. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or durations, such
     /// as the index that pandas writes. Columns of numbers alone are read; a null is NaN.
     ///
     /// # Errors
@@ -57,18 +60,23 @@ impl Parquet {
             .parse_and_finish(&*whole)
             .map_err(broken)?;
         let schema = metadata.file_metadata().schema_descr();
+        let durations = durations(metadata.file_metadata());
         let mut time: Option<(usize, Meaning, String, bool)> = None;
         let mut found = Vec::new();
         for (leaf, c) in schema.columns().iter().enumerate() {
             let (0, Some(meaning)) = (c.max_rep_level(), meaning(c)) else {
                 continue;
             };
+            let meaning = match durations.get(c.name()) {
+                Some(worth) if c.path().parts().len() == 1 => Meaning::Duration(*worth),
+                _ => meaning,
+            };
             // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
             let column = name_and_unit(c.name());
             let named = is_time(&column.name, leaf == 0);
             if named && time.as_ref().is_none_or(|t| !t.3) {
                 time = Some((leaf, meaning, column.unit.clone(), true));
-            } else if matches!(meaning, Meaning::Instant(_)) && time.is_none() {
+            } else if !matches!(meaning, Meaning::Number(_)) && time.is_none() {
                 time = Some((leaf, meaning, column.unit.clone(), false));
             }
             found.push((leaf, meaning, column));
@@ -114,7 +122,8 @@ impl Parquet {
         let schema = self.metadata.file_metadata().schema_descr();
         let kind = schema.column(leaf).physical_type();
         let factor = match meaning {
-            Meaning::Instant(worth) => worth,
+            // What type the column has says more than its name.
+            Meaning::Instant(worth) | Meaning::Duration(worth) => worth,
             Meaning::Number(worth) => {
                 let s = seconds_in(unit).ok_or_else(|| SeriesError::Broken {
                     wrong: format!("`{unit}` is no unit of time"),
@@ -125,6 +134,7 @@ impl Parquet {
         };
         self.time = Some((leaf, factor));
         let instant = matches!(meaning, Meaning::Instant(_));
+        let duration = matches!(meaning, Meaning::Duration(_));
         if instant {
             let mut first = None;
             for piece in 0..self.pieces.len() {
@@ -152,7 +162,7 @@ impl Parquet {
                 _ => 0.0,
             },
             epoch_s: instant.then_some(self.epoch),
-            unit_stated: instant || !unit.is_empty(),
+            unit_stated: instant || duration || !unit.is_empty(),
         };
         Ok(())
     }
@@ -281,7 +291,7 @@ impl Parquet {
 
 fn worth(m: Meaning) -> f64 {
     match m {
-        Meaning::Number(w) | Meaning::Instant(w) => w,
+        Meaning::Number(w) | Meaning::Instant(w) | Meaning::Duration(w) => w,
     }
 }
 

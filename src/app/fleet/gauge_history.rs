@@ -1,0 +1,161 @@
+//! A gauge of a vehicle over its days: where it was dead, and a gain that changed.
+
+use super::day::{DayFinding, GaugeDay};
+use crate::finding::{Finding, Severity};
+use serde::Serialize;
+
+/// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
+const DEAD: f64 = 0.01;
+/// From which a gain is another one: glue, wires and amplifiers of a sound gauge stay well within.
+const OFF: f64 = 0.1;
+/// What is named of a record by its cause, and makes of the gains and zeros of that day what they are not.
+const CAUSES: [&str; 4] = [
+    "gauge_swap",
+    "gauges-exchanged",
+    "gauge-wired-backwards",
+    "gauge-dead",
+];
+
+/// A gauge of a vehicle over its days.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaugeHistory {
+    /// Its name.
+    pub name: String,
+    /// Days on which it gave nothing or one value, all day or a part of it.
+    pub dead_days: Vec<String>,
+    /// Those parts of days.
+    pub dead_parts: Vec<DeadPart>,
+    /// Mean reading of each day, microstrain.
+    pub mean: Vec<Option<f64>>,
+    /// Noise of each day, microstrain.
+    pub noise: Vec<Option<f64>>,
+    /// Gain against what the other gauges predict, each day.
+    pub gain: Vec<Option<f64>>,
+    /// Mean reading less what the other gauges predict, each day, microstrain.
+    pub offset: Vec<Option<f64>>,
+    /// Its share in its own prediction, each day.
+    #[serde(skip)]
+    pub leverage: Vec<f64>,
+}
+
+/// A part of a day on which a gauge was dead.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DeadPart {
+    /// The day.
+    pub day: String,
+    /// Hours from the record's first sample.
+    pub from: f64,
+    /// Hours from the record's first sample.
+    pub to: f64,
+}
+
+impl GaugeHistory {
+    /// That of a gauge whose days have these names.
+    pub(super) fn of(name: &str, days: &[GaugeDay], names: &[String]) -> Self {
+        let mut sds: Vec<f64> = days
+            .iter()
+            .map(|d| d.sd)
+            .filter(|s| s.is_finite())
+            .collect();
+        sds.sort_by(f64::total_cmp);
+        let typical = sds.get(sds.len() / 2).copied().unwrap_or(0.0);
+        let finite = |x: f64| x.is_finite().then_some(x);
+        let dead = |d: &GaugeDay| !d.sd.is_finite() || d.sd <= DEAD * typical || !d.dead.is_empty();
+        let parts = days.iter().zip(names).flat_map(|(d, day)| {
+            let part = |[from, to]: &[f64; 2]| DeadPart {
+                day: day.clone(),
+                from: *from,
+                to: *to,
+            };
+            d.dead.iter().map(part)
+        });
+        Self {
+            name: name.to_owned(),
+            dead_days: days
+                .iter()
+                .zip(names)
+                .filter(|(d, _)| dead(d))
+                .map(|(_, n)| n.clone())
+                .collect(),
+            dead_parts: parts.collect(),
+            mean: days.iter().map(|d| finite(d.mean)).collect(),
+            noise: days.iter().map(|d| finite(d.noise)).collect(),
+            gain: days.iter().map(|d| finite(d.gain)).collect(),
+            offset: days.iter().map(|d| finite(d.offset)).collect(),
+            leverage: days.iter().map(|d| d.leverage).collect(),
+        }
+    }
+
+    /// From which hour on it was dead on a day; `None` where it was all day, or not at all.
+    pub fn dead_from(&self, day: &str) -> Option<f64> {
+        let part = self.dead_parts.iter().find(|p| p.day == day);
+        part.map(|p| p.from)
+    }
+
+    /// That it was dead on some of `of` days.
+    pub(super) fn dead(&self, vehicle: &str, of: usize) -> Option<Finding> {
+        let first = self.dead_days.first()?;
+        let n = self.dead_days.len();
+        let from = match self.dead_from(first) {
+            Some(hour) => format!(" from hour {hour:.3} of its record on"),
+            None => String::new(),
+        };
+        let message = format!(
+            "gives nothing, or one and the same value, on {n} of {of} days, the first {first}{from}"
+        );
+        let remedy = "repair it; while it was dead the loads are those of the other gauges where they can tell them";
+        let subject = format!("{vehicle} {}", self.name);
+        let found = Finding::new(Severity::Warning, "dead_channel", subject, message, remedy);
+        Some(found.with_numbers(n as f64, 0.0))
+    }
+
+    /// A gain that is far from what it was before, from one day on. Days that are `misread` say nothing of it: their cause has a name of its own.
+    pub(super) fn gain_change(
+        &self,
+        vehicle: &str,
+        days: &[String],
+        misread: &[bool],
+    ) -> Option<Finding> {
+        let known: Vec<(usize, f64)> = self
+            .gain
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| misread.get(*i) != Some(&true))
+            .filter_map(|(i, x)| Some((i, (*x)?)))
+            .collect();
+        let median = |list: &[(usize, f64)]| {
+            let mut values: Vec<f64> = list.iter().map(|x| x.1).collect();
+            values.sort_by(f64::total_cmp);
+            values.get(values.len() / 2).copied()
+        };
+        // Two days before and two after, so that one odd day is no change.
+        let cut = (2..known.len().saturating_sub(1)).max_by(|a, b| {
+            let jump = |c: usize| {
+                let (before, after) = known.split_at(c);
+                (median(after).unwrap_or(0.0) - median(before).unwrap_or(0.0)).abs()
+            };
+            jump(*a).total_cmp(&jump(*b))
+        })?;
+        let (before, after) = known.split_at(cut);
+        let (was, is) = (median(before)?, median(after)?);
+        let half = 0.5 * (is - was).abs();
+        let apart = after.iter().all(|x| (x.1 - was).abs() > half)
+            && before.iter().all(|x| (x.1 - is).abs() > half);
+        let day = days.get(after.first()?.0)?;
+        (apart && (is - was).abs() > OFF).then(|| {
+            Finding::new(
+                Severity::Warning,
+                "gauge_gain",
+                format!("{vehicle} {}", self.name),
+                format!("its gain against the other gauges is {was:.2} before {day} and {is:.2} from then on"),
+                "look at its lead wires, amplifier and glue",
+            )
+            .with_numbers(is - was, OFF)
+        })
+    }
+}
+
+/// Whether the findings of a record name a cause that makes gains and zeros of its day what they are not.
+pub(super) fn is_misread(findings: &[DayFinding]) -> bool {
+    findings.iter().any(|f| CAUSES.contains(&f.code.as_str()))
+}

@@ -1,0 +1,80 @@
+//! A record without the readings of gauges that are dead in a part of it.
+
+use super::judged::spread_readings;
+use super::reading::Record;
+use super::task::Task;
+use crate::app::fault::Faults;
+use crate::app::work::Work;
+use crate::finding::{Finding, Severity};
+use crate::recovery::Readings;
+use crate::recovery::stuck::check;
+use crate::sensitivity::Sensitivity;
+use crate::series::still::{Gives, blank};
+use std::ops::Range;
+
+/// A record without the readings of gauges where they are dead.
+pub(super) struct Living {
+    pub record: Record,
+    /// Of samples spread over it.
+    pub readings: Vec<Readings>,
+    /// Dead parts: gauge of S, and samples.
+    pub dead: Vec<(usize, Range<usize>)>,
+}
+
+/// The record without such readings, said as findings: where a gauge is dead, the others tell the loads.
+///
+/// # Errors
+/// A piece that can't be read.
+pub(super) fn without_dead_parts(
+    work: &mut Work,
+    task: &Task,
+    record: Record,
+    s: &Sensitivity,
+    zero: &[f64],
+) -> Result<Living, Faults> {
+    let mut samples = spread_readings(task, &record, zero)?;
+    let looked: Vec<(usize, &[f64])> = samples.iter().map(|r| (r.0, &*r.1.strain)).collect();
+    // Names alone, without S, say nothing of what others expect.
+    let stuck = match s.loads.is_empty() {
+        true => Vec::new(),
+        false => check(s, &looked, task.errors, task.noise_factor),
+    };
+    let (mut parts, mut blanked) = (Vec::new(), Vec::new());
+    for dead in &stuck {
+        let span = record.extent(dead)?;
+        let [what, why] = match dead.gives {
+            Gives::Nothing => ["nothing", "read"],
+            Gives::OneValue | Gives::Signal => {
+                ["one and the same value", "say that its strain changes"]
+            }
+        };
+        let [from, to] = [span.start, span.end - 1].map(|i| record.time_s(i));
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "gauge-silent",
+                &s.gauges[dead.gauge],
+                format!(
+                    "it gives {what} from t = {from:.6} s to t = {to:.6} s, while the others {why}: there the loads are those of the others, with wider \
+                     intervals"
+                ),
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            )
+            .with_numbers(to - from, 0.0),
+        );
+        if dead.gives == Gives::OneValue {
+            blanked.push((dead.gauge, span.clone()));
+        }
+        parts.push((dead.gauge, span));
+    }
+    let n = s.gauges.len();
+    for (at, readings) in &mut samples {
+        blank(&mut readings.strain, n, *at, &blanked);
+    }
+    let readings = samples.into_iter().map(|r| r.1).collect();
+    Ok(Living {
+        record: record.without(blanked),
+        readings,
+        dead: parts,
+    })
+}

@@ -1,0 +1,159 @@
+//! Gauges that give nothing, or one and the same value, over a part of a record in which the others say that their strain changes: dead there,
+//! at work elsewhere.
+
+use super::errors::ErrorModel;
+use super::gain::Gain;
+use super::types::Widening;
+use crate::sensitivity::Sensitivity;
+use crate::series::still::Gives;
+
+/// Share of the samples looked at that a part holds at least: shorter ones are left to the judge of residuals.
+const PART: usize = 20;
+/// Samples of a part at least.
+const LEAST: usize = 10;
+/// Standard deviations of noise and model error by which the strain that the others expect must change: a reading that is rounded, coarsely as it
+/// may be, stands still within less.
+const CHANGES: f64 = 3.0;
+/// Share of the samples of a part in which a gauge reads that is asked what it says of it.
+const READS: f64 = 0.9;
+
+/// A part of a record in which a gauge is dead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stuck {
+    /// Gauge of S.
+    pub gauge: usize,
+    /// What it gives there.
+    pub gives: Gives,
+    /// First and last of the samples looked at in that part.
+    pub span: [usize; 2],
+    /// The samples looked at before and after it: from these on it is alive.
+    pub within: [usize; 2],
+}
+
+/// Dead parts of gauges by samples spread over a record: number of the sample, strain less zero by gauge (NaN where one gave nothing).
+pub fn check(
+    s: &Sensitivity,
+    samples: &[(usize, &[f64])],
+    errors: ErrorModel,
+    noise_factor: f64,
+) -> Vec<Stuck> {
+    let n = s.gauges.len();
+    let least = (samples.len() / PART).max(LEAST);
+    let of_gauge = |g: usize| {
+        let runs = runs_of(samples, g, least).into_iter();
+        runs.map(move |(gives, run)| (g, gives, run))
+    };
+    let runs: Vec<(usize, Gives, [usize; 2])> = (0..n).flat_map(of_gauge).collect();
+    if runs.is_empty() {
+        return Vec::new();
+    }
+    let mut rows: Vec<Vec<f64>> = samples.iter().map(|s| s.1.to_vec()).collect();
+    for (g, _, [from, to]) in &runs {
+        for v in rows.iter_mut().take(*to).skip(*from) {
+            v[*g] = f64::NAN;
+        }
+    }
+    let dead = |(g, gives, [from, to]): &(usize, Gives, [usize; 2])| {
+        let part = &rows[*from..*to];
+        let number = |j: usize| samples.get(j).map_or(usize::MAX, |s| s.0);
+        is_dead(s, part, *g, *gives, least, errors, noise_factor).then(|| Stuck {
+            gauge: *g,
+            gives: *gives,
+            span: [number(*from), number(*to - 1)],
+            within: [from.checked_sub(1).map_or(0, number), number(*to)],
+        })
+    };
+    runs.iter().filter_map(dead).collect()
+}
+
+/// From where to where (the latter left out) a gauge gives nothing, or one value, `least` samples or more: of one value those that have a number
+/// count.
+fn runs_of(samples: &[(usize, &[f64])], gauge: usize, least: usize) -> Vec<(Gives, [usize; 2])> {
+    let value = |j: usize| samples[j].1.get(gauge).copied().unwrap_or(f64::NAN);
+    let (known, blank): (Vec<usize>, Vec<usize>) =
+        (0..samples.len()).partition(|j| value(*j).is_finite());
+    let one_value = known.chunk_by(|a, b| value(*a) == value(*b));
+    let nothing = blank.chunk_by(|a, b| a + 1 == *b);
+    let runs = one_value.map(|run| (Gives::OneValue, run));
+    let runs = runs.chain(nothing.map(|run| (Gives::Nothing, run)));
+    runs.filter(|(_, run)| run.len() >= least)
+        .filter_map(|(gives, run)| Some((gives, [*run.first()?, *run.last()? + 1])))
+        .collect()
+}
+
+/// Whether the gauges that read in a part tell that gauge `g` is dead there: one that gives nothing by reading, one that gives one value by a strain
+/// that changes.
+fn is_dead(
+    s: &Sensitivity,
+    part: &[Vec<f64>],
+    g: usize,
+    gives: Gives,
+    least: usize,
+    errors: ErrorModel,
+    noise_factor: f64,
+) -> bool {
+    let reads = |h: &usize| {
+        let n = part.iter().filter(|row| row[*h].is_finite()).count();
+        n as f64 >= READS * part.len() as f64
+    };
+    let used: Vec<usize> = (0..s.gauges.len()).filter(reads).collect();
+    let whole = |row: &&Vec<f64>| used.iter().all(|h| row[*h].is_finite());
+    let rows: Vec<&Vec<f64>> = part.iter().filter(whole).collect();
+    if used.is_empty() || rows.len() < least.min(part.len()) / 2 {
+        return false;
+    }
+    gives == Gives::Nothing || changes(s, &used, &rows, g, errors, noise_factor)
+}
+
+/// Whether the strain at gauge `g` changes by more than noise and the model's error make of the others' readings; where the others don't tell it,
+/// whether any of theirs changes by more than noise.
+fn changes(
+    s: &Sensitivity,
+    used: &[usize],
+    rows: &[&Vec<f64>],
+    g: usize,
+    errors: ErrorModel,
+    noise_factor: f64,
+) -> bool {
+    let k = s.loads.len();
+    let noise = errors.noise_variance(noise_factor);
+    let own: Vec<f64> = s.values.row(g).iter().copied().collect();
+    let acts: Vec<usize> = (0..k).filter(|l| own[*l] != 0.0).collect();
+    let gain = Gain::new(s, used, errors, noise_factor, &vec![0.0; k]);
+    let gain = gain.filter(|gain| acts.iter().all(|l| gain.is_seen(*l)));
+    let Some(gain) = gain else {
+        let limit = CHANGES * CHANGES * noise;
+        let of = |h: &usize| variance(rows.iter().map(|row| row[*h]));
+        return used.iter().any(|h| of(h) > limit);
+    };
+    let loads: Vec<Vec<f64>> = rows.iter().map(|row| gain.loads(row)).collect();
+    let expected = |f: &Vec<f64>| acts.iter().map(|l| own[*l] * f[*l]).sum::<f64>();
+    let change = variance(loads.iter().map(expected));
+    let sizes: Vec<f64> = (0..k)
+        .map(|l| variance(loads.iter().map(|f| f[l])).sqrt())
+        .collect();
+    let unloaded = gain.covariance(&vec![0.0; k], &Widening::none());
+    let of_loads: f64 = acts
+        .iter()
+        .flat_map(|l| acts.iter().map(move |m| (l, m)))
+        .map(|(l, m)| own[*l] * own[*m] * unloaded[l * k + m])
+        .sum();
+    let model: f64 = used
+        .iter()
+        .enumerate()
+        .map(|(i, h)| {
+            let share: f64 = acts.iter().map(|l| own[*l] * gain.gain[(*l, i)]).sum();
+            let row = s.values.row(*h);
+            share * share * errors.shared(row.iter().copied(), &sizes, &sizes)
+        })
+        .sum();
+    let model = model + errors.shared(own.iter().copied(), &sizes, &sizes);
+    change > CHANGES * CHANGES * (noise + of_loads + model)
+}
+
+/// About their mean.
+fn variance(values: impl Iterator<Item = f64> + Clone) -> f64 {
+    let n = values.clone().count().max(1) as f64;
+    let mean = values.clone().sum::<f64>() / n;
+    values.map(|v| (v - mean).powi(2)).sum::<f64>() / n
+}
