@@ -20,11 +20,7 @@ pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
     if let Evenness::Resampled { largest, .. } = clock.evenness {
         let rate = clock.rate_hz / second;
         let differ = match clock.change {
-            Some(c) => {
-                let [from, to] = c.rates_hz.map(|r| rounded(r / second, 1e4));
-                let at = rounded(c.at_s * second, 1e6);
-                format!("the sample rate changes at {at} s, from {from} Hz to {to} Hz")
-            }
+            Some(change) => change.words(second),
             None => format!("steps of time differ by up to {:.0} %", 100.0 * largest),
         };
         out.push(
@@ -55,11 +51,6 @@ pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
         );
     }
     out
-}
-
-/// The number rounded to parts of one.
-fn rounded(x: f64, parts: f64) -> f64 {
-    (x * parts).round() / parts
 }
 
 /// An error where samples lie `step_s` or more apart and yet follow each other as those of a fast logger do: time in milliseconds.

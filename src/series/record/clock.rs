@@ -38,6 +38,14 @@ pub struct RateChange {
 }
 
 impl RateChange {
+    /// When, and from what to what, in words; `second` is one of the times' unit, s.
+    pub fn words(&self, second: f64) -> String {
+        let rounded = |x: f64, parts: f64| (x * parts).round() / parts;
+        let [from, to] = self.rates_hz.map(|r| rounded(r / second, 1e4));
+        let at = rounded(self.at_s * second, 1e6);
+        format!("the sample rate changes at {at} s, from {from} Hz to {to} Hz")
+    }
+
     /// From a stretch of another rate than the usual one, in a record that begins at `start_s`.
     fn of(stretch: Stretch, start_s: f64, usual_s: f64) -> Self {
         let (usual, other) = (1.0 / usual_s, 1.0 / stretch.step_s);

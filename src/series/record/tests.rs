@@ -326,6 +326,10 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
         for (found, given) in change.rates_hz.iter().zip(hz) {
             assert!((found / given - 1.0).abs() < 0.02, "{change:?}");
         }
+        // Who takes samples as they are stored alone says why not.
+        let refused = crate::series::foreign::check_even(&record).err();
+        let said = refused.map_or_else(String::new, |e| e.parts().0);
+        assert!(said.starts_with("the sample rate changes at"), "{said}");
         let fast = hz[0].max(hz[1]);
         assert!(
             (clock.rate_hz / fast - 1.0).abs() < 1e-3,
