@@ -241,6 +241,27 @@ fn a_record_of_no_number_is_refused_without_one() {
     for word in ["NaN", "inf "] {
         assert!(!said.contains(word), "{said}");
     }
+    // A run without a reading among others.
+    let dir = copied("no_reading", "frame");
+    edit(&dir, "strain.csv", |t| {
+        let lines = t.lines().map(|line| match line.split_once(',') {
+            Some(("R03", rest)) => {
+                let fields = rest.split(',').map(|_| ",1e300");
+                format!("R03{}\n", fields.collect::<String>())
+            }
+            _ => format!("{line}\n"),
+        });
+        lines.collect()
+    });
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["recover", "recover.toml", "--no-cache"])
+        .current_dir(&dir)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{said}");
+    assert!(said.contains("R03: N.FZ not known, "), "{said}");
+    assert!(!said.contains("NaN") && !said.contains("inf "), "{said}");
 }
 
 #[test]
