@@ -1,7 +1,9 @@
 //! What a stage has to say about its own result.
 
+mod bounded;
 pub mod explain;
 
+pub use bounded::bounded;
 use serde::Serialize;
 
 /// How much a finding matters.
@@ -62,7 +64,7 @@ impl Severity {
 }
 
 impl Finding {
-    /// A finding without numbers.
+    /// A finding without numbers, its words [`bounded`].
     pub fn new(
         severity: Severity,
         code: &'static str,
@@ -73,11 +75,11 @@ impl Finding {
         Self {
             severity,
             code,
-            subject: subject.into(),
-            message: message.into(),
+            subject: bounded(subject),
+            message: bounded(message),
             measured: None,
             limit: None,
-            remedy: remedy.into(),
+            remedy: bounded(remedy),
         }
     }
 

@@ -192,6 +192,18 @@ fn mechanisms_are_named_before_anything_is_solved() {
     let (code, err, _) = solve("sliding", &sliding);
     assert_eq!(code, 2, "{err}");
     assert!(err.contains("held by nothing"), "{err}");
+    // The set, and what moves: the strip slides along x and along y.
+    let said = err.lines().find(|l| l.contains("SPC set 5")).unwrap();
+    assert!(
+        said.contains("motions are left") && said.contains("dof 1") && said.contains("dof 2"),
+        "{said}"
+    );
+    // Where no set is selected, that is said.
+    let (_, err, _) = solve("hinge_again", &hinge);
+    assert!(
+        err.contains("no SPC set is selected") && err.contains("grid 60 dof 3"),
+        "{err}"
+    );
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! Bad input: what is wrong, where, and what to do about it.
 
+use crate::finding::bounded;
 use serde::Serialize;
 use std::fmt;
 
-/// One fault, printed as `file:line: field: what is wrong: what to do`.
+/// One fault, printed as `file:line: field: what is wrong: what to do`; its words are [`bounded`].
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
     /// File as given.
@@ -31,9 +32,9 @@ impl Fault {
         Self {
             file: file.into(),
             line,
-            field: field.into(),
-            wrong: wrong.into(),
-            remedy: remedy.into(),
+            field: bounded(field),
+            wrong: bounded(wrong),
+            remedy: bounded(remedy),
         }
     }
 
@@ -47,9 +48,9 @@ impl Fault {
         Self {
             file: file.into(),
             line: None,
-            field: field.into(),
-            wrong: wrong.into(),
-            remedy: remedy.into(),
+            field: bounded(field),
+            wrong: bounded(wrong),
+            remedy: bounded(remedy),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! A file that was read.
 
+use crate::finding::Severity;
 use std::path::PathBuf;
 
 /// A file that was read, with where it was found.
@@ -11,6 +12,6 @@ pub struct FileRead {
     pub path: PathBuf,
     /// SHA-256 of its bytes, hexadecimal.
     pub sha256: String,
-    /// Whether it is a table whose last line may be cut.
-    pub unsure: bool,
+    /// How much a table whose last line may be cut matters; `None`: its end is sound.
+    pub unsure: Option<Severity>,
 }

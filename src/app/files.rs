@@ -7,10 +7,10 @@ use super::job::{Job, NamedFile};
 use super::sheet::{csv_of_sheet, is_sheet};
 pub use super::whole_file::{FileBytes, Opened, Stamp};
 use crate::finding::{Finding, Severity};
-use crate::series::record::csv::unsure_end;
+use crate::series::record::csv::{Layout, is_cut, unsure_end};
 use crate::series::record::is_format;
 use sha2::{Digest, Sha256};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
@@ -28,7 +28,7 @@ pub struct Inputs<'a> {
     files: &'a dyn Files,
     entries: Vec<(String, PathBuf, Hashing)>,
     /// Tables named by the job whose last line may be cut.
-    unsure: BTreeSet<String>,
+    unsure: BTreeMap<String, Severity>,
     /// Tables that were read, so that a question that comes back to one reads what it read before.
     kept: BTreeMap<PathBuf, FileBytes>,
 }
@@ -59,7 +59,7 @@ impl<'a> Inputs<'a> {
         Self {
             files,
             entries: Vec::new(),
-            unsure: BTreeSet::new(),
+            unsure: BTreeMap::new(),
             kept: BTreeMap::new(),
         }
     }
@@ -70,11 +70,13 @@ impl<'a> Inputs<'a> {
             let done = Hashing::Done(f.sha256.clone());
             (f.given.clone(), f.path.clone(), done)
         };
-        let unsure = read.iter().filter(|f| f.unsure);
+        let unsure = read
+            .iter()
+            .filter_map(|f| Some((f.given.clone(), f.unsure?)));
         Self {
             files,
             entries: read.iter().map(entry).collect(),
-            unsure: unsure.map(|f| f.given.clone()).collect(),
+            unsure: unsure.collect(),
             kept: BTreeMap::new(),
         }
     }
@@ -87,7 +89,7 @@ impl<'a> Inputs<'a> {
                 given: given.clone(),
                 path: path.clone(),
                 sha256: hashing.finish(),
-                unsure: self.unsure.contains(given),
+                unsure: self.unsure.get(given).copied(),
             })
             .collect()
     }
@@ -178,13 +180,22 @@ impl<'a> Inputs<'a> {
             && !is_format(bytes.as_ref())
             && unsure_end(bytes.as_ref()).is_some()
         {
-            self.unsure.insert(given.to_owned());
+            // A record is read without its last line.
+            let is_record = || Layout::of(bytes.as_ref()).is_ok_and(|l| l.is_record());
+            let severity = match is_cut(bytes.as_ref()) && !is_record() {
+                true => Severity::Error,
+                false => Severity::Warning,
+            };
+            self.unsure.insert(given.to_owned(), severity);
         }
     }
 
-    /// A warning for each table whose last line may be cut.
+    /// A finding for each table whose last line may be cut.
     pub fn findings(&self) -> Vec<Finding> {
-        self.unsure.iter().map(|f| may_be_cut(f)).collect()
+        let unsure = self.unsure.iter();
+        unsure
+            .map(|(file, severity)| may_be_cut(file, *severity))
+            .collect()
     }
 
     /// Notes a file that was read by other means, so that it is listed.
@@ -232,14 +243,18 @@ fn is_table(given: &str) -> bool {
 }
 
 /// The finding of a table, or a record, whose last line may be cut.
-pub(super) fn may_be_cut(file: &str) -> Finding {
-    Finding::new(
-        Severity::Warning,
-        "table-may-be-cut",
-        file,
-        "its last line has no end, and its last number may have lost digits: a record is read without that line, any other table with it",
-        "copy the file again if it is cut; else end its last line",
-    )
+pub(super) fn may_be_cut(file: &str, severity: Severity) -> Finding {
+    let (message, remedy) = match severity {
+        Severity::Error => (
+            "its last line has no end, and its last number has fewer digits than those of its column: the file is cut, and that number is wrong",
+            "copy the file again, or end its last line",
+        ),
+        Severity::Warning | Severity::Info => (
+            "its last line has no end, and its last number may have lost digits: a record is read without that line, any other table with it",
+            "copy the file again if it is cut; else end its last line",
+        ),
+    };
+    Finding::new(severity, "table-may-be-cut", file, message, remedy)
 }
 
 fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {

@@ -1,9 +1,9 @@
 //! Which files of a folder which command wrote, so that its next run removes those that it no longer writes.
 //!
 //! `.strainbridge` in the folder: a line a file, the command, a tab, the name. Files of other commands are left alone, for one command's
-//! tables are often another's input.
+//! tables are often another's input. A file that is not listed is nobody's to write over.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
 /// Its name.
@@ -30,6 +30,28 @@ impl Manifest {
         own.map(|e| e.1.clone()).collect()
     }
 
+    /// Whether a command wrote a file of this name.
+    pub(super) fn holds(&self, name: &str) -> bool {
+        self.0.iter().any(|e| e.1 == name)
+    }
+
+    /// The files of every other command. What a command writes before its answer stands under its name, a blank and a word.
+    pub(super) fn of_others(&self, command: &str) -> BTreeMap<&str, Vec<&str>> {
+        let of_other = |by: &str| by.split(' ').next() != Some(command);
+        let mut out: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
+        for (by, name) in self.0.iter().filter(|e| of_other(&e.0)) {
+            out.entry(by).or_default().push(name);
+        }
+        out
+    }
+
+    /// Adds files to those of a command.
+    pub(super) fn add(&mut self, command: &str, names: &[String]) {
+        self.0.retain(|e| !names.contains(&e.1));
+        let added = names.iter().map(|n| (command.to_owned(), n.clone()));
+        self.0.extend(added);
+    }
+
     /// Puts what a command writes now in place of what it wrote before; files that it wrote and that nobody writes now.
     pub(super) fn replace(&mut self, command: &str, names: &[String]) -> Vec<PathBuf> {
         let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.0)
@@ -37,16 +59,9 @@ impl Manifest {
             .partition(|e| e.0 == command);
         self.0 = others;
         // A file that another command wrote before belongs to whoever wrote it last.
-        self.0.retain(|e| !names.contains(&e.1));
-        let kept: BTreeSet<String> = self.0.iter().map(|e| e.1.clone()).collect();
-        let present = names.iter().map(|n| (command.to_owned(), n.clone()));
-        self.0.extend(present);
-        before
-            .into_iter()
-            .map(|e| e.1)
-            .filter(|n| !names.contains(n) && !kept.contains(n))
-            .map(PathBuf::from)
-            .collect()
+        self.add(command, names);
+        let gone = before.into_iter().map(|e| e.1);
+        gone.filter(|n| !self.holds(n)).map(PathBuf::from).collect()
     }
 
     /// As text.
@@ -87,6 +102,10 @@ mod tests {
         let gone = m.replace("recover", &names(&["loads.csv", "report.html"]));
         assert_eq!(gone, [PathBuf::from("loads.bin")]);
         assert!(m.text().contains("place\tgauges.csv\n"));
+        assert!(m.holds("loads.csv") && !m.holds("loads.bin"));
+        assert_eq!(m.of_others("recover")["place"], ["gauges.csv"]);
+        m.add("place inputs", &names(&["place.toml"]));
+        assert!(m.of_others("place").keys().all(|k| *k == "recover"));
         // report.html is recover's now
         assert!(m.replace("place", &names(&["gauges.csv"])).is_empty());
     }

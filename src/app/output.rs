@@ -1,10 +1,11 @@
-//! Writing: files appear under their names only when all of them are complete.
+//! Writing: files appear under their names only when all of them are complete, and never in place of a file that no command wrote.
 
 use super::fault::{Fault, Faults};
 use super::half_written;
 use super::manifest::{self, Manifest};
 use super::outcome::Tables;
 use super::whole_file::{FileBytes, load};
+use crate::finding::few;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -156,25 +157,42 @@ impl Output {
         self.write(name, |w| w.write_all(bytes))
     }
 
-    /// Refuses names under which other bytes stand that the answer came from: written over, they would give another answer the next time.
+    /// Refuses names under which other bytes stand that the answer came from (written over, they would give another answer the next time),
+    /// or that no command wrote into the folder (written over, they would be lost).
     ///
     /// # Errors
     /// A fault for each.
     pub fn check_spared(&self, sources: &[PathBuf]) -> Result<(), Faults> {
         let sources = stored(sources);
-        let is_source = |p: &&(PathBuf, PathBuf)| {
-            let target = std::fs::canonicalize(&p.1);
-            target.is_ok_and(|t| sources.contains(&t)) && !is_same(&p.0, &p.1)
+        let ours = Manifest::read(&self.folder);
+        let fault = |(part, target): &(PathBuf, PathBuf)| {
+            let stands = std::fs::canonicalize(target).ok()?;
+            let fault = if sources.contains(&stands) {
+                Fault::of(
+                    target.display().to_string(),
+                    "output",
+                    "the command has read this file, and would write its own over it",
+                    "choose another folder with `--out`, or give the input another name",
+                )
+            } else {
+                not_ours(&ours, target)?
+            };
+            (!is_same(part, target)).then_some(fault)
         };
-        let fault = |p: &(PathBuf, PathBuf)| {
-            Fault::of(
-                p.1.display().to_string(),
-                "output",
-                "the command has read this file, and would write its own over it",
-                "choose another folder with `--out`, or give the input another name",
-            )
-        };
-        Faults::check(self.pending.iter().filter(is_source).map(fault).collect())
+        Faults::check(self.pending.iter().filter_map(fault).collect())
+    }
+
+    /// Refuses a folder in which files stand under `names` that no command wrote there: asked before anything is computed.
+    ///
+    /// # Errors
+    /// A fault for each.
+    pub fn check_free(folder: &Path, names: &[&str]) -> Result<(), Faults> {
+        let targets = names.iter().map(|n| folder.join(n));
+        let standing: Vec<PathBuf> = targets.filter(|t| t.exists()).collect();
+        // What another run writes meanwhile is listed before it stands.
+        let ours = Manifest::read(folder);
+        let foreign = standing.iter().filter_map(|t| not_ours(&ours, t));
+        Faults::check(foreign.collect())
     }
 
     /// Renames every file to its name, and removes what the command wrote into the folder before and doesn't write now; none of `sources`.
@@ -182,16 +200,12 @@ impl Output {
     /// # Errors
     /// Faults of [`Output::check_spared`]; one for the first file that can't be renamed.
     pub fn commit(mut self, command: &str, sources: &[PathBuf]) -> Result<(), Faults> {
+        let _held = hold(&self.folder);
         self.check_spared(sources)?;
         let sources = stored(sources);
-        let names: Vec<String> = self
-            .pending
-            .iter()
-            .filter_map(|p| Some(p.1.file_name()?.to_string_lossy().into_owned()))
-            .collect();
         let mut written = Manifest::read(&self.folder);
-        let gone = written.replace(command, &names);
-        self.write_bytes(manifest::NAME, written.text().as_bytes())?;
+        let gone = written.replace(command, &self.names());
+        self.list_first(&written)?;
         self.rename_all()?;
         for name in gone {
             let path = self.folder.join(name);
@@ -200,6 +214,32 @@ impl Output {
                 let _ = std::fs::remove_file(path);
             }
         }
+        Ok(())
+    }
+
+    /// Renames every file to its name beside what the command wrote before: for one that writes a folder bit by bit.
+    ///
+    /// # Errors
+    /// As [`Output::commit`].
+    pub fn commit_beside(mut self, command: &str) -> Result<(), Faults> {
+        let _held = hold(&self.folder);
+        self.check_spared(&[])?;
+        let mut written = Manifest::read(&self.folder);
+        written.add(command, &self.names());
+        self.list_first(&written)?;
+        Ok(self.rename_all()?)
+    }
+
+    /// Names of the files that were begun.
+    fn names(&self) -> Vec<String> {
+        let names = self.pending.iter().filter_map(|p| p.1.file_name());
+        names.map(|n| n.to_string_lossy().into_owned()).collect()
+    }
+
+    /// Writes the list of the folder, to be renamed before the files that it lists: none of ours ever stands there unlisted.
+    fn list_first(&mut self, written: &Manifest) -> Result<(), Fault> {
+        self.write_bytes(manifest::NAME, written.text().as_bytes())?;
+        self.pending.rotate_right(1);
         Ok(())
     }
 
@@ -224,6 +264,49 @@ impl Drop for Output {
             half_written::forget(part);
         }
     }
+}
+
+/// What other commands wrote into a folder and still stands there, in words; `None`: nothing.
+pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
+    let written = Manifest::read(folder);
+    let of = |(by, names): (&str, Vec<&str>)| {
+        let stands = |n: &&str| folder.join(n).is_file();
+        let names: Vec<&str> = names.into_iter().filter(stands).collect();
+        (!names.is_empty()).then(|| format!("`{by}` ({})", few(&names)))
+    };
+    let list: Vec<String> = written
+        .of_others(command)
+        .into_iter()
+        .filter_map(of)
+        .collect();
+    (!list.is_empty()).then(|| {
+        let list = list.join(", ");
+        format!("the folder also holds files of {list}, as they were written then")
+    })
+}
+
+/// The fault of a file that no command wrote; `None` where one did.
+fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
+    let name = target.file_name()?.to_string_lossy();
+    (!ours.holds(&name)).then(|| {
+        Fault::of(
+            target.display().to_string(),
+            "output",
+            format!(
+                "this name is that of an output, and the file that has it was not written here by strainbridge (`{}` lists what was)",
+                manifest::NAME
+            ),
+            "choose another folder with `--out`, or move the file away",
+        )
+    })
+}
+
+/// Keeps other runs from the folder while its list is read and written: two that end at once would each lose what the other listed. A system
+/// that can't lock a folder goes without.
+fn hold(folder: &Path) -> Option<File> {
+    let folder = File::open(folder).ok()?;
+    folder.lock().ok()?;
+    Some(folder)
 }
 
 /// Whether two files hold the same bytes.

@@ -47,13 +47,8 @@ impl Answer for Sensed {
 /// Every fault of the job and of the files it names.
 pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
-        work.stage("candidates", |w| of_candidates(w, job))?
-    } else {
-        prepare(&mut work, job)?
-    };
+    let prepared = prepared(&mut work, job)?;
     let s = &prepared.sensitivity;
-    work.findings.extend(check_separability(s));
     let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &loads).into_iter().map(|u| u.name);
     let answer = Sensed {
@@ -66,6 +61,21 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
         job: job.clone(),
     };
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// S of a job's gauges, or of its candidates where it has none; whether it tells the loads apart goes to the work.
+///
+/// # Errors
+/// Every fault of the job and of the files it names.
+pub(super) fn prepared(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
+        work.stage("candidates", |w| of_candidates(w, job))?
+    } else {
+        prepare(work, job)?
+    };
+    work.findings
+        .extend(check_separability(&prepared.sensitivity));
+    Ok(prepared)
 }
 
 /// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).

@@ -39,6 +39,8 @@ pub fn short(x: f64) -> String {
     let a = x.abs();
     if x == 0.0 {
         "0".into()
+    } else if x.is_nan() {
+        "-".into()
     } else if (1e-3..1e6).contains(&a) {
         let digits = (3 - a.log10().floor() as i32).clamp(0, 6) as usize;
         let s = format!("{x:.digits$}");

@@ -3,17 +3,17 @@
 use super::progress::Terminal;
 use super::voice::Voice;
 use super::{CommonArguments, InitArguments};
-use crate::app::check::check;
+use crate::app::check::{Checked, check};
 use crate::app::context::{Context, Disk};
 use crate::app::fault::{Fault, Faults};
 use crate::app::init::{init, init_for};
 use crate::app::job::Job;
 use crate::app::outcome::{Answer, Findings, Outcome, Seconds};
-use crate::app::output::Output;
+use crate::app::output::{Output, left_by_others};
 use crate::app::recover::{Recovered, recover_into};
 use crate::app::store::Folder;
 use crate::finding::Severity;
-use crate::report::command::{RecordFolder, Report, finish, save, unsaved};
+use crate::report::command::{RecordFolder, Report, check_folder, finish, save, unsaved};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -34,6 +34,8 @@ struct Said<'a> {
     notes: &'a [String],
     seconds: &'a Seconds,
     folder: Option<&'a Path>,
+    /// What other commands left in it.
+    beside: Option<String>,
     faults: &'a [Fault],
 }
 
@@ -103,6 +105,7 @@ impl Run {
         Outcome<A>: Report,
     {
         let done = self.pooled(|cx| {
+            check_folder::<A>(folder)?;
             let outcome = ask(cx)?;
             let json = save(&outcome, folder)?;
             Ok((outcome, json))
@@ -113,7 +116,10 @@ impl Run {
     /// Recovers the loads of a job into `--out`, else `<job name>.out` beside the job; those of a record are written as they come.
     pub fn recover(&self, path: &Path) -> ExitCode {
         let folder = self.folder(path);
-        let done = self.pooled(|cx| recover_and_save(&Job::read(path, cx.files)?, cx, &folder));
+        let done = self.pooled(|cx| {
+            check_folder::<Recovered>(&folder)?;
+            recover_and_save(&Job::read(path, cx.files)?, cx, &folder)
+        });
         self.told(done, Some(&folder))
     }
 
@@ -121,6 +127,7 @@ impl Run {
     pub fn check(&self, files: &[PathBuf]) -> ExitCode {
         let folder = self.common.out.as_deref();
         let done = self.pooled(|cx| {
+            folder.map_or(Ok(()), check_folder::<Checked>)?;
             let outcome = check(files, cx)?;
             let json = match folder {
                 Some(folder) => save(&outcome, folder)?,
@@ -167,6 +174,7 @@ impl Run {
         Outcome<A>: Report,
     {
         let done = self.pooled(|cx| {
+            out.map_or(Ok(()), check_folder::<A>)?;
             let outcome = ask(cx)?;
             let json = match out {
                 Some(folder) => save(&outcome, folder)?,
@@ -208,7 +216,11 @@ impl Run {
     }
 
     /// Says an outcome whose files are in `folder`, or its faults.
-    fn told<A>(&self, done: Result<(Outcome<A>, String), Faults>, folder: Option<&Path>) -> ExitCode
+    fn told<A: Answer>(
+        &self,
+        done: Result<(Outcome<A>, String), Faults>,
+        folder: Option<&Path>,
+    ) -> ExitCode
     where
         Outcome<A>: Report,
     {
@@ -216,7 +228,7 @@ impl Run {
     }
 
     /// The same for an outcome that may hold faults.
-    fn told_with<A>(
+    fn told_with<A: Answer>(
         &self,
         done: Result<(Outcome<A>, String), Faults>,
         folder: Option<&Path>,
@@ -233,6 +245,7 @@ impl Run {
                 notes: &outcome.notes,
                 seconds: &outcome.seconds,
                 folder,
+                beside: folder.and_then(|f| left_by_others(f, A::COMMAND)),
                 faults: faults(&outcome.answer),
             }),
             Err(faults) => refuse(&faults, &self.common),
@@ -245,7 +258,8 @@ impl Run {
         voice.findings(said.findings);
         let notes = said.notes.iter().map(|note| format!("note: {note}"));
         let written = said.folder.map(|f| format!("written to `{}`", f.display()));
-        let lines: Vec<String> = notes.chain(written).collect();
+        let beside = said.beside.as_ref().map(|b| format!("note: {b}"));
+        let lines: Vec<String> = notes.chain(beside).chain(written).collect();
         voice.notes(lines.iter().map(String::as_str));
         voice.seconds(said.seconds);
         if !said.faults.is_empty() {

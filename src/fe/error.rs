@@ -1,5 +1,6 @@
 //! Why a model can't be solved.
 
+use super::load_case::Relief;
 use nastran::place::Place;
 use std::fmt;
 
@@ -62,6 +63,10 @@ pub enum FeError {
         count: usize,
         /// In words: parts that are not joined to the rest.
         parts: Vec<String>,
+        /// SPC set that holds the structure; `None`: none is selected.
+        spc: Option<u32>,
+        /// What balances loads that no support takes.
+        relief: Relief,
     },
     /// A load acts on a dof that no element holds.
     LoadOnNothing {
@@ -168,7 +173,15 @@ impl FeError {
                 ),
                 "break the circle",
             ),
-            Self::Mechanism { dofs, count, parts } => mechanism_faults(dofs, *count, parts),
+            Self::Mechanism {
+                dofs,
+                count,
+                parts,
+                spc,
+                relief,
+            } => std::iter::once(mechanism(dofs, *count, (*spc, *relief)))
+                .chain(mechanism_faults(dofs, parts))
+                .collect(),
             Self::LoadOnNothing {
                 grid,
                 dof,
@@ -275,8 +288,53 @@ fn load_on_nothing(
     }]
 }
 
+/// What holds the structure, and the dofs that move all the same.
+fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> Refusal {
+    let (held, remedy) = match support {
+        (Some(set), Relief::None) => (
+            format!("SPC set {set} holds the structure"),
+            "hold these dofs in the set, connect what hangs there, or name the set that holds it",
+        ),
+        (Some(set), _) => (
+            format!("SPC set {set} holds the structure, inertia balances what it leaves free"),
+            "hold these dofs in the set, or connect what hangs there",
+        ),
+        (None, Relief::None) => (
+            "no SPC set is selected, nor inertia relief".to_owned(),
+            "select the SPC set that holds the structure (SPC = .. in case control), or give PARAM,INREL,-2",
+        ),
+        (None, _) => (
+            "no SPC set is selected, inertia balances the structure as a whole".to_owned(),
+            "connect what hangs there, or select the SPC set that holds it",
+        ),
+    };
+    let named: Vec<String> = dofs
+        .iter()
+        .map(|d| format!("grid {} dof {}", d.grid, d.dof))
+        .collect();
+    let more = match count.saturating_sub(dofs.len()) {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    let motions = match count {
+        1 => "a motion is".to_owned(),
+        n => format!("{n} motions are"),
+    };
+    Refusal {
+        card: support
+            .0
+            .map_or("SPC".to_owned(), |set| format!("SPC {set}")),
+        at: Place::default(),
+        reason: format!(
+            "{held}, and {motions} left that nothing resists, largest at {}{more}",
+            named.join(", ")
+        ),
+        remedy: remedy.to_owned(),
+    }
+}
+
 /// One fault a loose dof and a loose part.
-fn mechanism_faults(dofs: &[FreeDof], count: usize, parts: &[String]) -> Vec<Refusal> {
+fn mechanism_faults(dofs: &[FreeDof], parts: &[String]) -> Vec<Refusal> {
     let mut list: Vec<Refusal> = dofs
         .iter()
         .map(|d| Refusal {
@@ -292,14 +350,6 @@ fn mechanism_faults(dofs: &[FreeDof], count: usize, parts: &[String]) -> Vec<Ref
         reason: p.clone(),
         remedy: "join the part to the structure (RBE2, RBE3, shared grids) or delete it".to_owned(),
     }));
-    if count > dofs.len() {
-        list.push(Refusal {
-            card: "model".to_owned(),
-            at: Place::default(),
-            reason: format!("{count} dofs in all are held by nothing"),
-            remedy: "the first are listed".to_owned(),
-        });
-    }
     list
 }
 

@@ -27,6 +27,8 @@ pub(super) struct System {
     /// The free rigid motions, where inertia balances the loads.
     pub(super) body: Option<RigidBody>,
     weak: Vec<Weak>,
+    /// SPC set, and what balances loads that it does not take.
+    support: (Option<u32>, Relief),
 }
 
 impl System {
@@ -45,6 +47,7 @@ impl System {
         findings: &mut Vec<Finding>,
     ) -> Result<Self, FeError> {
         let model = prepared.model;
+        let support = (sets.0, relief);
         let reduction = reduce(model, &prepared.axes, sets)?;
         let mut assembled = assemble(prepared, &reduction)?;
         let body = body(prepared, mass, &reduction, relief)?;
@@ -96,6 +99,7 @@ impl System {
             stiffness,
             body,
             weak,
+            support,
         })
     }
 
@@ -140,13 +144,61 @@ impl System {
             return Ok(factor);
         }
         let dofs = self.loose_dofs(prepared, mass, &factor);
-        let mechanism = mechanism(model, &dofs, &self.numbering, &self.graph);
+        let mechanism = self.mechanism(model, &dofs);
         if negative.is_empty() {
             return Err(mechanism);
         }
         Err(FeError::Refused(
             negative.into_iter().chain(mechanism.faults()).collect(),
         ))
+    }
+
+    /// The dofs that nothing holds, and parts that are not joined to the rest.
+    fn mechanism(&self, model: &Model, lost: &[(usize, usize)]) -> FeError {
+        const SHOWN: usize = 8;
+        let dofs = lost
+            .iter()
+            .take(SHOWN)
+            .map(|&(g, dof)| {
+                let grid = &model.grids[g];
+                FreeDof {
+                    grid: grid.id,
+                    dof: dof as u8 + 1,
+                    hangs: what_hangs(model, GridIx(g as u32)),
+                    at: grid.at,
+                }
+            })
+            .collect();
+        let (of, count) = self.graph.components();
+        let mut sizes = vec![0_usize; count];
+        of.iter().for_each(|c| sizes[*c as usize] += 1);
+        let main = sizes.iter().copied().max().unwrap_or(0);
+        let mut parts = Vec::new();
+        for (c, size) in sizes
+            .iter()
+            .enumerate()
+            .filter(|(_, s)| count > 1 && **s < main)
+            .take(SHOWN)
+        {
+            let ids: Vec<String> = of
+                .iter()
+                .zip(&self.numbering.grid)
+                .filter(|(o, _)| **o as usize == c)
+                .take(3)
+                .map(|(_, g)| model.grids[*g as usize].id.to_string())
+                .collect();
+            parts.push(format!(
+                "a part of {size} grids (grid {} ..) is not joined to the rest",
+                ids.join(", ")
+            ));
+        }
+        FeError::Mechanism {
+            dofs,
+            count: lost.len(),
+            parts,
+            spc: self.support.0,
+            relief: self.support.1,
+        }
     }
 
     /// Grid and dof (0 to 5) that move most in each mechanism.
@@ -429,55 +481,5 @@ fn moves_most(u: &[[f64; 6]], size: f64) -> Option<(usize, usize)> {
         translation.1
     } else {
         rotation.1
-    }
-}
-
-fn mechanism(
-    model: &Model,
-    lost: &[(usize, usize)],
-    numbering: &Numbering,
-    graph: &BlockGraph,
-) -> FeError {
-    const SHOWN: usize = 8;
-    let dofs = lost
-        .iter()
-        .take(SHOWN)
-        .map(|&(g, dof)| {
-            let grid = &model.grids[g];
-            FreeDof {
-                grid: grid.id,
-                dof: dof as u8 + 1,
-                hangs: what_hangs(model, GridIx(g as u32)),
-                at: grid.at,
-            }
-        })
-        .collect();
-    let (of, count) = graph.components();
-    let mut sizes = vec![0_usize; count];
-    of.iter().for_each(|c| sizes[*c as usize] += 1);
-    let main = sizes.iter().copied().max().unwrap_or(0);
-    let mut parts = Vec::new();
-    for (c, size) in sizes
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| count > 1 && **s < main)
-        .take(SHOWN)
-    {
-        let ids: Vec<String> = of
-            .iter()
-            .zip(&numbering.grid)
-            .filter(|(o, _)| **o as usize == c)
-            .take(3)
-            .map(|(_, g)| model.grids[*g as usize].id.to_string())
-            .collect();
-        parts.push(format!(
-            "a part of {size} grids (grid {} ..) is not joined to the rest",
-            ids.join(", ")
-        ));
-    }
-    FeError::Mechanism {
-        dofs,
-        count: lost.len(),
-        parts,
     }
 }

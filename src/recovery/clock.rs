@@ -19,15 +19,16 @@ pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
     let mut out = Vec::new();
     if let Evenness::Resampled { largest, .. } = clock.evenness {
         let rate = clock.rate_hz / second;
+        let differ = match clock.change {
+            Some(change) => change.words(second),
+            None => format!("steps of time differ by up to {:.0} %", 100.0 * largest),
+        };
         out.push(
             Finding::new(
                 Severity::Warning,
                 "record-resampled",
                 subject,
-                format!(
-                    "steps of time differ by up to {:.0} %: samples are interpolated to {rate:.6} Hz",
-                    100.0 * largest
-                ),
+                format!("{differ}: samples are interpolated to {rate:.6} Hz"),
                 "record with a steady clock where the loads' peaks matter",
             )
             .with_numbers(largest, EVEN),

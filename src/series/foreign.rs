@@ -58,6 +58,12 @@ pub fn read_foreign(
 
 /// Refuses a record whose samples are not the stored ones, all of them.
 pub(super) fn check_even(record: &Record) -> Result<(), SeriesError> {
+    if let Some(change) = record.clock.change {
+        return Err(SeriesError::Broken {
+            wrong: change.words(1.0),
+            remedy: "resample the file to one rate, or cut it there",
+        });
+    }
     let expected_s = 1.0 / record.clock.rate_hz;
     let at = |row: usize, found_s: f64| {
         Err(SeriesError::UnevenTime {

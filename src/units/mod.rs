@@ -12,7 +12,7 @@ mod unit;
 #[cfg(test)]
 mod tests;
 
-pub use number::number;
+pub use number::{fixed, number};
 pub use plausible::*;
 pub use report::*;
 pub use strain::microstrain_in;

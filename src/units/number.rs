@@ -1,7 +1,13 @@
 //! Numbers as a reader wants them.
 
-/// Four significant digits.
+/// What stands where a number is not known.
+const UNKNOWN: &str = "-";
+
+/// Four significant digits; a dash where it is not known.
 pub fn number(x: f64) -> String {
+    if x.is_nan() {
+        return UNKNOWN.into();
+    }
     if x == 0.0 {
         return "0".into();
     }
@@ -13,5 +19,13 @@ pub fn number(x: f64) -> String {
         format!("{x:.*}", (3 - digits).max(0) as usize)
     } else {
         format!("{x:.3e}")
+    }
+}
+
+/// So many digits after the point; a dash where it is not known or has no end.
+pub fn fixed(x: f64, digits: usize) -> String {
+    match x.is_finite() {
+        true => format!("{x:.digits$}"),
+        false => UNKNOWN.into(),
     }
 }

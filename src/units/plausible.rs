@@ -25,7 +25,8 @@ pub fn largest_size(quantity: Option<Quantity>) -> f64 {
 /// Findings where PARAM,UNITSYS, Young's moduli or densities (id, value; densities times WTMASS) contradict the declared system.
 ///
 /// Dummy materials exist in honest decks: some implausible values are a warning, all of them an error; for densities still a warning,
-/// because a common factor of all masses leaves the strain of a balanced structure unchanged.
+/// because a common factor of all masses leaves the strain of a balanced structure unchanged, unless modulus and density are both those of a
+/// metal in another system.
 pub fn check_units(
     system: UnitSystem,
     unitsys: Option<&str>,
@@ -64,18 +65,80 @@ pub fn check_units(
         Severity::Error,
         system,
     ));
-    let density = system.mass_kg() / system.length_m().powi(3);
-    out.extend(implausible(
+    // Where the deck says which system it is in, its densities are wrong, not its units.
+    let is_said = unitsys.and_then(UnitSystem::from_unitsys) == Some(system);
+    let meant = metal_elsewhere(system, moduli, densities).filter(|_| !is_said);
+    let density = implausible(
         "density",
         "kg/m3",
         "units-density",
         densities,
-        density,
+        density_si(system),
         DENSITY_LIMITS,
-        Severity::Warning,
+        match meant {
+            Some(_) => Severity::Error,
+            None => Severity::Warning,
+        },
         system,
-    ));
+    );
+    out.extend(density.map(|f| match meant {
+        Some(other) if f.severity == Severity::Error => named_elsewhere(f, other),
+        _ => f,
+    }));
     out
+}
+
+/// kg/m^3 in a unit of density of a system.
+fn density_si(system: UnitSystem) -> f64 {
+    system.mass_kg() / system.length_m().powi(3)
+}
+
+/// How far a modulus and a density, SI, are from those of a metal, 100 GPa and 5,000 kg/m^3: the sum of the sizes of their logarithms.
+fn from_metal(e: f64, rho: Option<f64>) -> f64 {
+    let from = |x: f64, usual: f64| (x / usual).ln().abs();
+    from(e, 100e9) + rho.map_or(0.0, |r| from(r, 5000.0))
+}
+
+/// The middle of the positive values.
+fn typical(values: &[(u32, f64)]) -> Option<f64> {
+    let mut v: Vec<f64> = values.iter().map(|v| v.1).filter(|x| *x > 0.0).collect();
+    v.sort_by(f64::total_cmp);
+    v.get(v.len() / 2).copied()
+}
+
+/// The other system in which the typical modulus and density are both those of a metal, where they are of none in `system`.
+fn metal_elsewhere(
+    system: UnitSystem,
+    moduli: &[(u32, f64)],
+    densities: &[(u32, f64)],
+) -> Option<UnitSystem> {
+    /// Magnesium (45 GPa, 1,800 kg/m^3) is 1.8 from it, tungsten (400 GPa, 19,300 kg/m^3) 2.7; a metal in the units of another system is 5.8 and
+    /// more from it.
+    const METALS: f64 = 3.0;
+    let (e, rho) = (typical(moduli)?, typical(densities)?);
+    let distance =
+        |s: UnitSystem| from_metal(e * s.si(Quantity::Stress), Some(rho * density_si(s)));
+    if distance(system) <= METALS {
+        return None;
+    }
+    let mut others = UnitSystem::ALL.into_iter().filter(|s| *s != system);
+    others.find(|s| distance(*s) <= METALS)
+}
+
+/// The finding with the system in which the deck is written by its looks.
+fn named_elsewhere(f: Finding, other: UnitSystem) -> Finding {
+    Finding {
+        message: format!(
+            "{}; in `{}` modulus and density are both those of a metal",
+            f.message,
+            other.name()
+        ),
+        remedy: format!(
+            "write units = \"{}\" in the job if the deck is in it, else correct the densities of the deck",
+            other.name()
+        ),
+        ..f
+    }
 }
 
 #[allow(clippy::too_many_arguments)]
@@ -145,17 +208,11 @@ pub fn likely_system(
     if let Some(system) = unitsys.and_then(UnitSystem::from_unitsys) {
         return Some(system);
     }
-    let typical = |values: &[(u32, f64)]| {
-        let mut v: Vec<f64> = values.iter().map(|v| v.1).filter(|x| *x > 0.0).collect();
-        v.sort_by(f64::total_cmp);
-        v.get(v.len() / 2).copied()
-    };
     let e = typical(moduli)?;
     let rho = typical(densities);
     let distance = |s: &UnitSystem| {
-        let density = s.mass_kg() / s.length_m().powi(3);
-        let from = |x: f64, usual: f64| (x / usual).ln().abs();
-        from(e * s.si(Quantity::Stress), 100e9) + rho.map_or(0.0, |r| from(r * density, 5000.0))
+        let rho = rho.map(|r| r * density_si(*s));
+        from_metal(e * s.si(Quantity::Stress), rho)
     };
     let accepted = |s: &UnitSystem| {
         let found = check_units(*s, None, moduli, densities);

@@ -51,6 +51,46 @@ fn steel_is_plausible_in_its_own_units_and_only_there() {
 }
 
 #[test]
+fn a_number_that_is_not_known_is_a_dash() {
+    assert_eq!(
+        (number(f64::NAN), fixed(f64::NAN, 2)),
+        ("-".into(), "-".into())
+    );
+    assert_eq!(
+        (number(f64::INFINITY), fixed(f64::INFINITY, 2)),
+        ("∞".into(), "-".into())
+    );
+    assert_eq!(
+        (number(0.5), fixed(0.5, 2)),
+        ("0.5000".into(), "0.50".into())
+    );
+}
+
+/// Of two wrong systems the modulus alone is that of some material: 2.1e5 psi is a plastic, 3e7 kPa a light metal.
+#[test]
+fn densities_of_no_material_are_an_error_where_all_is_a_metal_in_another_system() {
+    let judged = |declared, unitsys, e, rho| {
+        let found = check_units(declared, unitsys, &[(1, e)], &[(1, rho)]);
+        let of_density = found.iter().find(|f| f.code == "units-density").unwrap();
+        (of_density.severity, of_density.remedy.clone())
+    };
+    use crate::finding::Severity::{Error, Warning};
+    for (declared, right, e, rho) in [
+        (UnitSystem::InLbfS, "mm-t-s", 210e3, 7.85e-9),
+        (UnitSystem::InLbfS, "mm-t-s", 70e3, 2.7e-9),
+        (UnitSystem::MmKgS, "in-lbf-s", 30.46e6, 7.345e-4),
+    ] {
+        let (severity, remedy) = judged(declared, None, e, rho);
+        assert_eq!(severity, Error, "{right}");
+        assert!(remedy.contains(right), "{remedy}");
+    }
+    // The weight of steel in place of its density, and a deck that says which system it is in.
+    assert_eq!(judged(UnitSystem::InLbfS, None, 30.46e6, 0.2836).0, Warning);
+    let said = judged(UnitSystem::InLbfS, Some("IN-LBF"), 210e3, 7.85e-9);
+    assert_eq!(said.0, Warning);
+}
+
+#[test]
 fn a_contradiction_with_unitsys_is_an_error() {
     let found = check_units(UnitSystem::MmTS, Some("MN-MM"), &[], &[]);
     assert_eq!(found.len(), 1);

@@ -404,3 +404,110 @@ fn fleet_says_of_a_gauge_without_a_row_of_s_what_recover_says() {
     let said = String::from_utf8_lossy(&said);
     assert!(said.contains("strain-without-gauge"), "{said}");
 }
+
+#[test]
+fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say() {
+    let folder = copied("check_deck", "frame");
+    // A bar that hangs on the carrier by a hinge.
+    let hinge = "GRID,990,,-300.,-400.,0.\nPBAR,990,1,10.,100.,100.,200.\n\
+                 CBAR,990,990,1,990,0.,0.,1.,\n,456\nENDDATA";
+    let of_deck: [(Damage, Ends); 2] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),
+        (
+            ("a mechanism", &|t| {
+                t.replacen("ENDDATA", hinge, 1).into_bytes()
+            }),
+            Ends::Fault("no SPC set is selected, inertia balances the structure as a whole"),
+        ),
+    ];
+    agree(
+        &folder,
+        "recover.toml",
+        "sensitivity",
+        "frame.bdf",
+        &of_deck,
+    );
+    agree(&folder, "place.toml", "sensitivity", "frame.bdf", &of_deck);
+    let text = std::fs::read_to_string(folder.join("place.toml")).unwrap();
+    let held = text.replacen("support = \"free\"", "support = 7", 1);
+    std::fs::write(folder.join("held.toml"), held).unwrap();
+    // Grid 901 depends on others.
+    let all = "SPC1,7,123456,1,THRU,900\nENDDATA";
+    let of_support: [(Damage, Ends); 1] = [(
+        ("every dof held", &|t| {
+            t.replacen("ENDDATA", all, 1).into_bytes()
+        }),
+        Ends::Error("load-without-strain"),
+    )];
+    agree(
+        &folder,
+        "held.toml",
+        "sensitivity",
+        "frame.bdf",
+        &of_support,
+    );
+    let of_job: [(Damage, Ends); 1] = [(
+        ("a property without shells", &|t| {
+            t.replacen("properties = [1, 2]", "properties = [77]", 1)
+                .into_bytes()
+        }),
+        Ends::Fault("no shell with strain in every load's subcase"),
+    )];
+    agree(&folder, "place.toml", "place", "place.toml", &of_job);
+}
+
+/// The readings of a table, a row a run, changed: row (the header is 0), column, field.
+fn readings(text: &str, change: impl Fn(usize, usize, &str) -> String) -> Vec<u8> {
+    let lines = text.lines().enumerate().map(|(i, line)| {
+        let fields = line.split(',').enumerate().map(|(c, f)| change(i, c, f));
+        fields.collect::<Vec<_>>().join(",") + "\n"
+    });
+    lines.collect::<String>().into_bytes()
+}
+
+#[test]
+fn of_readings_that_are_no_loads_check_says_what_recover_says() {
+    let folder = copied("check_readings", "frame");
+    let keep = |f: &str| f.to_owned();
+    let damages: [(Damage, Ends); 5] = [
+        (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),
+        (
+            ("a spike", &|t| {
+                readings(t, |i, c, f| match (i, c) {
+                    (3, 4) => (f.parse::<f64>().unwrap() * 10.0).to_string(),
+                    _ => keep(f),
+                })
+            }),
+            Ends::Error("gauge-suspect"),
+        ),
+        (
+            ("stuck", &|t| {
+                readings(t, |i, c, f| match (i, c) {
+                    (1.., 5) => "12.34".to_owned(),
+                    _ => keep(f),
+                })
+            }),
+            Ends::Error("gauge-suspect"),
+        ),
+        (
+            ("dead", &|t| {
+                readings(t, |i, c, f| match (i, c) {
+                    (1.., 5) => "0".to_owned(),
+                    _ => keep(f),
+                })
+            }),
+            Ends::Error("gauge-dead"),
+        ),
+        (
+            ("swapped", &|t| {
+                readings(t, |_, _, f| match f {
+                    "P01" => "P02".to_owned(),
+                    "P02" => "P01".to_owned(),
+                    _ => keep(f),
+                })
+            }),
+            Ends::Error("strain-not-explained"),
+        ),
+    ];
+    agree(&folder, "recover.toml", "recover", "strain.csv", &damages);
+}

@@ -46,6 +46,90 @@ fn no_output_is_written_over_what_the_command_has_read() {
 }
 
 #[test]
+fn a_file_that_no_command_wrote_is_refused_before_anything_is_computed_and_stays() {
+    let dir = copied("own_files", "frame");
+    let mine = "a table of my own";
+    for (command, name) in [
+        ("sensitivity", "sensitivity.csv"),
+        ("place", "gluing_sheet.md"),
+        ("recover", "report.html"),
+        ("solve", "results.op2"),
+        ("check", "result.json"),
+    ] {
+        let out = dir.join("out");
+        let _ = std::fs::remove_dir_all(&out);
+        std::fs::create_dir_all(&out).unwrap();
+        std::fs::write(out.join(name), mine).unwrap();
+        let (code, said) = call(&dir, &[command, "recover.toml", "--out", "out"]);
+        assert_eq!(code, 2, "{command}: {said}");
+        assert!(said.contains(name) && said.contains("--out"), "{said}");
+        assert_eq!(std::fs::read_to_string(out.join(name)).unwrap(), mine);
+        assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1, "{command}");
+    }
+    // Names that depend on the answer are asked for when it is there.
+    let out = dir.join("late");
+    std::fs::create_dir_all(&out).unwrap();
+    std::fs::write(out.join("loads.xlsx"), mine).unwrap();
+    let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "late"]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.contains("loads.xlsx"), "{said}");
+    assert_eq!(
+        std::fs::read_to_string(out.join("loads.xlsx")).unwrap(),
+        mine
+    );
+    assert_eq!(std::fs::read_dir(&out).unwrap().count(), 1);
+    // The story's own jobs are no better.
+    let (code, said) = call(&dir, &["demo", "."]);
+    assert_eq!(code, 2, "{said}");
+    let place = std::fs::read_to_string(dir.join("place.toml")).unwrap();
+    assert!(place.contains("Three-wheeled carrier"));
+}
+
+#[test]
+fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_said() {
+    let dir = copied("own_again", "frame");
+    let files = |out: &str| -> Vec<String> {
+        let entries = std::fs::read_dir(dir.join(out)).unwrap();
+        let mut names: Vec<String> = entries
+            .map(|e| e.unwrap().file_name().to_string_lossy().into_owned())
+            .collect();
+        names.sort();
+        names
+    };
+    for _ in 0..2 {
+        let (code, said) = call(&dir, &["sensitivity", "recover.toml"]);
+        assert_eq!(code, 0, "{said}");
+    }
+    let before = std::fs::read(dir.join("recover.out/sensitivity.csv")).unwrap();
+    let (code, said) = call(&dir, &["recover", "recover.toml"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(
+        said.contains("also holds files of `sensitivity` (sensitivity.csv)"),
+        "{said}"
+    );
+    let after = std::fs::read(dir.join("recover.out/sensitivity.csv")).unwrap();
+    assert_eq!(before, after);
+    let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "alone"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(!said.contains("also holds"), "{said}");
+    // Two at once lose nothing of what the other lists.
+    let run = |command: &str| {
+        Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args([command, "recover.toml", "--no-cache", "--out", "both"])
+            .current_dir(&dir)
+            .spawn()
+            .unwrap()
+    };
+    for mut child in ["sensitivity", "recover", "cases"].map(run) {
+        assert_eq!(child.wait().unwrap().code(), Some(0));
+    }
+    let list = std::fs::read_to_string(dir.join("both/.strainbridge")).unwrap();
+    for name in files("both").iter().filter(|n| *n != ".strainbridge") {
+        assert!(list.contains(&format!("\t{name}\n")), "{name} in {list}");
+    }
+}
+
+#[test]
 fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
     let dir = copied("two_commands", "frame");
     for command in ["sensitivity", "recover"] {
@@ -96,9 +180,114 @@ fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it(
     let dir = copied("cut_runs", "frame");
     let strain = std::fs::read(dir.join("strain.csv")).unwrap();
     std::fs::write(dir.join("strain.csv"), &strain[..strain.len() - 2]).unwrap();
+    // All numbers of the table have two digits after the point, and the last has one.
+    for command in ["recover", "check"] {
+        let (code, said) = call(&dir, &[command, "recover.toml"]);
+        assert_eq!(code, 1, "{said}");
+        assert!(said.contains("error [table-may-be-cut]"), "{said}");
+    }
+    // Numbers as people write them tell nothing.
+    let text = String::from_utf8(strain).unwrap();
+    let (header, rows) = text.split_once('\n').unwrap();
+    let written = format!("{header}\n{}", rows.replace("0,", ","));
+    std::fs::write(dir.join("strain.csv"), &written[..written.len() - 2]).unwrap();
     let (code, said) = call(&dir, &["recover", "recover.toml"]);
     assert_eq!(code, 0, "{said}");
-    assert!(said.contains("table-may-be-cut"), "{said}");
+    assert!(said.contains("warning [table-may-be-cut]"), "{said}");
+}
+
+#[test]
+fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
+    let dir = copied("rate_changes", "fleet");
+    let samples = |out: &str| -> u64 {
+        let text = std::fs::read_to_string(dir.join(out).join("result.json")).unwrap();
+        let result: Value = serde_json::from_str(&text).unwrap();
+        result["samples"].as_u64().unwrap()
+    };
+    let (code, said) = call(&dir, &["recover", "fleet.toml", "--out", "whole"]);
+    assert_eq!(code, 0, "{said}");
+    // 20 Hz; every second sample of the second half is left out, which ends with the last one.
+    let half = (samples("whole") / 2) as usize;
+    edit(&dir, "A_2026-05-01.csv", |t| {
+        let lines: Vec<&str> = t.lines().collect();
+        let last = lines.len() - 1;
+        let kept = lines.iter().enumerate();
+        let kept = kept.filter(|(i, _)| *i <= half || (last - i).is_multiple_of(2));
+        kept.map(|(_, l)| format!("{l}\n")).collect()
+    });
+    let (_, said) = call(&dir, &["recover", "fleet.toml", "--out", "changed"]);
+    assert!(said.contains("the sample rate changes at"), "{said}");
+    assert!(said.contains("from 20 Hz to 10 Hz"), "{said}");
+    assert!(!said.contains("record-gaps"), "{said}");
+    assert_eq!(samples("changed"), samples("whole"));
+}
+
+#[test]
+fn a_record_of_no_number_is_refused_without_one() {
+    let dir = copied("no_number", "fleet");
+    edit(&dir, "A_2026-05-01.csv", |t| {
+        let lines = t.lines().enumerate().map(|(i, line)| match i {
+            0 => format!("{line}\n"),
+            _ => {
+                let (time, rest) = line.split_once(',').unwrap();
+                let fields = rest.split(',').map(|_| ",1e300");
+                format!("{time}{}\n", fields.collect::<String>())
+            }
+        });
+        lines.collect()
+    });
+    let (code, said) = call(&dir, &["recover", "fleet.toml", "--out", "out"]);
+    assert_eq!(code, 1, "{said}");
+    for word in ["NaN", "inf "] {
+        assert!(!said.contains(word), "{said}");
+    }
+    // A run without a reading among others.
+    let dir = copied("no_reading", "frame");
+    edit(&dir, "strain.csv", |t| {
+        let lines = t.lines().map(|line| match line.split_once(',') {
+            Some(("R03", rest)) => {
+                let fields = rest.split(',').map(|_| ",1e300");
+                format!("R03{}\n", fields.collect::<String>())
+            }
+            _ => format!("{line}\n"),
+        });
+        lines.collect()
+    });
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["recover", "recover.toml", "--no-cache"])
+        .current_dir(&dir)
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stdout);
+    assert_eq!(done.status.code(), Some(1), "{said}");
+    assert!(said.contains("R03: N.FZ not known, "), "{said}");
+    assert!(!said.contains("NaN") && !said.contains("inf "), "{said}");
+}
+
+#[test]
+fn names_of_a_megabyte_and_columns_without_number_are_not_repeated_in_messages() {
+    let dir = copied("long_names", "frame");
+    let name = "n".repeat(1_000_000);
+    edit(&dir, "strain.csv", |t| t.replacen("P01", &name, 1));
+    for command in ["recover", "check"] {
+        let (_, said) = call(&dir, &[command, "recover.toml", "--out", "out"]);
+        assert!(said.contains("strain-without-gauge"), "{command}");
+        assert!(said.len() < 20_000, "{command}: {} bytes", said.len());
+    }
+    let dir = copied("many_columns", "frame");
+    edit(&dir, "strain.csv", |t| {
+        let lines = t.lines().enumerate().map(|(i, line)| {
+            let more = (0..20_000).map(|c| match i {
+                0 => format!(",unknown{c}"),
+                _ => ",0".to_owned(),
+            });
+            format!("{line}{}\n", more.collect::<String>())
+        });
+        lines.collect()
+    });
+    let (_, said) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
+    assert!(said.contains("and 19992 more"), "{said}");
+    assert!(said.len() < 20_000, "{} bytes", said.len());
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! A job: its own faults, the files it names, and what the commands read of them, by their own readers.
 
+use super::asked::ask;
 use super::checked::Checked;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::strain::stated_readings;
@@ -27,9 +28,9 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     };
     found.units = StatedUnits::of(job.units, &job.report_units);
     found.candidates = Some(job.candidates.clone());
+    let (decks, of_others) = (found.decks.len(), found.faults.len());
     files(work, &job, found, into);
     let mut faults = std::mem::take(&mut found.faults);
-    let before = std::mem::take(&mut work.findings);
     let s = job.sensitivity.as_ref().and_then(|_| {
         let read = given_as_asked(work, &job);
         kept(read, &mut faults)
@@ -59,14 +60,17 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     kept(respond::look(work, &job), &mut faults);
     kept(reconcile::look(work, &job), &mut faults);
     kept(calibrate::look(work, &job), &mut faults);
+    if faults.len() == of_others {
+        let deck = found.decks.get(decks).and_then(|d| d.model());
+        let grids = deck.map_or(0, |m| m.grids.len());
+        kept(ask(work, &job, grids), &mut faults);
+    }
     // Two commands say the same of one file.
     each_once(&mut faults, ToString::to_string);
     each_once(&mut work.findings, |f| {
         format!("{} {} {}", f.code, f.subject, f.message)
     });
     found.faults = faults;
-    let of_job = std::mem::replace(&mut work.findings, before);
-    work.findings.extend(of_job);
 }
 
 /// What was read; faults are added to the list.

@@ -1,8 +1,9 @@
 //! `check`: what is in the files, every fault, and whether deck and results belong together.
 //!
 //! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`] and [`results`] describe them; [`jobs`] follows a job to
-//! the files it names; [`together`] compares.
+//! the files it names, and [`asked`] asks what commands make of them; [`together`] compares.
 
+mod asked;
 mod checked;
 mod decks;
 mod jobs;

@@ -81,7 +81,9 @@ impl Kernel {
         };
         let irregular = clock::irregular("time", &record.clock, second);
         findings.extend(irregular.into_iter().map(DayFinding::from));
-        let cut = record.left_out().map(|_| may_be_cut("last line"));
+        let cut = record
+            .left_out()
+            .map(|_| may_be_cut("last line", Severity::Warning));
         findings.extend(cut.map(DayFinding::from));
         let mut r = self.prepared(record, &mut findings)?;
         let mut pass = self.pass(record, &r)?;

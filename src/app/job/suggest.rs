@@ -1,12 +1,20 @@
 //! The closest of a list of names, for messages about misspelt ones.
 
+use crate::finding::few;
+
+/// Characters of a word that may be misspelt; what is longer is no word.
+const WORD: usize = 200;
+
 /// The name closest to `word` by edit distance, where it is close enough to be meant (two letters, or a third of them).
 pub fn closest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let word_lower = word.to_lowercase();
     let n = word.chars().count();
     let limit = (n / 3).max(if n > 3 { 2 } else { 1 });
+    // Each letter too many is one of the distance.
+    let is_near = |name: &&str| n <= WORD && name.chars().count().abs_diff(n) <= limit;
     names
         .into_iter()
+        .filter(is_near)
         .map(|n| (edit_distance(&word_lower, &n.to_lowercase()), n))
         .filter(|(d, _)| *d <= limit)
         .min_by_key(|(d, _)| *d)
@@ -66,7 +74,7 @@ pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
         .collect();
     format!(
         "name the columns after the gauges: did you mean {}?",
-        list.join(", ")
+        few(&list)
     )
 }
 

@@ -30,6 +30,7 @@ pub use damage::LoadDamage;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
+use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
 pub(super) use task::{reference_strain, strain_without_gauge, zero_of};
 pub use trace::{Span, Spans};
@@ -69,17 +70,7 @@ pub fn recover_into(
     let mut work = Work::of_job(cx, job);
     let measured = task::measured_of(job)?;
     let prepared = prepare(&mut work, job)?;
-    work.findings
-        .extend(check_separability(&prepared.sensitivity.unconditioned()));
-    let task = task::task_of(&mut work, job, measured, &prepared)?;
-    work.findings.extend(task::changes(measured));
-    let bytes = work.inputs.read_named(job, &measured.strain)?;
-    let states = if reading::is_record(&bytes) {
-        let record = work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
-        States::Record(Box::new(record))
-    } else {
-        States::Runs(Box::new(runs::runs(&mut work, &task)?))
-    };
+    let states = recovered(&mut work, (job, measured), &prepared, sink)?;
     let answer = Recovered {
         conditioning: Conditioning::of(&prepared.sensitivity),
         states,
@@ -88,6 +79,42 @@ pub fn recover_into(
         job: job.clone(),
     };
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Loads of what was measured; those of a record go to `sink`.
+///
+/// # Errors
+/// Unreadable readings; those of `sink`.
+fn recovered(
+    work: &mut Work,
+    (job, measured): (&Job, &Measured),
+    prepared: &Prepared,
+    sink: &mut dyn RecordSink,
+) -> Result<States, Faults> {
+    work.findings
+        .extend(check_separability(&prepared.sensitivity.unconditioned()));
+    let task = task::task_of(work, job, measured, prepared)?;
+    work.findings.extend(task::changes(measured));
+    let bytes = work.inputs.read_named(job, &measured.strain)?;
+    Ok(if reading::is_record(&bytes) {
+        let record = work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
+        States::Record(Box::new(record))
+    } else {
+        States::Runs(Box::new(runs::runs(work, &task)?))
+    })
+}
+
+/// Recovers the loads for what is to be said of them alone: what `check` asks.
+///
+/// # Errors
+/// As [`recover_into`].
+pub(super) fn judged_alone(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<(), Faults> {
+    recovered(work, (job, measured), prepared, &mut Unheard).map(|_| ())
 }
 
 /// Readings and recovered loads of the job's static runs, for commands that go on from there.

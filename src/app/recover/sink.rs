@@ -44,6 +44,35 @@ pub trait Samples: Sync {
     fn read(&self, from: usize, to: usize, columns: &[usize], out: &mut Vec<f64>);
 }
 
+/// Takes the loads of a record and keeps none.
+pub(super) struct Unheard;
+
+impl RecordSink for Unheard {
+    fn begin(&mut self, _: &Arc<RecordHead>) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn take(&mut self, _: Vec<Block>) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn end(&mut self, _: u64) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault> {
+        Ok(Box::new(Self))
+    }
+}
+
+impl Samples for Unheard {
+    fn n_samples(&self) -> usize {
+        0
+    }
+
+    fn read(&self, _: usize, _: usize, _: &[usize], _: &mut Vec<f64>) {}
+}
+
 /// What is known of the loads of a record before the first of them.
 #[derive(Debug)]
 pub struct RecordHead {

@@ -10,7 +10,7 @@ use crate::app::strain::{Prepared, stated_errors};
 use crate::app::wheels::{floor_fault, wheels_of};
 use crate::app::work::Work;
 use crate::fe::floor::solve_standing;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::ErrorModel;
@@ -106,7 +106,7 @@ pub(super) fn columns_of(
         work.findings.push(Finding::new(
             Severity::Warning,
             "gauge-without-strain",
-            silent.join(", "),
+            few(&silent),
             format!("`{}`: gauges without a column are left out", named.given),
             remedy,
         ));
@@ -134,7 +134,7 @@ pub(in crate::app) fn strain_without_gauge(
         Finding::new(
             Severity::Warning,
             "strain-without-gauge",
-            unknown.join(", "),
+            few(&unknown),
             format!("{of_file}columns that belong to no gauge are left out"),
             "add the gauges, or drop the columns",
         )

@@ -25,6 +25,22 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+/// What the story writes for its commands to read is listed under this.
+const INPUTS: &str = "demo inputs";
+/// Their names.
+const INPUT_NAMES: [&str; 10] = [
+    "truck.bdf",
+    "solve.toml",
+    "place.toml",
+    "strain.csv",
+    "runs.csv",
+    "recover.toml",
+    "reconcile.toml",
+    "recover_again.toml",
+    "payload.toml",
+    "respond.toml",
+];
+
 /// Where the story goes if nobody says.
 pub(super) const FOLDER: &str = "strainbridge-demo";
 
@@ -138,6 +154,7 @@ fn planned(
 }
 
 fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
+    Output::check_free(folder, &INPUT_NAMES)?;
     std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
     let mut story: Vec<Chapter> = Vec::new();
     let gauges = planned(folder, work, &mut story)?;
@@ -245,9 +262,10 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {
-    let path = folder.join(name);
-    std::fs::write(&path, text).map_err(|e| unwritable(&path, &e))?;
-    Ok(path)
+    let mut out = Output::begin(folder)?;
+    out.write_bytes(name, text.as_bytes())?;
+    out.commit_beside(INPUTS)?;
+    Ok(folder.join(name))
 }
 
 fn unwritable(path: &Path, e: &std::io::Error) -> Fault {

@@ -24,6 +24,9 @@ const MASSES: [&str; 9] = [
 ];
 
 impl Report for Outcome<Ballasted> {
+    const FILES: &'static [&'static str] =
+        &["result.json", "report.html", "reactions.csv", "masses.csv"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let units = &self.job.report_units;
         let (force, mass, length) = (units.force.name, units.mass.name, units.length.name);

@@ -17,6 +17,15 @@ use std::fmt::Write as _;
 const GLUED: &str = "gauges_as_glued.csv";
 
 impl Report for Outcome<Calibrated> {
+    const FILES: &'static [&'static str] = &[
+        "result.json",
+        "report.html",
+        "sensitivity.csv",
+        "calibration.bin",
+        "calibrated.toml",
+        "left_out.csv",
+    ];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let s = &self.sensitivity;
         out.declare("sensitivity.csv", columns(&self.job, s));

@@ -13,6 +13,16 @@ use crate::units::number;
 use std::fmt::Write;
 
 impl Report for Outcome<Fleet> {
+    const FILES: &'static [&'static str] = &[
+        "result.json",
+        "report.html",
+        "fleet.csv",
+        "fleet_files.csv",
+        "rainflow.csv",
+        "levels.csv",
+        "from_to.csv",
+    ];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let unit = |c: &str, u: &str| (c.to_owned(), u.to_owned());
         out.declare(

@@ -21,6 +21,14 @@ use std::fmt::Write;
 const HALF_WIDTH: f64 = 1.96;
 
 impl Report for Outcome<Identified> {
+    const FILES: &'static [&'static str] = &[
+        "result.json",
+        "report.html",
+        "parameters.csv",
+        "loads.csv",
+        "restoring_force.csv",
+    ];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let (found, fitted) = (&self.found, &self.fitted);
         let mut write = |name: &str, text: String| out.write_bytes(name, text.as_bytes());

@@ -21,6 +21,8 @@ fn pieces(lines: &[&str]) -> Vec<Block> {
 }
 
 impl Report for Outcome<Proposal> {
+    const FILES: &'static [&'static str] = &["result.json"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         Ok(out.write_bytes(self.job, self.text.as_bytes())?)
     }

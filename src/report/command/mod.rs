@@ -39,6 +39,9 @@ use std::path::Path;
 
 /// An outcome that has files and words.
 pub trait Report {
+    /// Files that every outcome of its kind has: whether they would stand in place of a user's own is asked before anything is computed.
+    const FILES: &'static [&'static str] = &["result.json", "report.html"];
+
     /// Writes its tables and report, each table with the units of its columns.
     ///
     /// # Errors
@@ -50,6 +53,17 @@ pub trait Report {
 
     /// What a person reads of it on a terminal; lines end in line feeds.
     fn words(&self) -> String;
+}
+
+/// Refuses a folder where files of an outcome to come have the names of files that no command wrote.
+///
+/// # Errors
+/// A fault for each.
+pub fn check_folder<A>(folder: &Path) -> Result<(), Faults>
+where
+    Outcome<A>: Report,
+{
+    Output::check_free(folder, <Outcome<A> as Report>::FILES)
 }
 
 /// Writes an outcome into a folder, `result.json` last; nothing stands under its name before all is written. The text of `result.json`.

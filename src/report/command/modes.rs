@@ -53,6 +53,9 @@ const COLUMNS: [(&str, In); 12] = [
 ];
 
 impl Report for Outcome<Modes> {
+    const FILES: &'static [&'static str] =
+        &["result.json", "report.html", "modes.csv", "modes.op2"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let names = self.system.map(UnitNames::from_system);
         let plain = COLUMNS.map(|(c, u)| (c.to_owned(), u.unit(names.as_ref())));

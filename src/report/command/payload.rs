@@ -10,7 +10,7 @@ use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
 use crate::report::page::{Page, Paper, Section, figure_section, table_section};
 use crate::report::scene::{scene_of_job, scene_section};
-use crate::units::{MICROSTRAIN, number};
+use crate::units::{MICROSTRAIN, fixed, number};
 use std::fmt::Write;
 
 /// Columns of payload.csv with their quantity.
@@ -38,6 +38,9 @@ const BY_GAUGE: [(&str, &str); 6] = [
 ];
 
 impl Report for Outcome<Weighed> {
+    const FILES: &'static [&'static str] =
+        &["result.json", "report.html", "payload.csv", "by_gauge.csv"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let units = &self.job.report_units;
         let unit = |quantity: &'static str| match quantity {
@@ -92,13 +95,13 @@ impl Report for Outcome<Weighed> {
                 Some(why) => writeln!(text, "{}: refused: {why}", p.run),
                 None => writeln!(
                     text,
-                    "{}: {} ({} {}), at {:.3}, {:.3} {}",
+                    "{}: {} ({} {}), at {}, {} {}",
                     p.run,
                     with_interval(r, units.force.name),
                     number(plain(p.mass)),
                     units.mass.name,
-                    plain(p.position[0]),
-                    plain(p.position[1]),
+                    fixed(plain(p.position[0]), 3),
+                    fixed(plain(p.position[1]), 3),
                     units.length.name
                 ),
             };

@@ -18,6 +18,16 @@ use crate::report::strain::{
 use std::fmt::Write;
 
 impl Report for Outcome<Placed> {
+    const FILES: &'static [&'static str] = &[
+        "result.json",
+        "report.html",
+        "gauges.csv",
+        "sensitivity.csv",
+        "gluing_sheet.csv",
+        "gluing_sheet.md",
+        "gauges.vtu",
+    ];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let (s, model, job) = (&self.sensitivity, self.fields.model(), &self.job);
         let length = job.units.unit(crate::units::Quantity::Length).name;

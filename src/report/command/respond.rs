@@ -26,6 +26,14 @@ const MOST_WORDS: usize = 5;
 const MOST_POINTS: usize = 2000;
 
 impl Report for Outcome<Responded> {
+    const FILES: &'static [&'static str] = &[
+        "result.json",
+        "report.html",
+        "elements.csv",
+        "histories.csv",
+        "envelope.vtu",
+    ];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let Some(fields) = &self.prepared.fields else {
             return Ok(());

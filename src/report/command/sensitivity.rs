@@ -13,6 +13,8 @@ use crate::report::strain::{sensitivity_csv, sensitivity_page};
 use crate::sensitivity::Sensitivity;
 
 impl Report for Outcome<Sensed> {
+    const FILES: &'static [&'static str] = &["result.json", "report.html", "sensitivity.csv"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let s = &self.prepared.sensitivity;
         out.declare("sensitivity.csv", columns(&self.job, s));

@@ -15,6 +15,9 @@ use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
 use rayon::prelude::*;
 
 impl Report for Outcome<SolvedCases> {
+    const FILES: &'static [&'static str] =
+        &["result.json", "report.html", "results.op2", "results.vtu"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let (model, solution) = (&self.deck.model, &self.solution);
         let plan = planned_blocks(model, solution);

@@ -10,6 +10,8 @@ use crate::report::strain::strains_page;
 use crate::report::{strains_columns, write_strains};
 
 impl Report for Outcome<Strains> {
+    const FILES: &'static [&'static str] = &["result.json", "report.html", "strains.csv"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         out.declare("strains.csv", strains_columns());
         out.write("strains.csv", |mut w| {

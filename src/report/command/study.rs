@@ -14,6 +14,8 @@ use std::fmt::Write;
 const HALF_WIDTH: f64 = 1.96;
 
 impl Report for Outcome<Studied> {
+    const FILES: &'static [&'static str] = &["result.json", "report.html", "study.csv"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let loads = self.study.first().map_or(&[][..], |row| &row.loads);
         let mut columns: Vec<(String, &str)> = COLUMNS.map(|c| (c.to_owned(), "")).to_vec();

@@ -1,15 +1,11 @@
 //! The clock of a record: one pass over its times tells rate, span, gaps, and whether the steps are even.
 
 use super::reader::{Pick, RecordReader, Times};
-use super::span::{GAP, Gap, LISTED, Span, Walk, Wrong, span, typical_step};
+use super::span::{EVEN, Gap, LISTED, Scale, Span, Stretch, Walk, Wrong, span, typical_steps};
 use crate::series::error::SeriesError;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
-/// Largest departure of a step from the typical one that still counts as even. Of a sine with `m` samples a period, jitter `e` moves a
-/// reading by `2 pi e / m` of the amplitude at most, and linear interpolation between samples cuts off up to `(2 pi / m)^2 / 8`: below
-/// `e = pi / (4 m)`, .02 for 40 samples, the stored samples are nearer to the truth than interpolated ones.
-pub const EVEN: f64 = 0.02;
 /// Largest relative departure of the times' rate from the declared one.
 const RATE: f64 = 1e-3;
 /// Samples that gaps may add, for each sample there is, and beyond that as many as an hour at 1 kHz has. More is a wrong time.
@@ -32,6 +28,40 @@ pub enum Evenness {
     },
 }
 
+/// Where the logger's rate changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RateChange {
+    /// When, s.
+    pub at_s: f64,
+    /// Samples a second before and after.
+    pub rates_hz: [f64; 2],
+}
+
+impl RateChange {
+    /// When, and from what to what, in words; `second` is one of the times' unit, s.
+    pub fn words(&self, second: f64) -> String {
+        let rounded = |x: f64, parts: f64| (x * parts).round() / parts;
+        let [from, to] = self.rates_hz.map(|r| rounded(r / second, 1e4));
+        let at = rounded(self.at_s * second, 1e6);
+        format!("the sample rate changes at {at} s, from {from} Hz to {to} Hz")
+    }
+
+    /// From a stretch of another rate than the usual one, in a record that begins at `start_s`.
+    fn of(stretch: Stretch, start_s: f64, usual_s: f64) -> Self {
+        let (usual, other) = (1.0 / usual_s, 1.0 / stretch.step_s);
+        match stretch.from_s > start_s {
+            true => Self {
+                at_s: stretch.from_s,
+                rates_hz: [usual, other],
+            },
+            false => Self {
+                at_s: stretch.to_s,
+                rates_hz: [other, usual],
+            },
+        }
+    }
+}
+
 /// When samples were taken.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clock {
@@ -45,6 +75,8 @@ pub struct Clock {
     pub rows: usize,
     /// Even or resampled.
     pub evenness: Evenness,
+    /// The first change of rate: samples then stand at the fastest one, or between the two where these are less than a half apart.
+    pub change: Option<RateChange>,
     /// Samples missing in gaps.
     pub missing: usize,
     /// The first thousand gaps.
@@ -74,15 +106,15 @@ impl Clock {
 pub(super) struct Steps {
     /// A piece each.
     pub spans: Vec<Span>,
-    /// The typical step, s; infinite where there is none.
-    pub typical: f64,
+    /// What they are held against; infinite where there is one time alone.
+    pub scale: Scale,
 }
 
 impl Steps {
     /// Samples missing between two times that follow each other.
     pub(super) fn missing_between(&self, a: f64, b: f64) -> usize {
-        if b - a > GAP * self.typical {
-            ((b - a) / self.typical).round() as usize - 1
+        if self.scale.is_gap(b - a) {
+            ((b - a) / self.scale.typical).round() as usize - 1
         } else {
             0
         }
@@ -162,6 +194,7 @@ fn even(start_s: f64, rate_hz: f64, samples: usize) -> Result<Clock, SeriesError
         samples,
         rows: samples,
         evenness: Evenness::Even,
+        change: None,
         missing: 0,
         gaps: Vec::new(),
         n_gaps: 0,
@@ -187,11 +220,51 @@ fn stored(
     rounding: f64,
     declared_hz: Option<f64>,
 ) -> Result<(Clock, Steps), SeriesError> {
-    let typical = typical_step(reader)?;
+    let scale = typical_steps(reader, rounding)?;
+    let (spans, rows) = spans_of(reader, scale)?;
+    let start = spans.iter().find(|s| s.rows > 0).map_or(0.0, |s| s.first);
+    let Some(scale) = scale else {
+        let rate = declared_hz.ok_or(SeriesError::NoRate);
+        return if rows == 0 {
+            Err(SeriesError::Empty)
+        } else if rows == 1 && declared_hz.is_none() {
+            Err(SeriesError::Line {
+                line: reader.line(0, 0, 0),
+                what: "one sample: nothing tells the time between samples".into(),
+                remedy: "give two rows or more, or name the column of a single state `run`",
+            })
+        } else {
+            let scale = Scale::endless();
+            Ok((even(start, rate?, rows)?, Steps { spans, scale }))
+        };
+    };
+    let Some(stretch) = Stretch::joined(spans.iter().filter_map(|s| s.stretch)) else {
+        let clock = together(&spans, scale, declared_hz)?;
+        return Ok((clock, Steps { spans, scale }));
+    };
+    // Held against the steps of all rates.
+    let change = RateChange::of(stretch, start, scale.usual);
+    let scale = scale.with_rates(spans.iter().filter_map(|s| s.others).flatten());
+    let (spans, _) = spans_of(reader, Some(scale))?;
+    let clock = Clock {
+        change: Some(change),
+        ..together(&spans, scale, declared_hz)?
+    };
+    Ok((clock, Steps { spans, scale }))
+}
+
+/// A span for each piece, and the rows of all.
+///
+/// # Errors
+/// Times that are missing or do not ascend.
+fn spans_of(
+    reader: &dyn RecordReader,
+    scale: Option<Scale>,
+) -> Result<(Vec<Span>, usize), SeriesError> {
     let mut spans = Vec::with_capacity(reader.n_pieces());
     let found: Vec<Result<Span, (usize, Wrong)>> = (0..reader.n_pieces())
         .into_par_iter()
-        .map(|p| span(reader, p, typical, rounding))
+        .map(|p| span(reader, p, scale))
         .collect();
     let (mut rows, mut before): (usize, Option<f64>) = (0, None);
     for (piece, result) in found.into_iter().enumerate() {
@@ -212,41 +285,13 @@ fn stored(
         rows += s.rows;
         spans.push(s);
     }
-    let Some(step) = typical else {
-        let start = spans.iter().find(|s| s.rows > 0).map_or(0.0, |s| s.first);
-        let rate = declared_hz.ok_or(SeriesError::NoRate);
-        return if rows == 0 {
-            Err(SeriesError::Empty)
-        } else if rows == 1 && declared_hz.is_none() {
-            Err(SeriesError::Line {
-                line: reader.line(0, 0, 0),
-                what: "one sample: nothing tells the time between samples".into(),
-                remedy: "give two rows or more, or name the column of a single state `run`",
-            })
-        } else {
-            let steps = Steps {
-                spans,
-                typical: f64::INFINITY,
-            };
-            Ok((even(start, rate?, rows)?, steps))
-        };
-    };
-    let clock = together(&spans, step, rounding, declared_hz)?;
-    let steps = Steps {
-        spans,
-        typical: step,
-    };
-    Ok((clock, steps))
+    Ok((spans, rows))
 }
 
 /// Joins the spans and the steps between them.
-fn together(
-    spans: &[Span],
-    typical: f64,
-    rounding: f64,
-    declared_hz: Option<f64>,
-) -> Result<Clock, SeriesError> {
-    let mut all = Walk::new(typical, rounding);
+fn together(spans: &[Span], scale: Scale, declared_hz: Option<f64>) -> Result<Clock, SeriesError> {
+    let typical = scale.typical;
+    let mut all = Walk::new(scale);
     let (mut gaps, mut n_gaps, mut missing): (Vec<Gap>, usize, f64) = (Vec::new(), 0, 0.0);
     let (mut rows, mut sum, mut number, mut largest) = (0, 0.0, 0, (0.0_f64, 0));
     let mut whole = true;
@@ -280,19 +325,27 @@ fn together(
     let step = (sum + all.steps.0) / (number + all.steps.1).max(1) as f64;
     let start = spans.iter().find(|s| s.rows > 0).map_or(0.0, |s| s.first);
     let end = last.unwrap_or(start);
-    if missing > MOST_ADDED * rows as f64 + ALWAYS_ALLOWED {
+    // A stretch at a far lower rate asks for as many samples as a hole.
+    let between = match scale.longest > typical {
+        true => (end - start) / step - rows as f64,
+        false => 0.0,
+    };
+    let added = missing.max(between);
+    if added > MOST_ADDED * rows as f64 + ALWAYS_ALLOWED {
         let worst = gaps.iter().max_by_key(|g| g.missing);
         return Err(SeriesError::Hole {
             from_s: worst.map_or(start, |g| g.from_s),
             to_s: worst.map_or(end, |g| g.to_s),
-            missing: missing as u64,
+            missing: added as u64,
         });
     }
-    let evenness = if largest.0 <= EVEN * typical {
+    // Rounding may hide that steps differ, not that rates do.
+    let differ = largest.0.max(scale.longest - typical);
+    let evenness = if differ <= EVEN * typical {
         Evenness::Even
     } else {
         Evenness::Resampled {
-            largest: largest.0 / typical,
+            largest: differ / typical,
             row: largest.1,
         }
     };

@@ -29,13 +29,13 @@ mod tile;
 mod uff;
 mod whole;
 
-pub use clock::{Clock, EVEN, Evenness};
+pub use clock::{Clock, Evenness, RateChange};
 pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
 pub use open::{Options, is_format, open_record, open_source, read_channels};
 pub use reader::{Block, Bytes, Pick, RecordReader, Sink, Times};
 pub use source::{Parts, Source, is_read_in_parts};
-pub use span::Gap;
+pub use span::{EVEN, Gap};
 pub use whole::Whole;
 
 #[cfg(test)]

@@ -4,10 +4,89 @@ use super::reader::{Pick, RecordReader};
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 
+/// Largest departure of a step from the typical one that still counts as even. Of a sine with `m` samples a period, jitter `e` moves a
+/// reading by `2 pi e / m` of the amplitude at most, and linear interpolation between samples cuts off up to `(2 pi / m)^2 / 8`: below
+/// `e = pi / (4 m)`, .02 for 40 samples, the stored samples are nearer to the truth than interpolated ones.
+pub const EVEN: f64 = 0.02;
 /// A step longer than this many typical ones is a gap: at least one sample is missing.
 pub(super) const GAP: f64 = 1.5;
 /// Gaps that are kept by place; further ones are counted.
 pub(super) const LISTED: usize = 1000;
+
+/// Steps whose mean is the rate of the logger there: twenty, so that their mean is known well where times are rounded.
+const WINDOW: usize = 20;
+/// Share of their mean by which steps of one rate differ: none is twice as long, as it is where a sample is lost.
+const ALIKE: f64 = 0.25;
+/// Share by which another rate differs from the usual one: clocks drift by far less.
+const OTHER: f64 = 0.1;
+
+/// A stretch of a record in which the logger ran at another rate than the typical one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Time of its first sample, s.
+    pub from_s: f64,
+    /// Time of its last sample, s, or of the last of the piece that it begins in.
+    pub to_s: f64,
+    /// Its step, s.
+    pub step_s: f64,
+}
+
+impl Stretch {
+    /// The first of those that pieces have, which follow each other, with what goes on of it in the next pieces.
+    pub(super) fn joined(mut list: impl Iterator<Item = Self>) -> Option<Self> {
+        let mut first = list.next()?;
+        for next in list {
+            // The rest of a piece may not fill a window.
+            if next.from_s - first.to_s > 2.0 * WINDOW as f64 * next.step_s {
+                break;
+            }
+            first.to_s = next.to_s;
+        }
+        Some(first)
+    }
+}
+
+/// What the steps of a record are held against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Scale {
+    /// The typical step, s: that of the fastest rate, where there are several.
+    pub typical: f64,
+    /// The longest step of any rate, s: what is longer by half is a gap.
+    pub longest: f64,
+    /// The mean of [`WINDOW`] steps as the first rows have it, s.
+    pub usual: f64,
+    /// Largest error of a time by its rounding, s.
+    pub rounding: f64,
+}
+
+impl Scale {
+    /// Of a record of one time alone: nothing is a gap.
+    pub(super) fn endless() -> Self {
+        Self {
+            typical: f64::INFINITY,
+            longest: f64::INFINITY,
+            usual: f64::INFINITY,
+            rounding: 0.0,
+        }
+    }
+
+    /// The same with the steps of further rates.
+    pub(super) fn with_rates(self, others: impl Iterator<Item = f64>) -> Self {
+        let [low, high] = others.fold([self.usual; 2], |[low, high], step| {
+            [low.min(step), high.max(step)]
+        });
+        Self {
+            typical: low,
+            longest: high,
+            ..self
+        }
+    }
+
+    /// Whether a step is a gap.
+    pub(super) fn is_gap(&self, step: f64) -> bool {
+        step > GAP * self.longest
+    }
+}
 
 /// Samples that are missing between two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,10 +122,18 @@ pub(super) struct Span {
     pub largest: (f64, usize),
     /// Whether every time is a whole number.
     pub whole_numbers: bool,
+    /// The first stretch of another rate.
+    pub stretch: Option<Stretch>,
+    /// Shortest and longest step of other rates, s.
+    pub others: Option<[f64; 2]>,
 }
 
-/// The median step of the first rows; `None` with fewer than two.
-pub(super) fn typical_step(reader: &dyn RecordReader) -> Result<Option<f64>, SeriesError> {
+/// The median step of the first rows, and that of [`WINDOW`] steps as most of a quarter of them have it (where two rates share the first
+/// rows, that of one of them); `None` with fewer than two.
+pub(super) fn typical_steps(
+    reader: &dyn RecordReader,
+    rounding: f64,
+) -> Result<Option<Scale>, SeriesError> {
     /// Rows looked at.
     const ROWS: usize = 4096;
     let mut times: Vec<f64> = Vec::new();
@@ -63,20 +150,27 @@ pub(super) fn typical_step(reader: &dyn RecordReader) -> Result<Option<f64>, Ser
             break;
         }
     }
-    let mut steps: Vec<f64> = times
-        .windows(2)
-        .filter_map(|w| match w {
-            [a, b] => Some(b - a).filter(|s| *s > 0.0),
-            _ => None,
-        })
-        .collect();
-    if steps.is_empty() {
+    let steps = |rows: usize| {
+        let pairs = times.iter().zip(times.iter().skip(rows));
+        let steps = pairs.map(|(a, b)| (b - a) / rows as f64);
+        steps.filter(|s| *s > 0.0).collect::<Vec<f64>>()
+    };
+    let Some(typical) = ranked(steps(1), 2) else {
         return Ok(None);
-    }
-    let middle = steps.len() / 2;
-    Ok(Some(
-        *steps.select_nth_unstable_by(middle, f64::total_cmp).1,
-    ))
+    };
+    Ok(Some(Scale {
+        typical,
+        longest: typical,
+        usual: ranked(steps(WINDOW), 4).unwrap_or(typical),
+        rounding,
+    }))
+}
+
+/// The number that one in `part` is below.
+fn ranked(mut numbers: Vec<f64>, part: usize) -> Option<f64> {
+    let at = numbers.len() / part;
+    let fits = at < numbers.len();
+    fits.then(|| *numbers.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 /// A time that can't be.
@@ -103,36 +197,102 @@ impl Wrong {
 
 /// Steps seen so far.
 pub(super) struct Walk {
-    typical: f64,
-    rounding: f64,
+    scale: Scale,
     pub gaps: Vec<Gap>,
     pub n_gaps: usize,
     pub missing: f64,
     pub steps: (f64, usize),
     pub largest: (f64, usize),
+    pub stretch: Option<Stretch>,
+    pub others: Option<[f64; 2]>,
+    /// The times seen last: those of a window that is full, and of the one that is being filled.
+    times: Vec<f64>,
+    /// Steps in the window that is being filled.
+    filled: usize,
 }
 
 impl Walk {
-    pub(super) fn new(typical: f64, rounding: f64) -> Self {
+    pub(super) fn new(scale: Scale) -> Self {
         Self {
-            typical,
-            rounding,
+            scale,
             gaps: Vec::new(),
             n_gaps: 0,
             missing: 0.0,
             steps: (0.0, 0),
             largest: (0.0, 0),
+            stretch: None,
+            others: None,
+            times: Vec::with_capacity(2 * WINDOW + 1),
+            filled: 0,
         }
+    }
+
+    /// Notes where the steps of a window are those of another rate.
+    fn note_rate(&mut self, a: f64, b: f64) {
+        if self.times.is_empty() {
+            self.times.push(a);
+        }
+        self.times.push(b);
+        self.filled += 1;
+        if self.filled < WINDOW {
+            return;
+        }
+        self.filled = 0;
+        if let Some(found) = self.another_rate() {
+            let step = found.step_s;
+            match &mut self.stretch {
+                Some(first) if first.to_s >= found.from_s => first.to_s = found.to_s,
+                Some(_) => {}
+                none => *none = Some(found),
+            }
+            let [low, high] = self.others.unwrap_or([step; 2]);
+            self.others = Some([low.min(step), high.max(step)]);
+        }
+        let before = self.times.len().saturating_sub(WINDOW + 1);
+        self.times.drain(..before);
+    }
+
+    /// The window that is full, where it is of another rate; it begins where the steps before it are of that rate already.
+    fn another_rate(&self) -> Option<Stretch> {
+        let Scale {
+            usual, rounding, ..
+        } = self.scale;
+        let first = self.times.len().checked_sub(WINDOW + 1)?;
+        let (before, window) = (self.times.get(..=first)?, self.times.get(first..)?);
+        let (from, to) = (*window.first()?, *window.last()?);
+        let mean = (to - from) / WINDOW as f64;
+        let step = |w: &[f64]| w.last().zip(w.first()).map_or(0.0, |(b, a)| b - a);
+        let alike = (ALIKE * mean).max(EVEN * mean + 2.0 * rounding);
+        let is_alike = |w: &[f64]| (step(w) - mean).abs() <= alike;
+        // Of each mean both ends are rounded.
+        let off = OTHER * usual + 4.0 * rounding / WINDOW as f64;
+        if (mean - usual).abs() <= off || !window.windows(2).all(is_alike) {
+            return None;
+        }
+        let is_of_it = |w: &&[f64]| (step(w) > 0.5 * (usual + mean)) == (mean > usual);
+        let already = before.windows(2).rev().take_while(is_of_it).count();
+        Some(Stretch {
+            from_s: before.iter().rev().nth(already).copied().unwrap_or(from),
+            to_s: to,
+            step_s: mean,
+        })
     }
 
     /// Takes the step from `a` to `b`; `rows` stand before it.
     pub(super) fn step(&mut self, a: f64, b: f64, rows: usize) {
         let step = b - a;
-        let whole = if step > GAP * self.typical {
-            (step / self.typical).round()
+        let Scale {
+            typical, rounding, ..
+        } = self.scale;
+        self.note_rate(a, b);
+        let whole = if self.scale.is_gap(step) {
+            (step / typical).round()
         } else {
-            self.steps.0 += step;
-            self.steps.1 += 1;
+            // The rate is that of the typical steps alone.
+            if step <= GAP * typical {
+                self.steps.0 += step;
+                self.steps.1 += 1;
+            }
             1.0
         };
         if whole > 1.0 {
@@ -148,7 +308,7 @@ impl Walk {
             }
         }
         // Both ends of a step are rounded. A gap of many steps is held against the typical one, whose own error grows with them.
-        let off = (step - whole * self.typical).abs() - 2.0 * self.rounding;
+        let off = (step - whole * typical).abs() - 2.0 * rounding;
         let off = if whole > 1.0 { off / whole } else { off };
         if off > self.largest.0 {
             self.largest = (off, rows);
@@ -160,10 +320,9 @@ impl Walk {
 pub(super) fn span(
     reader: &dyn RecordReader,
     piece: usize,
-    typical: Option<f64>,
-    rounding: f64,
+    scale: Option<Scale>,
 ) -> Result<Span, (usize, Wrong)> {
-    let mut walk = Walk::new(typical.unwrap_or(f64::INFINITY), rounding);
+    let mut walk = Walk::new(scale.unwrap_or(Scale::endless()));
     let (mut rows, mut first, mut last) = (0, f64::NAN, f64::NAN);
     let mut wrong = None;
     let mut whole_numbers = true;
@@ -183,7 +342,7 @@ pub(super) fn span(
             }
             if rows == 0 {
                 first = t;
-            } else if typical.is_some() {
+            } else if scale.is_some() {
                 walk.step(last, t, rows);
             }
             whole_numbers &= t.fract() == 0.0;
@@ -205,6 +364,8 @@ pub(super) fn span(
             steps: walk.steps,
             largest: walk.largest,
             whole_numbers,
+            stretch: walk.stretch,
+            others: walk.others,
         }),
     }
 }

@@ -300,6 +300,68 @@ fn missing_samples_are_gaps_and_not_invented() {
 }
 
 #[test]
+fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
+    // So many rows at the first rate, then at the second.
+    let open_two = |rows: [usize; 2], hz: [f64; 2], digits: usize| {
+        let end = rows[0] as f64 / hz[0];
+        let time = |i: usize| match i.checked_sub(rows[0]) {
+            None => i as f64 / hz[0],
+            Some(after) => end + after as f64 / hz[1],
+        };
+        let record = open(&timed(rows[0] + rows[1], time, digits)).unwrap();
+        (record, end, end + (rows[1] - 1) as f64 / hz[1])
+    };
+    for (rows_of, hz, digits) in [
+        ([1000, 1000], [500.0, 250.0], 3),
+        ([1000, 1000], [250.0, 500.0], 3),
+        ([5000, 2000], [500.0, 200.0], 4),
+        ([300, 3000], [250.0, 1000.0], 3),
+        ([200_000, 200_000], [1000.0, 500.0], 3),
+    ] {
+        let (record, at, end) = open_two(rows_of, hz, digits);
+        let clock = &record.clock;
+        let change = clock.change.unwrap_or_else(|| panic!("{hz:?}"));
+        // Found in steps of 20 samples.
+        assert!((change.at_s - at).abs() < 20.0 / hz[0] + 1e-9, "{change:?}");
+        for (found, given) in change.rates_hz.iter().zip(hz) {
+            assert!((found / given - 1.0).abs() < 0.02, "{change:?}");
+        }
+        // Who takes samples as they are stored alone says why not.
+        let refused = crate::series::foreign::check_even(&record).err();
+        let said = refused.map_or_else(String::new, |e| e.parts().0);
+        assert!(said.starts_with("the sample rate changes at"), "{said}");
+        let fast = hz[0].max(hz[1]);
+        assert!(
+            (clock.rate_hz / fast - 1.0).abs() < 1e-3,
+            "{}",
+            clock.rate_hz
+        );
+        assert_eq!((clock.missing, clock.n_gaps), (0, 0), "{hz:?}");
+        assert!(
+            (clock.duration_s() - end).abs() < 2.0 / fast + 1e-3 * end,
+            "{hz:?}"
+        );
+        // Times are rounded to these digits, and the channel is twice the time.
+        let rounding = 10f64.powi(-(digits as i32));
+        for (i, row) in rows(&record).iter().enumerate() {
+            let off = (row[0] - 2.0 * clock.time_s(i)).abs();
+            assert!(off < 2.0 * rounding, "{i}: {row:?} {off}");
+        }
+    }
+    // Every second of 15 samples lost is a gap, and a clock of one rate has no change.
+    let kept = |i: usize| {
+        i as f64
+            + if i < 300 {
+                0.0
+            } else {
+                (i - 300).min(15) as f64
+            }
+    };
+    let lossy = open(&timed(1000, |i| kept(i) * 0.002, 3)).unwrap();
+    assert_eq!((lossy.clock.change, lossy.clock.missing), (None, 15));
+}
+
+#[test]
 fn whole_numbers_of_an_unstated_unit_are_doubted() {
     let text = |head: &str, step: usize| {
         let rows: String = (0..200).map(|i| format!("{},1\n", i * step)).collect();

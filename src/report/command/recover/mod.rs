@@ -23,6 +23,8 @@ use crate::app::recover::{Recovered, States};
 use crate::report::page::Page;
 
 impl Report for Outcome<Recovered> {
+    const FILES: &'static [&'static str] = &["result.json", "report.html", "loads.csv"];
+
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         match &self.states {
             States::Runs(runs) => runs::write(out, self, runs),

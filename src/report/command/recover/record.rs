@@ -15,6 +15,7 @@ use crate::report::page::{Page, number};
 use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
+use crate::units::fixed;
 use std::io::Write;
 
 /// Blocks formed at a time.
@@ -81,13 +82,13 @@ fn derived(
 /// One line.
 pub(super) fn words(record: &RecoveredRecord) -> String {
     format!(
-        "{}: {} samples at {:.4} Hz, {:.4} s, {} with gaps, residual {:.2} microstrain rms\n",
+        "{}: {} samples at {} Hz, {} s, {} with gaps, residual {} microstrain rms\n",
         record.head.file,
         record.samples,
-        rate(record),
-        record.duration_s,
+        fixed(rate(record), 4),
+        fixed(record.duration_s, 4),
         record.gaps,
-        record.residual_rms_microstrain
+        fixed(record.residual_rms_microstrain, 2)
     )
 }
 
@@ -146,8 +147,8 @@ pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Pa
     let row = |name: &str, value: String| (name.to_owned(), value);
     let numbers = [
         row("Samples", record.samples.to_string()),
-        row("Sample rate, Hz", format!("{:.4}", rate(record))),
-        row("Duration, s", format!("{:.4}", record.duration_s)),
+        row("Sample rate, Hz", fixed(rate(record), 4)),
+        row("Duration, s", fixed(record.duration_s, 4)),
         row("Samples with gaps", record.gaps.to_string()),
         row(
             "Residual, microstrain rms",

@@ -15,7 +15,7 @@ use crate::report::page::{Page, number};
 use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
-use crate::units::MICROSTRAIN;
+use crate::units::{MICROSTRAIN, fixed};
 use std::fmt::Write as _;
 use std::io::Write;
 
@@ -56,13 +56,16 @@ pub(super) fn words(runs: &RecoveredRuns) -> String {
             .enumerate()
             .map(|(l, u)| {
                 let half = r.estimate.coverage_factor * r.estimate.sigma(l);
-                format!(
-                    "{} {:.4} +- {:.4} {}",
-                    r.estimate.names[l],
-                    r.estimate.values[l] * u.factor,
-                    half * u.factor,
-                    u.name
-                )
+                let (name, value) = (&r.estimate.names[l], r.estimate.values[l]);
+                match value.is_finite() {
+                    true => format!(
+                        "{name} {:.4} +- {} {}",
+                        value * u.factor,
+                        fixed(half * u.factor, 4),
+                        u.name
+                    ),
+                    false => format!("{name} not known"),
+                }
             })
             .collect();
         let _ = writeln!(text, "{}: {}", r.estimate.run, list.join(", "));

@@ -11,33 +11,14 @@ const TELLING: usize = 8;
 /// It is taken for whole where its last field has as many characters after the point as those before it. Fewer fields than in the line
 /// before are for others to refuse; two lines, of which the first may be the header, tell nothing.
 pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
-    let (encoding, begin) = Encoding::of(bytes);
-    let mut starts = vec![last_line(encoding, bytes, bytes.len())];
-    while let Some(at) = starts.last().copied().filter(|at| *at > begin)
-        && starts.len() <= TELLING
-    {
-        starts.push(last_line(encoding, bytes, at - encoding.unit()));
-    }
-    let mut ends = vec![bytes.len()];
-    ends.extend(starts.iter().copied());
-    let lines: Vec<Vec<u8>> = starts
-        .iter()
-        .zip(ends)
-        .map(|(from, to)| {
-            encoding
-                .text(bytes.get(*from..to).unwrap_or_default())
-                .into_owned()
-        })
-        .collect();
+    let (start, lines) = last_lines(bytes);
     let (last, before) = lines.split_first()?;
     let previous = before.first().filter(|_| before.len() > 1)?;
     let blank = last.iter().all(|b| b.is_ascii_whitespace());
     if blank || last.first() == Some(&b'#') || matches!(last.last(), Some(b'\r' | b'\n')) {
         return None;
     }
-    // Commas may stand in numbers beside the others.
-    let divides = |d: &u8| previous.contains(d);
-    let delimiter = [b';', b'\t'].into_iter().find(divides).unwrap_or(b',');
+    let delimiter = delimiter_of(previous);
     let (n, own) = last_field(last, delimiter);
     if n < last_field(previous, delimiter).0 {
         return None;
@@ -51,7 +32,69 @@ pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     let whole = after_point(own) != Some(0) && after_point(own).is_some() && rows.iter().all(alike);
     // A delimiter that ends every line.
     let closed = own.is_empty() && rows.iter().all(|r| last_field(r, delimiter) == (n, own));
-    (!whole && !closed).then_some(*starts.first()?)
+    (!whole && !closed).then_some(start)
+}
+
+/// Whether the last line is cut beyond doubt: [`unsure_end`] doubts it, every column of the lines before has its number of characters after the
+/// point, as programs write numbers and people don't, and the last number has fewer.
+pub fn is_cut(bytes: &[u8]) -> bool {
+    /// Numbers that tell: one of ten ends in a zero, which a person leaves out, so that these stand alike by chance once in seventy.
+    const NUMBERS: usize = 40;
+    if unsure_end(bytes).is_none() {
+        return false;
+    }
+    let (_, lines) = last_lines(bytes);
+    let [last, rows @ .., _] = lines.as_slice() else {
+        return false;
+    };
+    let Some(previous) = rows.first() else {
+        return false;
+    };
+    let delimiter = delimiter_of(previous);
+    let expected: Vec<Option<usize>> = (fields(previous, delimiter).iter())
+        .map(|f| after_point(f))
+        .collect();
+    let is_alike = |row: &Vec<u8>| {
+        let found = fields(row, delimiter);
+        found.len() == expected.len()
+            && found
+                .iter()
+                .zip(&expected)
+                .all(|(f, e)| after_point(f) == *e)
+    };
+    let own = last_field(last, delimiter).1;
+    let is_shorter = match expected.last() {
+        Some(Some(digits)) => after_point(own).unwrap_or(0) < *digits,
+        _ => false,
+    };
+    let numbers = rows.len() * expected.iter().flatten().filter(|d| **d > 0).count();
+    is_shorter && !own.is_empty() && numbers >= NUMBERS && rows.iter().all(is_alike)
+}
+
+/// Where the last line begins; it and some lines before it, the last first.
+fn last_lines(bytes: &[u8]) -> (usize, Vec<Vec<u8>>) {
+    let (encoding, begin) = Encoding::of(bytes);
+    let last = last_line(encoding, bytes, bytes.len());
+    let mut starts = vec![last];
+    while let Some(at) = starts.last().copied().filter(|at| *at > begin)
+        && starts.len() <= TELLING
+    {
+        starts.push(last_line(encoding, bytes, at - encoding.unit()));
+    }
+    let mut ends = vec![bytes.len()];
+    ends.extend(starts.iter().copied());
+    let lines = starts.iter().zip(ends).map(|(from, to)| {
+        encoding
+            .text(bytes.get(*from..to).unwrap_or_default())
+            .into_owned()
+    });
+    (last, lines.collect())
+}
+
+/// What divides the fields of a line: commas may stand in numbers beside the others.
+fn delimiter_of(line: &[u8]) -> u8 {
+    let divides = |d: &u8| line.contains(d);
+    [b';', b'\t'].into_iter().find(divides).unwrap_or(b',')
 }
 
 /// Where the line begins that ends before `end`.
@@ -73,13 +116,20 @@ fn last_line(encoding: Encoding, bytes: &[u8], end: usize) -> usize {
 
 /// Number of fields of a line, and the last of them.
 fn last_field(line: &[u8], delimiter: u8) -> (usize, &[u8]) {
-    let (mut n, mut rest) = (1, line);
+    let all = fields(line, delimiter);
+    (all.len(), all.last().copied().unwrap_or_default())
+}
+
+/// The fields of a line.
+fn fields(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
+    let (mut found, mut rest) = (Vec::new(), line);
     loop {
         let end = field_end(rest, delimiter);
         let (field, after) = rest.split_at_checked(end).unwrap_or((rest, &[]));
+        found.push(field.trim_ascii());
         match after.split_first() {
-            Some((d, next)) if *d == delimiter => (n, rest) = (n + 1, next),
-            _ => return (n, field.trim_ascii()),
+            Some((d, next)) if *d == delimiter => rest = next,
+            _ => return found,
         }
     }
 }
@@ -117,6 +167,29 @@ mod tests {
         let returns = text.replace('\n', "\r\n");
         assert_eq!(unsure_end(&returns.as_bytes()[..returns.len() - 1]), None);
         assert!(unsure_end(&returns.as_bytes()[..returns.len() - 3]).is_some());
+    }
+
+    #[test]
+    fn a_number_with_fewer_digits_than_all_of_a_printed_table_is_cut_beyond_doubt() {
+        let row = |i: usize| format!("R{i},{}", ["1.20"; 7].join(",")) + "\n";
+        let rows: String = (0..9).map(row).collect();
+        let text = format!("run,A,B,C,D,E,F,G\n{rows}");
+        for (less, cut) in [
+            (0, false),
+            (1, false),
+            (2, true),
+            (3, true),
+            (4, true),
+            (5, false),
+        ] {
+            let bytes = &text.as_bytes()[..text.len() - less];
+            assert_eq!(is_cut(bytes), cut, "{less}");
+        }
+        // Numbers as people write them, and a few of them.
+        let written = text.replacen("1.20", "1.2", 40);
+        assert!(!is_cut(&written.as_bytes()[..written.len() - 2]));
+        let few = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131.9"]);
+        assert!(!is_cut(&few.as_bytes()[..few.len() - 2]));
     }
 
     #[test]

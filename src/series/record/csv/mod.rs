@@ -9,7 +9,7 @@ mod end;
 mod layout;
 mod text;
 
-pub use end::unsure_end;
+pub use end::{is_cut, unsure_end};
 pub use layout::{Layout, is_units};
 pub use text::has_bare_returns;
 
