@@ -173,12 +173,10 @@ fn solve_group(
     clock.note(report, "assemble");
     let n = system.symbolic.n_unknowns();
     let mut columns = vec![0.0; n * cases.len()];
+    let held = (&system, system.body.as_ref());
     let acting: Vec<Acting> = cases
         .par_iter()
-        .map(|case| {
-            let system = (&system, system.body.as_ref());
-            acting(prepared, mass, system, report.mass.as_ref(), case)
-        })
+        .map(|case| acting(prepared, mass, held, report.mass.as_ref(), case))
         .collect::<Result<_, FeError>>()?;
     let mut forces = Vec::with_capacity(cases.len());
     for acting in acting {

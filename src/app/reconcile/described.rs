@@ -1,8 +1,8 @@
 //! Signatures of the user's own hypotheses: from a table, or from the edited deck solved again.
 
+use super::changed::Changed;
 use super::deck_frame::DeckFrame;
 use super::signature_table::{SignatureTable, TableColumn};
-use super::stiffness::Changed;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::{DescribedEffect, EffectSource, Job, NamedFile};

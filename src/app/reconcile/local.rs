@@ -4,21 +4,19 @@
 //! what one amplitude of each takes of the residual, their signatures to first order from adjoint solutions (one factor for all); the best are
 //! moved, widened and narrowed, those that lead are solved at half their stiffness, and the best of these stand beside the library's effects.
 
+use super::changed::Changed;
 use super::deck_frame::DeckFrame;
 use super::influence::{adjoint, blank_payload, of_solver};
 use super::local_ground::Ground;
 use super::region::Region;
-use super::stiffness::Changed;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
 use crate::fe::Adjoint;
 use crate::gauge::strain_terms;
-use crate::model::{MaterialIx, MaterialKind, Model, ShellKind, ShellPropertyIx};
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, StrainState};
 use crate::reconcile::{NamedEffect, Outcome, Verdict};
 use crate::units::MICROSTRAIN;
-use std::collections::BTreeMap;
 
 /// Stiffness at which a region is solved first, natural log times 100: half.
 const HALF: f64 = -69.314_718_055_994_53;
@@ -211,90 +209,6 @@ fn elsewhere(all: Vec<Tried>, n: usize) -> Vec<Tried> {
         }
     }
     out
-}
-
-/// The model with shells' moduli times `factor`: properties and materials of their own behind all others.
-pub(super) fn softened(model: &Model, shells: &[usize], factor: f64) -> Model {
-    let mut out = model.clone();
-    let mut materials: BTreeMap<u32, MaterialIx> = BTreeMap::new();
-    let mut properties: BTreeMap<u32, ShellPropertyIx> = BTreeMap::new();
-    let next_material = out.materials.iter().map(|m| m.id).max().unwrap_or(0);
-    let next_property = out.shell_properties.iter().map(|p| p.id).max().unwrap_or(0);
-    for &s in shells {
-        let Some(old) = out.shells.get(s).map(|s| s.property) else {
-            continue;
-        };
-        let new = match properties.get(&old.0) {
-            Some(new) => *new,
-            None => {
-                let Some(mut property) = out.shell_properties.get(old.us()).cloned() else {
-                    continue;
-                };
-                let mut weaker = |m: MaterialIx, list: &mut Vec<crate::model::Material>| {
-                    *materials.entry(m.0).or_insert_with(|| {
-                        let Some(mut material) = list.get(m.us()).copied() else {
-                            return m;
-                        };
-                        scale(&mut material.kind, factor);
-                        let n = list.len() as u32;
-                        material.id = next_material.saturating_add(n + 1);
-                        list.push(material);
-                        MaterialIx(n)
-                    })
-                };
-                match &mut property.kind {
-                    ShellKind::Homogeneous {
-                        membrane,
-                        bending,
-                        shear,
-                        coupling,
-                        ..
-                    } => {
-                        for m in [membrane, bending, shear, coupling].into_iter().flatten() {
-                            *m = weaker(*m, &mut out.materials);
-                        }
-                    }
-                    ShellKind::Laminate { plies, .. } => {
-                        for p in plies {
-                            p.material = weaker(p.material, &mut out.materials);
-                        }
-                    }
-                }
-                let n = out.shell_properties.len() as u32;
-                property.id = next_property.saturating_add(n + 1);
-                out.shell_properties.push(property);
-                *properties.entry(old.0).or_insert(ShellPropertyIx(n))
-            }
-        };
-        if let Some(shell) = out.shells.get_mut(s) {
-            shell.property = new;
-        }
-    }
-    out
-}
-
-/// All moduli times a factor, Poisson's ratio as it is.
-fn scale(kind: &mut MaterialKind, factor: f64) {
-    match kind {
-        MaterialKind::Isotropic { e, g, .. } => {
-            *e *= factor;
-            *g *= factor;
-        }
-        MaterialKind::Anisotropic2d { g, .. } => g.iter_mut().for_each(|v| *v *= factor),
-        MaterialKind::Orthotropic {
-            e1,
-            e2,
-            g12,
-            g1z,
-            g2z,
-            ..
-        } => {
-            for v in [e1, e2, g12, g1z, g2z] {
-                *v *= factor;
-            }
-        }
-        MaterialKind::Anisotropic3d { g, .. } => g.iter_mut().for_each(|v| *v *= factor),
-    }
 }
 
 /// Readings less prediction over the runs that are fitted, each over its own standard deviation.

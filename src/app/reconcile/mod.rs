@@ -5,6 +5,7 @@ mod added_motion;
 mod answer;
 mod background;
 mod causes;
+mod changed;
 mod corrected;
 mod deck_frame;
 mod deck_loads;

@@ -1,9 +1,8 @@
 //! Signatures of a stiffness that may be wrong: the changed model solved again.
 
+use super::changed::Changed;
 use super::deck_frame::DeckFrame;
 use super::described::{effect_of, factor_at};
-use super::influence::{influence, solve_each};
-use super::local::softened;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::model::Model;
@@ -46,16 +45,6 @@ fn joints(job: &Job, model: &Model) -> Vec<u32> {
         return Vec::new();
     }
     chosen
-}
-
-/// A change of the deck's stiffness, and its factor.
-pub(super) enum Changed {
-    /// Of a bush, by id.
-    Bush(String, f64),
-    /// Of the moduli of some shells.
-    Shells(Vec<usize>, f64),
-    /// Of the thickness of some PSHELL cards.
-    Thickness(Vec<u32>, f64),
 }
 
 impl DeckFrame {
@@ -108,23 +97,6 @@ impl DeckFrame {
         Ok(changes.pop().unwrap_or_default())
     }
 
-    /// Change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh as it stands.
-    pub(super) fn changes_by(&self, job: &Job, all: &[Changed]) -> Result<Vec<Vec<f64>>, Faults> {
-        let models = all.iter().map(|c| self.model_with(c));
-        let (model, n) = (self.fields.model(), self.columns.len());
-        solve_each(
-            job,
-            model,
-            &self.columns,
-            models,
-            &self.stop,
-            |model, solution| {
-                let now = influence(job, model, &self.gauges, solution, n);
-                now.iter().zip(&self.base).map(|(a, b)| a - b).collect()
-            },
-        )
-    }
-
     fn changed(
         &self,
         job: &Job,
@@ -142,26 +114,6 @@ impl DeckFrame {
         })
     }
 
-    fn model_with(&self, changed: &Changed) -> Model {
-        match changed {
-            Changed::Bush(id, factor) => self.with_joint(id, *factor),
-            Changed::Shells(shells, factor) => softened(self.fields.model(), shells, *factor),
-            Changed::Thickness(ids, factor) => self.with_properties(ids, *factor),
-        }
-    }
-
-    fn with_joint(&self, place: &str, factor: f64) -> Model {
-        let mut model = self.fields.model().clone();
-        for b in model
-            .bushes
-            .iter_mut()
-            .filter(|b| b.id.to_string() == place)
-        {
-            b.k.iter_mut().for_each(|k| *k *= factor);
-        }
-        model
-    }
-
     fn properties_of_zone(&self, job: &Job, zone: &str) -> Result<Vec<u32>, Faults> {
         let fault = |wrong: String, remedy: &str| {
             Faults::from(Fault::of(&*job.file, "reconcile.zones", wrong, remedy))
@@ -175,23 +127,5 @@ impl DeckFrame {
             return Err(fault(wrong, "name PSHELL ids"));
         }
         Ok(found)
-    }
-
-    /// Ids of the PSHELL cards that are wanted.
-    pub(super) fn shell_properties(&self, wanted: impl Fn(u32) -> bool) -> Vec<u32> {
-        let cards = self.fields.deck.deck.cards.pshells.iter();
-        cards.map(|p| p.card.id).filter(|id| wanted(*id)).collect()
-    }
-
-    /// The model with the thickness of these shell properties scaled.
-    fn with_properties(&self, ids: &[u32], factor: f64) -> Model {
-        let mut deck = self.fields.deck.deck.clone();
-        let cards = deck.cards.pshells.iter_mut();
-        for p in cards.filter(|p| ids.contains(&p.card.id)) {
-            p.card.t = p.card.t.map(|t| t * factor);
-            p.card.z1 = p.card.z1.map(|z| z * factor);
-            p.card.z2 = p.card.z2.map(|z| z * factor);
-        }
-        Model::from_deck(&deck).0
     }
 }
