@@ -3,7 +3,7 @@
 use super::fault::{Fault, FaultList};
 use super::files::{Inputs, why_unreadable};
 use crate::finding::{Finding, Severity};
-use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault};
+use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault, Vec3};
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
 use nastran::op2::Op2;
 use std::path::{Component, Path, PathBuf};
@@ -80,15 +80,16 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     }
 }
 
-/// The fault of a model whose mass or centre of gravity is more than numbers can be.
+/// The fault of a model whose mass, centre of gravity or moments of inertia are more than numbers can be.
 fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
-    let weight = model.weight();
-    let numbers = [weight.mass, weight.cg.x, weight.cg.y, weight.cg.z];
-    (!numbers.iter().all(|v| v.is_finite())).then(|| {
+    let about_origin = model.rigid_body_mass(Vec3::zeros());
+    let about_centre = model.rigid_body_mass(model.weight().cg);
+    let mut numbers = about_origin.iter().chain(about_centre.iter());
+    (!numbers.all(|v| v.is_finite())).then(|| {
         Fault::of(
             given,
             "mass",
-            "the mass of the model, or its centre of gravity, is more than numbers can be",
+            "the mass of the model, its centre of gravity or moments of inertia are more than numbers can be",
             "look for a density, thickness, area or CONM2 with an exponent too many",
         )
     })

@@ -354,7 +354,9 @@ fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
     let names: Vec<(String, String)> = (1..=2)
         .flat_map(|v| (1..=12_u32).map(move |d| (v, d)))
         .map(|(v, d)| {
-            let text = record(4.0 + f64::from(d % 3), PERIODS, |_, y| match (v, d) {
+            // No two records alike: a copy would not count.
+            let size = 4.0 + f64::from(d % 3) + 0.01 * f64::from(12 * v + d);
+            let text = record(size, PERIODS, |_, y| match (v, d) {
                 (1, 7..) => y.swap(0, 3),
                 (2, 7..) => y[1] *= 0.7,
                 _ => {}
@@ -382,9 +384,14 @@ fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
 /// Days of one load that go up to one value and never back: the cycles between days are all there is but for half of each.
 #[test]
 fn what_closes_between_the_days_of_a_mission_is_bounded() {
-    let job = "mission_hours = 10\n[[fleet.mission]]\nname = \"all\"\nshare = 1.0\n";
+    let job =
+        "mission_hours = 10\n[[fleet.mission]]\nname = \"all\"\nshare = 1.0\nvehicles = [\"T1\"]\n";
     let records: Vec<(String, String)> = (1..=12)
-        .map(|d| (format!("T1_{d}.csv"), record(4.0, 1, right)))
+        .map(|d| {
+            // No two records alike: a copy would not count. The largest is the last.
+            let size = 4.0 - 1e-4 * f64::from(12 - d);
+            (format!("T1_{d}.csv"), record(size, 1, right))
+        })
         .collect();
     let records: Vec<(&str, String)> = records.iter().map(|r| (&*r.0, r.1.clone())).collect();
     let dir = folder("between", job, &records);

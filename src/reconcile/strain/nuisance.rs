@@ -14,8 +14,9 @@ impl StrainFrame {
         if self.ground > 0.0 {
             let ground = ground_patterns(self);
             kinds.extend(ground.iter().map(|_| sizes.len()));
+            // A usual change of all of them together: roads differ along one of them sooner than along all alike.
+            sizes.push(self.ground * (ground.len() as f64).sqrt());
             patterns.extend(ground);
-            sizes.push(self.ground);
         }
         if patterns.is_empty() {
             return None;
