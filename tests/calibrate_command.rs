@@ -112,7 +112,7 @@ fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     }
     let keys = ["known", "low", "value", "high", "sigma"];
     let [known, low, value, high, sigma] = keys.map(|key| one("payload")[key].as_f64().unwrap());
-    // The sum of loads that are conditioned on it, each wide before: its sd is a thousandth of a kN.
+    // Loads that were wide before are conditioned on the sum, which is known to .2 kN: that leaves a share of it that none reads.
     assert!((known - 60.0).abs() < 1e-3, "{of_sum}");
     assert!(low < value - sigma && value + sigma < high, "{of_sum}");
     // One left-out run in twenty lies outside of its interval; no more than one of a few hundred by this much.
