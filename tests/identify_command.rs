@@ -217,3 +217,37 @@ fn a_rig_has_no_static_load_and_its_tables_and_page_are_in_the_units_of_the_job(
         }
     }
 }
+
+/// A force of the other sign, or a record a thousand times as large: no noise is declared, and the model leaves all of it.
+#[test]
+fn a_model_that_leaves_most_of_a_channel_is_an_error_where_no_noise_is_declared() {
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/rig");
+    for (name, y, u, lost) in [
+        ("as_it_is", 1.0, 1.0, false),
+        ("sign", 1.0, -1.0, true),
+        ("unit", 1e3, 1.0, true),
+    ] {
+        let here = folder(&format!("identify_lost_{name}"));
+        for file in ["oscillator.toml", "oscillator_holdout.csv"] {
+            std::fs::copy(example.join(file), here.join(file)).unwrap();
+        }
+        let text = std::fs::read_to_string(example.join("oscillator.csv")).unwrap();
+        let row = |(i, line): (usize, &str)| {
+            let numbers: Vec<f64> = line.split(',').filter_map(|n| n.parse().ok()).collect();
+            match (i, numbers.as_slice()) {
+                (1.., [t, a, b]) => format!("{t},{},{}\n", y * a, u * b),
+                _ => format!("{line}\n"),
+            }
+        };
+        let changed: String = text.lines().enumerate().map(row).collect();
+        std::fs::write(here.join("oscillator.csv"), changed).unwrap();
+        let output = run(&here.join("oscillator.toml"), &here.join("out"));
+        let code = if lost { 1 } else { 0 };
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(code), "{name}: {said}");
+        let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let findings = result["findings"].as_array().unwrap();
+        let told = findings.iter().any(|f| f["code"] == "model-incomplete");
+        assert_eq!(told, lost, "{name}: {said}");
+    }
+}

@@ -149,6 +149,26 @@ pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
     })
 }
 
+/// Share of a channel that a model may leave and still say something of it: half of it, whatever noise and tolerances are.
+const LOST: f64 = 0.5;
+
+/// Error where the model leaves most of a channel, though no floor is stated.
+pub fn check_lost(channel: &str, relative: f64, on: &str) -> Option<Finding> {
+    if relative < LOST {
+        return None;
+    }
+    let left = match relative.is_finite() {
+        true => format!("{:.0} %", 100.0 * relative),
+        false => "all".to_owned(),
+    };
+    let message = format!(
+        "The model leaves {left} of `{channel}` unexplained ({on} data): it says nothing of this vehicle, and neither do its parameters."
+    );
+    let remedy = "Look at signs and units of the channels, at the band and at the names of the columns; then run `reconcile` on this job.";
+    let code = "model-incomplete";
+    Some(Finding::new(Severity::Error, code, channel, message, remedy).with_numbers(relative, LOST))
+}
+
 /// Error where the misfit of a channel is far above its floor.
 pub fn check_adequacy(channel: &str, relative: f64, floor: [f64; 2], on: &str) -> Option<Finding> {
     let [expected, limit] = floor;

@@ -1,6 +1,6 @@
 //! The answer of one connected part of a vehicle, and how it joins the whole.
 
-use super::adequacy::{ChannelFloor, check_adequacy, check_noise};
+use super::adequacy::{ChannelFloor, check_adequacy, check_lost, check_noise};
 use super::checks::at_bound;
 use super::fit::Fit;
 use super::identifiability::{absent_sentence, scale_sentence, weak_sentences};
@@ -198,6 +198,8 @@ fn put_fit(
             answer
                 .findings
                 .extend(check_noise(channel, f.noise / size, on_told));
+        } else {
+            answer.findings.extend(check_lost(channel, told, on_told));
         }
         answer.fit.push(ChannelFit {
             channel: channel.clone(),

@@ -604,6 +604,27 @@ fn what_failed_is_tried_again() {
 }
 
 #[test]
+fn a_copy_under_the_name_of_another_vehicle_is_an_error() {
+    let records = [
+        ("A_3.csv", record(4.0, PERIODS, right)),
+        ("Z_2.csv", record(5.0, PERIODS, right)),
+        ("Z_3.csv", record(4.0, PERIODS, right)),
+    ];
+    let dir = folder("foreign", "", &records);
+    let (code, result) = fleet(&dir, &records.each_ref().map(|r| r.0), &[]);
+    assert_eq!(code, 1, "{result}");
+    let of_another = found(&result, "fleet-copy-of-another");
+    let [[subject, message]] = of_another.as_slice() else {
+        panic!("{of_another:?}");
+    };
+    assert_eq!(subject, "Z_3.csv");
+    assert!(
+        message.contains("A_3.csv, which counts for A: Z lacks"),
+        "{message}"
+    );
+}
+
+#[test]
 fn two_records_of_one_day_are_an_error_and_a_copy_is_not() {
     let records = [
         ("T1_1_am.csv", record(4.0, PERIODS, right)),

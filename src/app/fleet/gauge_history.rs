@@ -49,6 +49,15 @@ pub struct DeadPart {
     pub to: f64,
 }
 
+/// A gain that is another one from some day on.
+pub(super) struct GainChange {
+    /// Number of the first day.
+    pub from: usize,
+    /// Natural log of the new gain over the old one, sign dropped.
+    pub size: f64,
+    pub finding: Finding,
+}
+
 impl GaugeHistory {
     /// That of a gauge whose days have these names.
     pub(super) fn of(name: &str, days: &[GaugeDay], names: &[String]) -> Self {
@@ -115,7 +124,7 @@ impl GaugeHistory {
         vehicle: &str,
         days: &[String],
         misread: &[bool],
-    ) -> Option<Finding> {
+    ) -> Option<GainChange> {
         let known: Vec<(usize, f64)> = self
             .gain
             .iter()
@@ -128,29 +137,37 @@ impl GaugeHistory {
             values.sort_by(f64::total_cmp);
             values.get(values.len() / 2).copied()
         };
-        // Two days before and two after, so that one odd day is no change.
-        let cut = (2..known.len().saturating_sub(1)).max_by(|a, b| {
-            let jump = |c: usize| {
+        // The day that leaves least: medians jump alike wherever most of the days stand on their own side. Two days before and two after, so that one
+        // odd day is no change.
+        let left = |list: &[(usize, f64)]| -> f64 {
+            let middle = median(list).unwrap_or(0.0);
+            list.iter().map(|x| (x.1 - middle).abs()).sum()
+        };
+        let cut = (2..known.len().saturating_sub(1)).min_by(|a, b| {
+            let left_by = |c: usize| {
                 let (before, after) = known.split_at(c);
-                (median(after).unwrap_or(0.0) - median(before).unwrap_or(0.0)).abs()
+                left(before) + left(after)
             };
-            jump(*a).total_cmp(&jump(*b))
+            left_by(*a).total_cmp(&left_by(*b))
         })?;
         let (before, after) = known.split_at(cut);
         let (was, is) = (median(before)?, median(after)?);
         let half = 0.5 * (is - was).abs();
         let apart = after.iter().all(|x| (x.1 - was).abs() > half)
             && before.iter().all(|x| (x.1 - is).abs() > half);
-        let day = days.get(after.first()?.0)?;
-        (apart && (is - was).abs() > OFF).then(|| {
-            Finding::new(
+        let from = after.first()?.0;
+        let day = days.get(from)?;
+        (apart && (is - was).abs() > OFF).then(|| GainChange {
+            from,
+            size: (is.abs().max(OFF) / was.abs().max(OFF)).ln().abs(),
+            finding: Finding::new(
                 Severity::Warning,
                 "gauge_gain",
                 format!("{vehicle} {}", self.name),
                 format!("its gain against the other gauges is {was:.2} before {day} and {is:.2} from then on"),
                 "look at its lead wires, amplifier and glue",
             )
-            .with_numbers(is - was, OFF)
+            .with_numbers(is - was, OFF),
         })
     }
 }

@@ -17,6 +17,8 @@ pub enum Status {
     Failed(String),
     /// Another file holds the same bytes.
     Copy(String),
+    /// A file of another vehicle holds the same bytes.
+    Foreign(String),
     /// Another file is the same day, and holds other bytes.
     Second(String),
 }
@@ -27,7 +29,7 @@ impl Status {
         match self {
             Self::Done => "done",
             Self::Failed(_) => "failed",
-            Self::Copy(_) | Self::Second(_) => "copy",
+            Self::Copy(_) | Self::Foreign(_) | Self::Second(_) => "copy",
         }
     }
 
@@ -35,7 +37,7 @@ impl Status {
     pub fn message(&self) -> &str {
         match self {
             Self::Done => "",
-            Self::Failed(m) | Self::Copy(m) | Self::Second(m) => m,
+            Self::Failed(m) | Self::Copy(m) | Self::Foreign(m) | Self::Second(m) => m,
         }
     }
 }
@@ -116,7 +118,7 @@ pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status
     order.sort_by(|a, b| key(a).cmp(key(b)));
     let mut status = vec![Status::Done; files.len()];
     let mut days: BTreeMap<&str, Vec<&FileHead>> = BTreeMap::new();
-    let mut seen_bytes: BTreeMap<&str, &str> = BTreeMap::new();
+    let mut seen_bytes: BTreeMap<&str, &FileHead> = BTreeMap::new();
     let mut seen_days: BTreeMap<(&str, &str), &str> = BTreeMap::new();
     for i in order {
         let (Some(file), Some(slot)) = (files.get(i), status.get_mut(i)) else {
@@ -125,8 +127,14 @@ pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status
         let same_day = seen_days.get(&(file.vehicle.as_str(), file.day.as_str()));
         match (&file.result, seen_bytes.get(file.sha256.as_str()), same_day) {
             (Err(why), ..) => *slot = Status::Failed(why.clone()),
+            (Ok(_), Some(first), _) if first.vehicle == file.vehicle => {
+                *slot = Status::Copy(format!("the same bytes as {}, which counts", first.path));
+            }
             (Ok(_), Some(first), _) => {
-                *slot = Status::Copy(format!("the same bytes as {first}, which counts"));
+                *slot = Status::Foreign(format!(
+                    "the same bytes as {}, which counts for {}: {} lacks them, or they are not its own",
+                    first.path, first.vehicle, file.vehicle
+                ));
             }
             (Ok(_), None, Some(first)) => {
                 *slot = Status::Second(format!(
@@ -135,7 +143,7 @@ pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status
                 ));
             }
             (Ok(_), None, None) => {
-                seen_bytes.insert(&file.sha256, &file.path);
+                seen_bytes.insert(&file.sha256, file);
                 seen_days.insert((&file.vehicle, &file.day), &file.path);
                 days.entry(&file.vehicle).or_default().push(file);
             }

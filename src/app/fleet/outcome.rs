@@ -3,7 +3,7 @@
 use super::compared::{Compared, ReferenceAnswer};
 use super::day::{DayFinding, FileHead};
 use super::found::of_records;
-use super::gauge_history::GaugeHistory;
+use super::gauge_history::{GainChange, GaugeHistory};
 use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
@@ -198,10 +198,20 @@ impl VehicleAnswer {
         }
     }
 
-    /// Gains that are other ones from some day on.
+    /// Gains that are other ones from some day on. A gauge whose gain changes draws along what the others say of each other: of those that change on
+    /// one day the one that changes most is told.
     pub(super) fn gain_changes(&self) -> impl Iterator<Item = Finding> {
-        let gauges = self.gauges.iter();
-        gauges.filter_map(|g| g.gain_change(&self.name, &self.days, &self.misread))
+        let mut largest: BTreeMap<usize, GainChange> = BTreeMap::new();
+        for g in &self.gauges {
+            let Some(change) = g.gain_change(&self.name, &self.days, &self.misread) else {
+                continue;
+            };
+            let known = largest.get(&change.from);
+            if known.is_none_or(|k| change.size > k.size) {
+                largest.insert(change.from, change);
+            }
+        }
+        largest.into_values().map(|c| c.finding)
     }
 
     /// Sets the damage of each relative to that of all.
@@ -334,6 +344,11 @@ impl Fleet {
                     Severity::Warning,
                     "fleet-second-copy",
                     "keep one file a day",
+                ),
+                Status::Foreign(_) => (
+                    Severity::Error,
+                    "fleet-copy-of-another",
+                    "correct the vehicle in the name of one of them, or leave one out",
                 ),
                 // Its hours and damage were asked for, and are missing.
                 Status::Second(_) => (
