@@ -87,7 +87,7 @@ fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_
     let records = [
         ("T1_1.csv", record(4.0, PERIODS, right)),
         ("T2_1.csv", record(6.0, PERIODS, right)),
-        ("T3_1.csv", record(4.0, PERIODS, right)),
+        ("T3_1.csv", record(4.01, PERIODS, right)),
         ("T3_2.csv", record(6.0, PERIODS, |_, y| y[4] = 7.0)),
     ];
     let dir = folder("factor", job, &records);
