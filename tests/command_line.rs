@@ -59,6 +59,27 @@ fn a_missing_file_is_bad_input() {
     );
 }
 
+/// Said of a deck by itself, not of its job alone; the set that no subcase selects is not held.
+#[test]
+fn a_deck_that_holds_a_grid_at_two_values_or_has_a_solid_inside_out_is_told_so() {
+    let dir = folder("contradicting");
+    let deck = dir.join("solid.bdf");
+    let text_of = |selected: u32| {
+        format!(
+            "SOL 101\nCEND\nSPC = {selected}\nBEGIN BULK\nMAT1,1,210000.,,.3,7.85-9\nPSOLID,1,1\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\n\
+             GRID,3,,0.,1.,0.\nGRID,4,,0.,0.,1.\nCTETRA,7,1,1,3,2,4\nSPC1,1,123,1,2,3\nSPC,2,1,3,0.\nSPC,2,1,3,.5\nENDDATA\n"
+        )
+    };
+    for (selected, code) in [(1, 0), (2, 1)] {
+        std::fs::write(&deck, text_of(selected)).unwrap();
+        let out = strainbridge(&["check", deck.to_str().unwrap()]);
+        let err = text(&out.stderr);
+        assert_eq!(out.status.code(), Some(code), "{err}");
+        assert!(err.contains("[inverted-solid]"), "{err}");
+        assert_eq!(err.contains("[contradicting-spc]"), code == 1, "{err}");
+    }
+}
+
 #[test]
 fn json_prints_the_result_and_nothing_else() {
     let dir = folder("json");

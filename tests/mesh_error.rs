@@ -354,9 +354,8 @@ fn loads_are_recovered_better_without_the_mesh_error_and_intervals_hold_them() {
         rms.push(((sum / f64::from(n)).sqrt(), held as f64 / f64::from(n)));
     }
     assert!(rms[1].0 < 0.2 * rms[0].0, "{rms:?}");
-    // Asked 95 %; 91 % is what is reached, since free torsion beside folds converges more slowly than is taken for granted. Six hundred
-    // intervals of a hundred runs: three standard errors of the share are 3 %.
-    assert!(rms[1].1 > 0.88, "{rms:?}");
+    // Asked of the intervals that 95 +- 3 % hold; all runs share one error of the mesh.
+    assert!((0.92..=0.98).contains(&rms[1].1), "{rms:?}");
 }
 
 /// A strip of 4 x 2 elements with rods along its long sides and its loaded end, of a material that does not contract: uniform strain

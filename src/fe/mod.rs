@@ -14,12 +14,14 @@ mod formulation;
 pub mod from_results;
 mod grid_frames;
 mod ground;
+mod hanging;
 mod lanczos;
 mod line_load;
 mod load;
 mod load_case;
 mod load_checks;
 mod mass;
+mod modal_loads;
 mod modes;
 mod negative;
 mod options;
@@ -52,6 +54,7 @@ pub use adjoint::{Adjoint, StrainTerm};
 pub use error::{FeError, FreeDof, Refusal};
 pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of};
 pub use mass::MassProperties;
+pub use modal_loads::modal_loads;
 pub use modes::{ModalSolution, Mode, solve_modes};
 pub use options::{Corners, HeatedStrain, SolveOptions};
 pub use ply_strain::ply_strains;
@@ -64,5 +67,7 @@ pub use solve::{
     Triplets, solution_of, solve_cases, solve_displacements, solve_unit_loads, solve_unit_loads_on,
     supported_stiffness,
 };
-pub use support::{Support, SupportChoice, SupportError, assumed_relief, support_of};
+pub use support::{
+    Support, SupportChoice, SupportError, assumed_relief, contradictions, support_of,
+};
 pub use variants::solve_variants;

@@ -4,6 +4,7 @@ use super::assembly::Numbering;
 use super::constraint::{Reduction, State};
 use super::error::FeError;
 use super::grid_frames::to_local;
+use super::hanging::hanging;
 use super::mass::{Mass, MassProperties, resultant};
 use super::rigid_motion::rigid;
 use crate::linalg::{DMatrix, DVector, Matrix6};
@@ -19,8 +20,10 @@ const FREE_MOTION: f64 = 1e-10;
 pub(crate) struct RigidBody {
     /// Grid locations.
     x: Vec<Vec3>,
-    /// Scalar points: no motion of the body moves them, and what acts there is no force on it.
+    /// Scalar points: they have no place in the body, and what acts there is no force on it.
     scalar: Vec<bool>,
+    /// Those of them that hang between grids on springs, and where these put them in the six rigid motions about the centre of gravity.
+    hanging: Vec<(usize, [f64; 6])>,
     pub(crate) properties: MassProperties,
     /// Columns: free motions as combinations of three translations and three rotations about the centre of gravity.
     basis: DMatrix<f64>,
@@ -100,6 +103,7 @@ impl RigidBody {
         let rigid_mass = DMatrix::from_fn(6, 6, |r, c| properties.matrix[(r, c)]);
         let modal = basis.transpose() * rigid_mass * &basis;
         Ok(Some(Self {
+            hanging: hanging(model, axes, reduction, &properties.cg),
             x,
             scalar,
             properties,
@@ -135,6 +139,17 @@ impl RigidBody {
                 }
             })
             .collect()
+    }
+
+    /// Lets the points that hang on springs go along with the body.
+    fn let_follow(&self, amounts: &DVector<f64>, field: &mut [[f64; 6]]) {
+        for (point, by_motion) in &self.hanging {
+            field[*point][0] = by_motion
+                .iter()
+                .zip(amounts.iter())
+                .map(|(u, a)| u * a)
+                .sum();
+        }
     }
 
     /// Force and moment on the body about its centre of gravity.
@@ -201,7 +216,9 @@ impl RigidBody {
     pub(crate) fn take_out(&self, mass: &Mass, u: &mut [[f64; 6]]) {
         let momentum = self.resultant(&mass.times(u));
         let generalized = self.basis.transpose() * DVector::from_column_slice(&momentum);
-        let field = self.field(&(&self.basis * self.modal_solve(&generalized)));
+        let amounts = &self.basis * self.modal_solve(&generalized);
+        let mut field = self.field(&amounts);
+        self.let_follow(&amounts, &mut field);
         for (u, r) in u.iter_mut().zip(field) {
             u.iter_mut().zip(r).for_each(|(u, r)| *u -= r);
         }
@@ -341,7 +358,9 @@ impl RigidBody {
         column: usize,
     ) -> Vec<f64> {
         let mut out = vec![0.0; numbering.free.iter().map(|b| b.count_ones() as usize).sum()];
-        numbering.pack(&self.turned(axes, column), &mut out);
+        let mut field = self.turned(axes, column);
+        self.let_follow(&self.basis.column(column).into_owned(), &mut field);
+        numbering.pack(&field, &mut out);
         let largest = out.iter().fold(f64::MIN_POSITIVE, |a, v| a.max(v.abs()));
         out.iter_mut().for_each(|v| *v /= largest);
         out

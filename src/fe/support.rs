@@ -143,7 +143,7 @@ pub fn assumed_relief(model: &Model, support: Support) -> Option<Finding> {
 }
 
 /// Contradictions of an SPC set: dofs that its cards hold at different values.
-pub(super) fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
+pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
     /// Dofs that a message names.
     const SHOWN: usize = 5;
     let mut values: Vec<(u32, f64)> = Vec::new();

@@ -14,13 +14,34 @@ pub(super) struct BeamSeat {
     pub(super) station: f64,
 }
 
+/// Sine of the angle to the axis up to which a gauge counts as along it: what is left is 3e-4 of its strain.
+const ALONG: f64 = 0.0175;
+
+/// What of a gauge is not along the axis of its beam.
+fn across(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
+    let turned = |d: &Vec3| d.cross(axis).norm() > ALONG * d.norm();
+    if spec.bridge == Bridge::Shear {
+        Some("a shear bridge")
+    } else if spec.rosette.is_some() {
+        Some("a rosette")
+    } else if spec.angle_rad.sin().abs() > ALONG {
+        Some("an angle to the axis")
+    } else if spec.direction.as_ref().is_some_and(turned) {
+        Some("a direction across the axis")
+    } else if spec.pair.is_some() {
+        Some("a second pair on a shell")
+    } else {
+        None
+    }
+}
+
 /// The gauge at a recovery point.
 ///
 /// A bending bridge pairs the point with the one across the neutral axis, which bends by the same strain with its sign turned: it reads
 /// twice (half bridge) or four times (full bridge) the strain of the point less that of the neutral axis.
 ///
 /// # Errors
-/// A beam that is not there.
+/// A beam that is not there; a gauge that reads across its axis.
 pub(super) fn on_beam(
     model: &Model,
     spec: &GaugeSpec,
@@ -35,6 +56,13 @@ pub(super) fn on_beam(
         station,
     } = seat;
     let b = model.beams.get(beam.us()).ok_or_else(missing)?;
+    if let Some(what) = across(spec, &b.axes.row(0).transpose()) {
+        return Err(GaugeError::AcrossBeam {
+            gauge: spec.name.clone(),
+            element: b.id,
+            what,
+        });
+    }
     let end = |i: usize| {
         model
             .grids
@@ -65,6 +93,7 @@ pub(super) fn on_beam(
         ]
     };
     let arms = match spec.bridge {
+        // Shear was refused: it is no strain along the axis.
         Bridge::Quarter | Bridge::Shear => vec![arm(here, 1.0)],
         Bridge::HalfBending => bending(2.0),
         Bridge::FullBending => bending(4.0),

@@ -29,6 +29,15 @@ pub enum GaugeError {
         /// Name.
         gauge: String,
     },
+    /// A gauge on a bar or beam that reads across its axis: recovery points have the strain along it alone.
+    AcrossBeam {
+        /// Name.
+        gauge: String,
+        /// Element id.
+        element: u32,
+        /// What it reads, in words.
+        what: &'static str,
+    },
 }
 
 impl GaugeError {
@@ -50,6 +59,16 @@ impl GaugeError {
             Self::NoElement { gauge } => (
                 format!("gauge `{gauge}`: its element is not in the model"),
                 "correct the id",
+            ),
+            Self::AcrossBeam {
+                gauge,
+                element,
+                what,
+            } => (
+                format!(
+                    "gauge `{gauge}`: {what} on bar {element}, whose recovery points have the strain along its axis alone"
+                ),
+                "model this part with shells, or give a gauge along the axis: a quarter bridge or one that bends",
             ),
         }
     }

@@ -421,6 +421,47 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
     // Across the neutral axis the bending strain turns its sign: half bridge twice, full bridge four times the bending strain.
     assert!((at(0, 0.0, Bridge::HalfBending) - 2.0 * 0.9e-6).abs() < 1e-18);
     assert!((at(0, 0.5, Bridge::FullBending) - 4.0 * (2e-6 - 2e-7)).abs() < 1e-18);
+    // Recovery points have the strain along the axis alone: what reads across it was read along it.
+    let along = GaugeSpec {
+        place: GaugePlace::Beam {
+            beam: BeamIx(0),
+            point: 0,
+            station: 0.0,
+        },
+        direction: Some(Vec3::new(-2.0, 0.0, 0.0)),
+        angle_rad: std::f64::consts::PI,
+        ..GaugeSpec::on("b", ShellIx(0))
+    };
+    assert!(build(&m, &along, CornerRows::Absent).is_ok());
+    let across = [
+        GaugeSpec {
+            bridge: Bridge::Shear,
+            ..along.clone()
+        },
+        GaugeSpec {
+            rosette: Some(Rosette::Rectangular),
+            ..along.clone()
+        },
+        GaugeSpec {
+            angle_rad: std::f64::consts::FRAC_PI_4,
+            ..along.clone()
+        },
+        GaugeSpec {
+            direction: Some(Vec3::y()),
+            ..along.clone()
+        },
+        GaugeSpec {
+            pair: Some((ShellIx(0), Surface::Top)),
+            ..along
+        },
+    ];
+    for spec in across {
+        let got = build(&m, &spec, CornerRows::Absent);
+        assert!(
+            matches!(got, Err(GaugeError::AcrossBeam { element: 7, .. })),
+            "{spec:?}"
+        );
+    }
 }
 
 #[test]

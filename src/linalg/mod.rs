@@ -5,10 +5,12 @@
 //! - [`levenberg`]: nonlinear least squares
 //! - [`median`]: the median of values that count unequally
 //! - [`cholesky`]: the factor of a dense covariance
+//! - [`complex`]: complex least squares of small systems
 //! - [`precision`]: the inverse of a dense covariance
 //! - [`tail`]: chances of a value at least as large
 
 pub mod cholesky;
+pub mod complex;
 pub mod dense;
 pub mod levenberg;
 pub mod median;
@@ -20,6 +22,6 @@ pub mod tall;
 
 pub use dense::{Matrix, Vector};
 pub use nalgebra::{
-    DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, SymmetricEigen, Vector3,
-    Vector4, Vector6,
+    Complex, DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, SymmetricEigen,
+    Vector3, Vector4, Vector6,
 };

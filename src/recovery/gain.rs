@@ -109,6 +109,15 @@ impl Gain {
         })
     }
 
+    /// The same with a variance of each load beyond what readings at these errors have.
+    pub fn with_variance(&self, of_loads: &[f64]) -> Self {
+        let mut out = self.clone();
+        for (l, v) in of_loads.iter().enumerate().take(self.n_loads()) {
+            out.base[(l, l)] += v;
+        }
+        out
+    }
+
     /// The same with a row for each sum of loads (loads and factors), so that sums have intervals of their own.
     pub fn with_sums(&self, sums: &[Vec<(usize, f64)>]) -> Self {
         let (k, n) = self.gain.shape();

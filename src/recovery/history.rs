@@ -31,6 +31,8 @@ pub struct Filter {
     noise_factor: f64,
     typical: Vec<f64>,
     widening: Widening,
+    /// Variance of each load beyond what readings at these errors have; empty for none.
+    doubt: Vec<f64>,
     /// Sums of loads that are listed beside them.
     sums: Vec<Vec<(usize, f64)>>,
     /// Estimates by the gauges that read.
@@ -63,6 +65,7 @@ impl Filter {
             gain: Vec::new(),
             rows: Vec::new(),
             sums: Vec::new(),
+            doubt: Vec::new(),
             zero,
             s: s.clone(),
             errors,
@@ -73,6 +76,13 @@ impl Filter {
         };
         filter.lay_out();
         Some(filter)
+    }
+
+    /// Adds a variance of each load beyond what readings at these errors have; before sums of loads are listed.
+    pub fn add_doubt(&mut self, of_loads: &[f64]) {
+        self.whole = Arc::new(self.whole.with_variance(of_loads));
+        self.doubt = of_loads.to_vec();
+        self.others = RwLock::new(HashMap::new());
     }
 
     /// Lists sums of loads (loads and factors) after the loads.
@@ -226,7 +236,7 @@ impl Filter {
             self.noise_factor,
             &self.typical,
         )
-        .map(|g| Arc::new(g.with_sums(&self.sums)));
+        .map(|g| Arc::new(g.with_variance(&self.doubt).with_sums(&self.sums)));
         let mut kept = self.others.write().unwrap_or_else(PoisonError::into_inner);
         if kept.len() < KEPT {
             kept.insert(used, new.clone());

@@ -4,12 +4,13 @@
 //! and records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no
 //! load can make, across the runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and
 //! [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead. [`calibrated`] is the same
-//! for a calibrated S, [`suspects`] and [`unlike`] its judges.
+//! for a calibrated S, [`suspects`] and [`unlike`] its judges. [`dynamic`] turns readings of a structure that vibrates into those at rest.
 
 mod by_calibration;
 pub mod calibrated;
 pub mod clock;
 mod determined;
+pub mod dynamic;
 pub mod errors;
 pub mod faults;
 pub mod gain;

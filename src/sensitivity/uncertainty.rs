@@ -23,11 +23,11 @@ pub struct Uncertainty {
 
 impl Uncertainty {
     /// Of a model whose influence coefficients err by `model_rel` each, by as much again a load as a whole, and by `off` (what is left of a
-    /// mesh's error, `n x k`) each, and as much again by one common factor on all of them:
-    /// `Cov(S_gl, S_hm) = off_gl off_hm (1 + [g = h] [l = m]) + model_rel^2 S_gl S_hm [l = m] (1 + [g = h])`.
-    pub fn of_model(s: &Matrix, model_rel: f64, off: &Matrix) -> Self {
+    /// mesh's error, `n x k`) each, as much again by a factor common to all gauges of a load, and by the share `own_rel` each:
+    /// `Cov(S_gl, S_hm) = [l = m] ((off_gl off_hl + model_rel^2 S_gl S_hl) (1 + [g = h]) + own_rel^2 S_gl^2 [g = h])`.
+    pub fn of_model(s: &Matrix, model_rel: f64, (off, own_rel): (&Matrix, f64)) -> Self {
         let (n, k) = s.shape();
-        let rel2 = model_rel * model_rel;
+        let (rel2, own2) = (model_rel * model_rel, own_rel * own_rel);
         let on = |yes: bool| f64::from(u8::from(yes));
         let mut covariance = Vec::with_capacity(n * k * n * k);
         for g in 0..n {
@@ -35,9 +35,9 @@ impl Uncertainty {
                 for h in 0..n {
                     for m in 0..k {
                         let (same_gauge, same_load) = (on(g == h), on(l == m));
-                        let mesh = off[(g, l)] * off[(h, m)] * (1.0 + same_gauge * same_load);
-                        let stated = rel2 * s[(g, l)] * s[(h, m)] * same_load;
-                        covariance.push(mesh + stated * (1.0 + same_gauge));
+                        let own = own2 * s[(g, l)] * s[(h, m)] * same_gauge;
+                        let both = off[(g, l)] * off[(h, m)] + rel2 * s[(g, l)] * s[(h, m)];
+                        covariance.push(same_load * (both * (1.0 + same_gauge) + own));
                     }
                 }
             }

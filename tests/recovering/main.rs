@@ -5,6 +5,7 @@
 mod calibrated;
 #[path = "../drawn/mod.rs"]
 mod drawn;
+mod dynamic;
 mod files;
 mod misled;
 mod supported;

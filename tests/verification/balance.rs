@@ -327,3 +327,42 @@ fn supports_that_all_move_alike_strain_nothing_and_are_not_said_to_lose_a_load()
         solution.findings
     );
 }
+
+/// Two bars end to end, every dof joined by a spring, or by two of twice its stiffness with a scalar point between them.
+#[test]
+fn springs_in_series_tie_a_free_structure_to_no_ground() {
+    let joined = |between: &dyn Fn(usize) -> String| {
+        let mut b = bar(2);
+        b.grid([1000.0, 0.0, 0.0]);
+        b.grid([1500.0, 0.0, 0.0]);
+        b.card("CBAR,11,2,4,5,0.,1.,0.");
+        (1..=6).for_each(|dof| b.card(&between(dof)));
+        b.card("FORCE,1,2,0,100.,.3,1.,-.5\nMOMENT,1,5,0,1.+4,1.,.2,.7");
+        answer(&b, case(Relief::Automatic)).unwrap_or_else(|e| panic!("{e}"))
+    };
+    let k = |dof: usize| [1e4, 1e4, 1e4, 1e8, 1e8, 1e8][dof - 1];
+    let (direct, _) = joined(&|dof| format!("CELAS2,{},{:?},3,{dof},4,{dof}", 20 + dof, k(dof)));
+    let (series, _) = joined(&|dof| {
+        let (point, twice) = (900 + dof, 2.0 * k(dof));
+        format!(
+            "SPOINT,{point}\nCELAS2,{},{twice:?},3,{dof},{point}\nCELAS2,{},{twice:?},{point},,4,{dof}",
+            30 + dof,
+            40 + dof
+        )
+    });
+    for solution in [&direct, &series] {
+        let told = codes(solution);
+        assert!(told.iter().all(|c| c.0 != "tied-to-ground"), "{told:?}");
+    }
+    let (a, b) = (&direct.cases[0].displacement, &series.cases[0].displacement);
+    for (a, b) in a.iter().take(5).zip(b) {
+        for (dof, (a, b)) in a.iter().zip(b).enumerate() {
+            // Rotations are of the order of displacements over the length.
+            let scale = if dof < 3 { 1.0 } else { 1e-3 };
+            assert!((a - b).abs() < 1e-7 * scale, "{a} {b}");
+        }
+    }
+    for dof in 0..6 {
+        near("point", b[5 + dof][0], 0.5 * (b[2][dof] + b[3][dof]), 1e-6);
+    }
+}

@@ -4,9 +4,10 @@ use crate::app::deck::{DeckModel, model_of_deck};
 use crate::app::fault::FaultList;
 use crate::app::words::short;
 use crate::app::work::Work;
+use crate::fe::{check_shapes, contradictions};
 use crate::model::Model;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Elements of any kind, with and without a struct of their own; masses, rigid elements and plot elements aren't counted.
@@ -47,8 +48,25 @@ pub(super) fn look(
 ) -> (DeckEntry, FaultList) {
     let read = model_of_deck(&mut work.inputs, base, given, bytes);
     work.findings.extend(read.findings.iter().cloned());
+    work.findings.extend(check_shapes(&read.model));
+    let held = supports(&read);
+    work.findings.extend(
+        held.into_iter()
+            .filter_map(|s| contradictions(&read.model, Some(s))),
+    );
     let faults = read.faults.clone();
     (DeckEntry::of(read), faults)
+}
+
+/// SPC sets that case control selects; all of the deck where it selects none.
+fn supports(read: &DeckModel) -> BTreeSet<u32> {
+    let case_control = &read.deck.case_control;
+    let all = std::iter::once(&case_control.global).chain(&case_control.subcases);
+    let selected: BTreeSet<u32> = all.filter_map(|c| c.spc).collect();
+    match selected.is_empty() {
+        true => read.model.spcs.iter().map(|s| s.sid).collect(),
+        false => selected,
+    }
 }
 
 impl DeckEntry {

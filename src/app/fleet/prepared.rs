@@ -25,6 +25,11 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         return Err(Fault::of(&*job.file, "measured", "the job has no [measured]", remedy).into());
     };
     no_zero_runs(job, measured, "FILES")?;
+    if let Some(dynamic) = job.dynamic {
+        let wrong = "records of a fleet are read a piece at a time, and the structure's vibration is not taken out of them";
+        let remedy = "take [dynamic] out, and low-pass the strain below a third of the first mode; or `recover` the records one by one";
+        return Err(Fault::at(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
+    }
     let prepared = prepare(work, job)?;
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));

@@ -28,6 +28,7 @@ pub(super) struct RawJob {
     pub runs: S<RawRuns>,
     pub ballast: S<RawBallast>,
     pub payload: S<RawPayload>,
+    pub dynamic: S<RawDynamic>,
     pub recover: S<RawRecover>,
     pub respond: S<RawRespond>,
     pub study: S<RawStudy>,
@@ -239,6 +240,15 @@ pub(super) struct RawPayload {
     pub sources: S<Vec<Spanned<String>>>,
     pub nominal_x: S<f64>,
     pub nominal_y: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawDynamic {
+    pub up_to_hz: S<f64>,
+    pub damping: S<f64>,
+    pub frequency_uncertainty_rel: S<f64>,
+    pub damping_uncertainty_rel: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -54,7 +54,7 @@ fn add_mesh_error(
     forms: &mut Vec<Form>,
     sites: &[Site],
     bridge: Bridge,
-    errors: &[LoadCaseOf],
+    (loads, errors): (&[LoadCaseOf], &[LoadCaseOf]),
     scales: &[f64],
 ) {
     if errors.is_empty() {
@@ -62,14 +62,16 @@ fn add_mesh_error(
     }
     forms.resize(sites.len(), [0.0; 6]);
     for (form, &site) in forms.iter_mut().zip(sites) {
-        for (error, scale) in errors.iter().zip(scales) {
-            let Some(strain) = wired(bridge, error.case, site) else {
-                continue;
-            };
-            let [x, y, g] = strain.map(|v| v * scale / error.applied / MICROSTRAIN);
-            let squares = [x * x, y * y, g * g, x * y, x * g, y * g];
-            for (f, v) in form.iter_mut().zip(squares) {
-                *f += left_squared() * v;
+        for (cases, left) in [errors, loads].into_iter().zip(left_squared()) {
+            for (case, scale) in cases.iter().zip(scales) {
+                let Some(strain) = wired(bridge, case.case, site) else {
+                    continue;
+                };
+                let [x, y, g] = strain.map(|v| v * scale / case.applied / MICROSTRAIN);
+                let squares = [x * x, y * y, g * g, x * y, x * g, y * g];
+                for (f, v) in form.iter_mut().zip(squares) {
+                    *f += left * v;
+                }
             }
         }
     }
@@ -93,7 +95,7 @@ pub(super) fn kinds(
         .into_iter()
         .map(|bridge| {
             let mut scatter = scatter(job, model, sites, bridge, loads, scales);
-            add_mesh_error(&mut scatter.forms, sites, bridge, errors, scales);
+            add_mesh_error(&mut scatter.forms, sites, bridge, (loads, errors), scales);
             Kind {
                 bridge,
                 candidates: bridges(model, sites, bridge, loads, scales, angles.clone(), scatter),

@@ -56,7 +56,8 @@ impl<'a> Task<'a> {
 
     /// Noise of a gauge with what may be left of its mesh error, microstrain, 1 sd.
     pub fn with_mesh_error(&self, gauge: &Gauge, noise: f64) -> f64 {
-        noise.hypot(left_in_reading(gauge, &self.errors, &self.scales) / MICROSTRAIN)
+        let strain = (self.cases.as_slice(), self.errors.as_slice());
+        noise.hypot(left_in_reading(gauge, strain, &self.scales) / MICROSTRAIN)
     }
 
     /// Lays the gauges that stay and takes away the sites too close to them.

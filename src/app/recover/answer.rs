@@ -1,6 +1,7 @@
 //! What `recover` answers.
 
 use super::damage::LoadDamage;
+use super::dynamic::Motion;
 use super::history::History;
 use super::sink::RecordHead;
 use super::trace::Spans;
@@ -153,6 +154,9 @@ pub struct RecoveredRecord {
     /// Content of the loads against the first elastic mode, where that is known.
     #[serde(flatten)]
     pub content: Option<Content>,
+    /// What vibration was taken out of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
     /// Cycles and pseudo-damage by load, where they are asked for or the record is short.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damage: Option<Vec<LoadDamage>>,

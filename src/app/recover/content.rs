@@ -42,6 +42,28 @@ pub(super) fn structure(support: Support) -> String {
     }
 }
 
+/// A warning for each load whose content reaches beyond what is recovered.
+pub(super) fn check_band(names: &[String], content: &[Option<f64>], up_to_hz: f64) -> Vec<Finding> {
+    let beyond = names.iter().zip(content).filter_map(|(name, f)| {
+        let f = f.filter(|f| *f > up_to_hz)?;
+        let message = format!(
+            "its content reaches {f:.2} Hz, beyond the {up_to_hz} Hz up to which it is recovered: what is faster is not in it"
+        );
+        let remedy = "raise `up_to_hz` of [dynamic], where the gauges tell the loads there";
+        Some(
+            Finding::new(
+                Severity::Warning,
+                "content-beyond-band",
+                format!("load `{name}`"),
+                message,
+                remedy,
+            )
+            .with_numbers(f, up_to_hz),
+        )
+    });
+    beyond.collect()
+}
+
 /// A warning for each load whose content reaches a third of the first mode of `structure`.
 pub(super) fn check_content(
     names: &[String],
@@ -61,7 +83,7 @@ pub(super) fn check_content(
                     "content-near-first-mode",
                     format!("load `{name}`"),
                     format!("its content reaches {f:.2} Hz, a third or more of the first elastic mode of {structure} ({first_mode:.2} Hz): quasi-static recovery reads elastic vibration as load"),
-                    "low-pass the strain below a third of the first mode, or take the loads from accelerations (`identify`)",
+                    "state [dynamic] (the vibration is then taken out with the modes of the model), low-pass the strain below a third of the first mode, or take the loads from accelerations (`identify`)",
                 )
                 .with_numbers(f, limit),
             )

@@ -1,7 +1,7 @@
 //! What samples spread over a record say of it before all of it is read.
 
 use super::answer::Content;
-use super::content::{check_content, content_of_loads, structure};
+use super::content::{check_band, check_content, content_of_loads, structure};
 use super::reading::{Record, block};
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
@@ -35,6 +35,18 @@ pub(super) fn spread_readings(
     record: &Record,
     zero: &[f64],
 ) -> Result<Vec<(usize, Readings)>, Faults> {
+    spread(task.noise_factor, record, zero)
+}
+
+/// The same, the noise variance of a reading given, in units of that of a single one.
+///
+/// # Errors
+/// As [`spread_readings`].
+pub(super) fn spread(
+    noise_factor: f64,
+    record: &Record,
+    zero: &[f64],
+) -> Result<Vec<(usize, Readings)>, Faults> {
     let n = record.n_columns();
     let pieces = record.n_pieces();
     let mut readings: Vec<(usize, Readings)> = Vec::new();
@@ -60,7 +72,7 @@ pub(super) fn spread_readings(
         for i in (0..each).map(|i| measured[i * measured.len() / each]) {
             let row = row(i);
             let strain = row.iter().zip(zero).map(|(v, z)| v - z).collect();
-            let readings_of = Readings::of_sample(times[i], strain, task.noise_factor);
+            let readings_of = Readings::of_sample(times[i], strain, noise_factor);
             readings.push((first + i, readings_of));
         }
     }
@@ -116,12 +128,10 @@ pub(super) fn content(
     let (_, step) = record.first_and_step();
     let rate = if step > 0.0 { 1.0 / step } else { 0.0 };
     let content_hz = content_of_loads(&pieces, &sigma, rate);
-    work.findings.extend(check_content(
-        names,
-        &content_hz,
-        first_elastic_mode_hz,
-        &held,
-    ));
+    work.findings.extend(match task.job.dynamic {
+        Some(dynamic) => check_band(names, &content_hz, dynamic.up_to_hz),
+        None => check_content(names, &content_hz, first_elastic_mode_hz, &held),
+    });
     Ok(Some(Content {
         first_elastic_mode_hz,
         content_hz,

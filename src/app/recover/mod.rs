@@ -8,6 +8,7 @@ mod combined;
 mod content;
 mod damage;
 mod dead_parts;
+mod dynamic;
 mod files;
 mod history;
 mod judged;
@@ -27,6 +28,7 @@ pub use answer::{
 };
 pub(super) use combined::{Listed, listed};
 pub use damage::LoadDamage;
+pub use dynamic::Motion;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
@@ -100,6 +102,8 @@ fn recovered(
         let record = work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
         States::Record(Box::new(record))
     } else {
+        let unused = job.dynamic.map(|_| dynamic::without_record());
+        work.findings.extend(unused);
         States::Runs(Box::new(runs::runs(work, &task)?))
     })
 }

@@ -13,7 +13,7 @@ use crate::recovery::plausible::LARGEST_STRAIN;
 use crate::recovery::stuck::Stuck;
 use crate::recovery::{Sums, clock};
 use crate::series::record::csv::Layout;
-use crate::series::record::{self as series, Clock, Options, is_format, open_record};
+use crate::series::record::{self as series, Clock, Options, Times, is_format, open_record};
 use crate::series::still::{self, Gives, Still};
 use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
@@ -108,6 +108,66 @@ impl Record {
         let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
         let found = looked.throughout(&self.inner, &columns);
         found.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// The readings of every column that is read, strain, a column each.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn columns(&self) -> Result<Vec<Vec<f64>>, Fault> {
+        let n = self.columns.len();
+        let mut out = vec![Vec::with_capacity(self.clock().samples); n];
+        for i in 0..self.n_pieces() {
+            self.each(i, |strain| {
+                for row in strain.chunks_exact(n.max(1)) {
+                    out.iter_mut().zip(row).for_each(|(c, v)| c.push(*v));
+                }
+            })?;
+        }
+        Ok(out)
+    }
+
+    /// The same record with other readings, strain, a column each; the first sample and the time between samples, s.
+    ///
+    /// # Errors
+    /// A record without samples.
+    pub fn with_readings(
+        &self,
+        mut readings: Vec<Vec<f64>>,
+        (start_s, step_s): (f64, f64),
+    ) -> Result<Self, Fault> {
+        readings
+            .iter_mut()
+            .flatten()
+            .for_each(|v| *v /= MICROSTRAIN);
+        let n = readings.len();
+        let whole = series::Whole {
+            columns: Vec::new(),
+            times: Times::Even {
+                start_s,
+                step_s,
+                samples: readings.first().map_or(0, Vec::len),
+            },
+            samples: readings,
+            stored: Vec::new(),
+        };
+        let inner =
+            series::Record::new(Box::new(whole), None).map_err(|e| record_fault(&self.file, &e))?;
+        let as_it_is = Channel {
+            offset: 0.0,
+            factor: 1.0,
+            ignore: false,
+        };
+        Ok(Self {
+            inner,
+            file: self.file.clone(),
+            names: self.names.clone(),
+            micro: vec![1.0; n],
+            columns: (0..n).map(|c| (Some(c), as_it_is)).collect(),
+            blank: Vec::new(),
+            second: 1.0,
+            time_unit_open: self.time_unit_open,
+        })
     }
 
     /// Number of the first sample of a piece.

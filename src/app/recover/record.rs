@@ -4,8 +4,9 @@ use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
+use super::dynamic::{Motion, Rested, rested};
 use super::files;
-use super::judged::{check_times, content, judge};
+use super::judged::{check_times, content, judge, spread};
 use super::reading::{Record, block};
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
@@ -17,6 +18,7 @@ use crate::app::job::LoadFile;
 use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
+use crate::finding::Finding;
 use crate::recovery::history::Filter;
 use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, plausible};
 use crate::sensitivity::Sensitivity;
@@ -53,10 +55,36 @@ pub(super) fn record(
         readings,
         dead,
     } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
-    let judged = judge(task, &sensitivity, readings);
-    let filter = filter(work, task, judged, &sensitivity, zero, &combinations)?;
     check_times(work, &record)?;
+    let rested = rested(work, task, &record, &sensitivity)?;
+    let (noise_factor, readings) = match &rested {
+        Some(r) => {
+            let readings = spread(r.noise_factor, &r.record, &zero)?;
+            (r.noise_factor, readings.into_iter().map(|r| r.1).collect())
+        }
+        None => (task.noise_factor, readings),
+    };
+    let judged = judge(task, &sensitivity, readings);
+    let doubt = rested.as_ref().map(|r| &*r.load_variance);
+    let errors = (noise_factor, doubt);
+    let filter = filter(
+        work,
+        (task, errors),
+        judged,
+        &sensitivity,
+        zero,
+        &combinations,
+    )?;
     let content = content(work, task, &record, &filter, &names)?;
+    let (record, motion, blank) = match rested {
+        Some(Rested {
+            record,
+            motion,
+            blank,
+            ..
+        }) => (record, Some(motion), blank),
+        None => (record, None, 0),
+    };
     let about = record.clock().samples;
     let (first_s, step_s) = record.first_and_step();
     let head = Arc::new(RecordHead {
@@ -84,9 +112,13 @@ pub(super) fn record(
     };
     work.findings
         .extend(files::findings(task.job, &head, &sums));
-    work.findings
-        .extend(check_gaps(&head.file, &sensitivity, &sums.missing));
-    Ok(answer(sensitivity, head, sums, spans, content, damage))
+    let gaps = check_gaps(&head.file, &sensitivity, &sums.missing);
+    // What is blank for the filter alone is said with it.
+    let by_filter = sums.missing.gaps == blank as u64;
+    let said = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
+    work.findings.extend(gaps.into_iter().filter(said));
+    let extras = (content, motion, damage);
+    Ok(answer(sensitivity, head, sums, spans, extras))
 }
 
 /// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.
@@ -139,7 +171,7 @@ pub(super) fn look(
 /// The estimate of every sample, its weights and intervals judged on samples spread over the record.
 fn filter(
     work: &mut Work,
-    task: &Task,
+    (task, (noise_factor, doubt)): (&Task, (f64, Option<&[f64]>)),
     judged: Recovery,
     s: &Sensitivity,
     zero: Vec<f64>,
@@ -150,11 +182,14 @@ fn filter(
         s,
         zero,
         task.errors,
-        task.noise_factor,
+        noise_factor,
         &judged.typical,
         judged.widening,
     );
     let mut filter = filter.ok_or_else(|| unusable(task))?;
+    if let Some(doubt) = doubt {
+        filter.add_doubt(doubt);
+    }
     filter.combine(combinations);
     Ok(filter)
 }
@@ -232,8 +267,7 @@ fn answer(
     head: Arc<RecordHead>,
     sums: Sums,
     spans: Spans,
-    content: Option<Content>,
-    damage: Option<Vec<LoadDamage>>,
+    (content, motion, damage): (Option<Content>, Option<Motion>, Option<Vec<LoadDamage>>),
 ) -> RecoveredRecord {
     let known: Vec<f64> = (0..head.n_loads()).map(|l| sums.known(l) as f64).collect();
     let rms: Vec<f64> = sums
@@ -275,6 +309,7 @@ fn answer(
         duration_s: to - from,
         sample_rate_hz: finite(samples.saturating_sub(1) as f64 / (to - from)),
         content,
+        motion,
         damage,
         sensitivity,
         head,

@@ -234,7 +234,7 @@ fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
         uncertainty: Some(Uncertainty::of_model(
             &plain.values,
             0.02,
-            &Matrix::zeros(3, 2),
+            (&Matrix::zeros(3, 2), 0.0),
         )),
         ..plain.clone()
     };

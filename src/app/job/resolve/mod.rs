@@ -2,6 +2,7 @@
 
 mod calibration;
 mod channel;
+mod dynamic;
 mod fleet;
 mod gauge;
 mod load;
@@ -75,6 +76,7 @@ pub(super) fn resolve_job(
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
         fleet: fleet::fleet(&mut c, raw.fleet.as_ref()),
+        dynamic: dynamic::dynamic(&mut c, raw.dynamic.as_ref()),
         recover: measured::recover(&mut c, raw.recover.as_ref()),
         respond: measured::respond(&mut c, raw.respond.as_ref()),
         study: placement::study(&mut c, raw.study.as_ref()),

@@ -4,6 +4,7 @@ use super::ballast::Ballast;
 use super::calibration::CalibrationKeys;
 use super::candidates::Candidates;
 use super::correction::StrainCorrection;
+use super::dynamic::Dynamic;
 use super::fleet::Fleet;
 use super::gauge::JobGauge;
 use super::load::{Combination, JobLoad};
@@ -64,6 +65,8 @@ pub struct Job {
     pub ballast: Option<Ballast>,
     /// `[payload]`.
     pub payload: Option<Payload>,
+    /// `[dynamic]`.
+    pub dynamic: Option<Dynamic>,
     /// `[recover]`; the default where absent.
     pub recover: Recover,
     /// `[respond]`; the default where absent.

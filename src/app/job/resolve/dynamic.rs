@@ -1,0 +1,52 @@
+//! `[dynamic]`.
+
+use super::super::faults::Collector;
+use super::super::raw::RawDynamic;
+use super::super::spanned::Spanned;
+use super::super::types::Dynamic;
+
+/// One standard deviation of a frequency that a model computes, where none is stated: what density, thickness and joints leave open in a model
+/// that was not fitted to measured modes.
+const FREQUENCY: f64 = 0.02;
+/// The same of a damping that was not measured.
+const DAMPING: f64 = 0.5;
+
+pub(super) fn dynamic(c: &mut Collector, raw: Option<&Spanned<RawDynamic>>) -> Option<Dynamic> {
+    let section = raw?;
+    let raw = section.value();
+    let up_to = c.require(
+        &raw.up_to_hz,
+        section,
+        "dynamic.up_to_hz",
+        "up_to_hz = 30.0",
+    );
+    let damping = c.require(&raw.damping, section, "dynamic.damping", "damping = 0.02");
+    c.positive(&raw.up_to_hz, "dynamic.up_to_hz");
+    c.number(
+        &raw.damping,
+        "dynamic.damping",
+        "a share of critical damping above 0 and below 0.5, such as 0.02",
+        |x| x > 0.0 && x < 0.5,
+    );
+    let share = "a share from 0 to 1";
+    let is_share = |x: f64| (0.0..=1.0).contains(&x);
+    let frequency = c.number(
+        &raw.frequency_uncertainty_rel,
+        "dynamic.frequency_uncertainty_rel",
+        share,
+        is_share,
+    );
+    let of_damping = c.number(
+        &raw.damping_uncertainty_rel,
+        "dynamic.damping_uncertainty_rel",
+        share,
+        is_share,
+    );
+    Some(Dynamic {
+        up_to_hz: up_to?,
+        damping: damping?,
+        frequency_uncertainty_rel: frequency.unwrap_or(FREQUENCY),
+        damping_uncertainty_rel: of_damping.unwrap_or(DAMPING),
+        line: c.line(section),
+    })
+}
