@@ -1,7 +1,9 @@
 //! A record put at rest, stretch by stretch between its gaps.
 
 use super::doubt::{Doubt, doubt};
-use super::{Dynamics, Kernel, Plant, Unfit};
+use super::kernel::Kernel;
+use super::plant::Plant;
+use super::types::{Dynamics, Unfit};
 use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
 use std::ops::Range;

@@ -1,7 +1,7 @@
 //! What frequencies and damping that are not known exactly put into the loads of a record, and what motion makes of them.
 
-use super::BAND_END;
 use super::plant::Plant;
+use super::types::BAND_END;
 use crate::linalg::complex::ComplexMatrix;
 use crate::linalg::{Complex, Matrix};
 use crate::series::plans::forward;

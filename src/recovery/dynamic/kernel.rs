@@ -1,7 +1,7 @@
 //! The filter that puts readings at rest, and how far round a sample it reaches.
 
 use super::plant::Plant;
-use super::{BAND_END, Unfit};
+use super::types::{BAND_END, Unfit};
 use crate::linalg::complex::ComplexMatrix;
 use crate::linalg::{Complex, Matrix};
 use crate::series::plans::{forward, inverse};

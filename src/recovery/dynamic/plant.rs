@@ -1,6 +1,6 @@
 //! How loads strain gauges at a frequency.
 
-use super::{BAND_END, Dynamics};
+use super::types::{BAND_END, Dynamics};
 use crate::linalg::complex::{ComplexMatrix, least_squares_gain};
 use crate::linalg::{Complex, Matrix};
 use crate::sensitivity::Sensitivity;
