@@ -88,9 +88,10 @@ impl DamageParts {
     /// Those of a tally; `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`, row-major,
     /// `n_loads x n_loads`; `noise` is the standard deviation of a sample.
     ///
-    /// The bias is found by counting with more noise ([`Bias`]). The straight line through the first two counts bounds what it may err, and [`OFF`] of
-    /// the bias: on sines of 16 to 200 samples a period and on Gaussian loads, slopes 3 to 9, what was taken off was that of counts without noise
-    /// within a fifth (a third at slope 3) up to a noise of 2 % of the range, and within two fifths at 5 %, where noise made up to four times the damage.
+    /// The bias is found by counting with more noise ([`Bias`]). The straight line through the first two counts bounds what it may err, and [`OFF`]
+    /// of the bias: on sines of 16 to 200 samples a period and on Gaussian loads, slopes 3 to 9, what was taken off was that of counts without
+    /// noise within a fifth (a third at slope 3) up to a noise of 2 % of the range, and within two fifths at 5 %, where noise made up to four times
+    /// the damage.
     pub fn of(tally: &Tally, scale: &[f64], noise: f64) -> Self {
         let sums = tally.sums_with_residue();
         let [once, ..] = sums.damage;
