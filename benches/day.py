@@ -36,10 +36,8 @@ print(n)
     "mf4": """
 import sys, asammdf
 file = asammdf.MDF(sys.argv[1])
-n = 0
-for channel in file.groups[0].channels:
-    n = len(file.get(channel.name, group=0).samples)
-print(n)
+all = [(None, 0, i) for i in range(len(file.groups[0].channels))]
+print(len(file.select(all)[0].samples))
 """,
 }
 
@@ -69,12 +67,13 @@ def written(folder, ending, samples):
     else:
         import asammdf
 
-        parts = list(blocks(samples, random))
-        t = np.concatenate([p[0] for p in parts])
-        signals = [asammdf.Signal(np.concatenate([p[1][:, g] for p in parts]), t, name=n, unit="um/m") for g, n in enumerate(names)]
-        del parts
         file = asammdf.MDF(version="4.10")
-        file.append(signals)
+        for i, (t, strain) in enumerate(blocks(samples, random)):
+            columns = [strain[:, g].copy() for g in range(GAUGES)]
+            if i == 0:
+                file.append([asammdf.Signal(c, t, name=n, unit="um/m") for n, c in zip(names, columns)])
+            else:
+                file.extend(0, [(v, None) for v in [t, *columns]])
         file.save(path, overwrite=True)
     fleet = f'[measured]\nnoise_microstrain = 1.0\n[fleet]\nfile_name = "{{vehicle}}_{{day}}.{ending}"\n'
     job(folder / f"{ending}.toml", names, fleet)

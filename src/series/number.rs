@@ -5,11 +5,19 @@
 pub enum DecimalMark {
     /// `1.5`.
     Point,
-    /// `1,5`, where the fields of a table are not divided by commas; a point is taken too.
+    /// `1,5`, in a table that has commas and no points in its numbers.
+    Comma,
+    /// Either, in a table whose fields are not divided by commas, as long as no number of it has told which.
     CommaOrPoint,
 }
 
 impl DecimalMark {
+    /// Whether a character stands between whole and fraction.
+    #[inline(always)]
+    fn is(self, b: u8) -> bool {
+        (b == b'.' && self != Self::Comma) || (b == b',' && self != Self::Point)
+    }
+
     /// What a table can hold whose fields are divided by `delimiter`.
     pub fn beside(delimiter: u8) -> Self {
         if delimiter == b',' {
@@ -49,7 +57,7 @@ pub fn short_number(text: &[u8], mark: DecimalMark) -> Option<(f64, usize)> {
             whole = whole.wrapping_mul(10).wrapping_add(u64::from(b - b'0'));
             digits += 1;
             power -= i32::from(fraction);
-        } else if !fraction && (b == b'.' || (b == b',' && mark == DecimalMark::CommaOrPoint)) {
+        } else if !fraction && mark.is(b) {
             fraction = true;
         } else {
             break;
@@ -98,7 +106,28 @@ pub fn short_number(text: &[u8], mark: DecimalMark) -> Option<(f64, usize)> {
 }
 
 /// What programs and spreadsheets write where nothing was measured.
-const NOT_MEASURED: [&[u8]; 7] = [b"nan", b"na", b"n/a", b"#n/a", b"#nv", b"null", b"1.#qnan"];
+const NOT_MEASURED: [&[u8]; 6] = [b"nan", b"na", b"n/a", b"#n/a", b"#nv", b"null"];
+/// What the C library of Windows writes for a number that is none, before zeros that fill the field.
+const NO_NUMBER: [&[u8]; 3] = [b"1.#qnan", b"1.#snan", b"1.#ind"];
+
+/// Whether a field says that nothing was measured: `NaN`, `-nan(ind)`, `#N/A`, `-1.#IND00`.
+fn is_not_measured(field: &[u8]) -> bool {
+    let is = |list: &[&[u8]], f: &[u8]| list.iter().any(|w| f.eq_ignore_ascii_case(w));
+    let bare = field
+        .strip_prefix(b"-")
+        .or_else(|| field.strip_prefix(b"+"))
+        .unwrap_or(field);
+    // What kind of none it is.
+    let begins = bare.iter().position(|b| *b == b'(');
+    let before = begins.and_then(|at| bare.strip_suffix(b")")?.get(..at));
+    let zeros = bare.iter().rev().take_while(|b| **b == b'0').count();
+    let filled = bare.get(..bare.len() - zeros).unwrap_or_default();
+    let point: Vec<u8> = filled
+        .iter()
+        .map(|b| if *b == b',' { b'.' } else { *b })
+        .collect();
+    is(&NOT_MEASURED, field) || is(&[b"nan"], before.unwrap_or(bare)) || is(&NO_NUMBER, &point)
+}
 
 /// The number in a whole field; an empty one, `NaN`, `NA`, `#N/A` and the like are NaN. `None` where it is no number.
 pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
@@ -108,7 +137,7 @@ pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     {
         return Some(v);
     }
-    if field.is_empty() || NOT_MEASURED.iter().any(|w| field.eq_ignore_ascii_case(w)) {
+    if field.is_empty() || is_not_measured(field) {
         return Some(f64::NAN);
     }
     let text = std::str::from_utf8(field).ok()?;
@@ -117,7 +146,10 @@ pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     if !(begins.is_ascii_digit() || b"+-.,".contains(begins)) || text.contains(['i', 'I']) {
         return None;
     }
-    if mark == DecimalMark::CommaOrPoint && !text.contains('.') {
+    if mark == DecimalMark::Comma && text.contains('.') {
+        return None;
+    }
+    if mark != DecimalMark::Point && !text.contains('.') {
         return text.replacen(',', ".", 1).parse().ok();
     }
     text.parse().ok()
@@ -227,9 +259,46 @@ mod tests {
                 "{text}"
             );
         }
-        for text in ["", " ", "NaN", "nan", "NA"] {
-            assert!(number(text.as_bytes(), DecimalMark::Point).is_some_and(f64::is_nan));
+        for text in [
+            "",
+            " ",
+            "NaN",
+            "nan",
+            "NA",
+            "-nan",
+            "-nan(ind)",
+            "nan(snan)",
+            "+NaN",
+            "#N/A",
+            "1.#QNAN",
+            "-1.#IND",
+            "1.#QNAN000",
+            "-1,#IND00",
+        ] {
+            let marks = [DecimalMark::Point, DecimalMark::Comma];
+            for mark in marks {
+                assert!(
+                    number(text.as_bytes(), mark).is_some_and(f64::is_nan),
+                    "{text}"
+                );
+            }
         }
+        // Beyond what can be written is no gap.
+        for text in [
+            "1.#INF",
+            "-1.#INF00",
+            "nan(",
+            "(nan)",
+            "-#N/A",
+            "1.#",
+            "nano",
+        ] {
+            assert_eq!(number(text.as_bytes(), DecimalMark::Point), None, "{text}");
+        }
+        for (text, mark) in [("1.5", DecimalMark::Comma), ("1,5", DecimalMark::Point)] {
+            assert_eq!(number(text.as_bytes(), mark), None, "{text}");
+        }
+        assert_eq!(number(b"-1,5e2", DecimalMark::Comma), Some(-150.0));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 mod command;
 mod compared;
+mod days;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 mod health;

@@ -1,9 +1,9 @@
 //! Findings of single records, one for all records of a vehicle that say the same of the same subject.
 
 use super::day::{DayFinding, FileHead};
+use super::days::DayOrder;
 use super::judged::OF_SAMPLES;
 use super::merge::Status;
-use super::name::by_day;
 use crate::finding::explain::code;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::{ALARM, GAUGE_SUSPECT, UNEXPLAINED};
@@ -38,7 +38,7 @@ struct Alike<'a> {
 }
 
 /// One finding for all records that say the same of the same subject; a vehicle each, but for what all have in common.
-pub(super) fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> {
+pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrder) -> Vec<Finding> {
     let mut records: BTreeMap<&str, usize> = BTreeMap::new();
     let mut grouped: BTreeMap<(&str, &str, &str), Alike> = BTreeMap::new();
     for (file, status) in files.iter().zip(status) {
@@ -64,7 +64,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status]) -> Vec<Finding> 
             });
             alike.vehicles.insert(&file.vehicle);
             // Of one vehicle the first is that of the first day, on which it began.
-            if !vehicle.is_empty() && by_day(&file.day, alike.day).is_lt() {
+            if !vehicle.is_empty() && days_in.compare(&file.day, alike.day).is_lt() {
                 (alike.day, alike.path, alike.first) = (&file.day, &file.path, f);
             }
             alike.n += 1;

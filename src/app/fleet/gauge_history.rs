@@ -6,6 +6,9 @@ use serde::Serialize;
 
 /// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
 const DEAD: f64 = 0.01;
+/// A vehicle moves on a day when most of its gauges read more than this many times what they read on their typical day; on others a gauge that reads
+/// little tells nothing.
+const MOVES: f64 = 0.1;
 /// From which a gain is another one: glue, wires and amplifiers of a sound gauge stay well within.
 const OFF: f64 = 0.1;
 /// What is named of a record by its cause, and makes of the gains and zeros of that day what they are not.
@@ -27,6 +30,9 @@ pub struct GaugeHistory {
     pub dead_parts: Vec<DeadPart>,
     /// Mean reading of each day, microstrain.
     pub mean: Vec<Option<f64>>,
+    /// Scatter of its readings on each day, microstrain.
+    #[serde(skip)]
+    pub sd: Vec<Option<f64>>,
     /// Noise of each day, microstrain.
     pub noise: Vec<Option<f64>>,
     /// Gain against what the other gauges predict, each day.
@@ -58,18 +64,39 @@ pub(super) struct GainChange {
     pub finding: Finding,
 }
 
+/// What a gauge reads on its typical day: the median of the standard deviations of those on which it reads.
+fn typical(days: &[GaugeDay]) -> f64 {
+    let sds = days.iter().map(|d| d.sd).filter(|s| s.is_finite());
+    median(sds.collect()).unwrap_or(0.0)
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// On which days a vehicle moves, by the gauges that read on each.
+pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> Vec<bool> {
+    let typical: Vec<f64> = gauges.iter().map(|g| typical(&g.1)).collect();
+    let moves = |day: usize| {
+        let of = gauges.iter().zip(&typical).filter(|g| *g.1 > 0.0);
+        let shares = of.filter_map(|((_, days), typical)| Some(days.get(day)?.sd / typical));
+        let shares = shares.filter(|s| s.is_finite()).collect();
+        median(shares).is_none_or(|share| share > MOVES)
+    };
+    (0..n_days).map(moves).collect()
+}
+
 impl GaugeHistory {
     /// That of a gauge whose days have these names.
-    pub(super) fn of(name: &str, days: &[GaugeDay], names: &[String]) -> Self {
-        let mut sds: Vec<f64> = days
-            .iter()
-            .map(|d| d.sd)
-            .filter(|s| s.is_finite())
-            .collect();
-        sds.sort_by(f64::total_cmp);
-        let typical = sds.get(sds.len() / 2).copied().unwrap_or(0.0);
+    /// `moves` says on which days the vehicle moved.
+    pub(super) fn of(name: &str, days: &[GaugeDay], names: &[String], moves: &[bool]) -> Self {
+        let typical = typical(days);
         let finite = |x: f64| x.is_finite().then_some(x);
-        let dead = |d: &GaugeDay| !d.sd.is_finite() || d.sd <= DEAD * typical || !d.dead.is_empty();
+        let is_dead = |(d, moves): (&GaugeDay, &bool)| {
+            !d.sd.is_finite() || (*moves && d.sd <= DEAD * typical) || !d.dead.is_empty()
+        };
+        let dead: Vec<bool> = days.iter().zip(moves).map(is_dead).collect();
         let parts = days.iter().zip(names).flat_map(|(d, day)| {
             let part = |[from, to]: &[f64; 2]| DeadPart {
                 day: day.clone(),
@@ -80,14 +107,15 @@ impl GaugeHistory {
         });
         Self {
             name: name.to_owned(),
-            dead_days: days
+            dead_days: names
                 .iter()
-                .zip(names)
-                .filter(|(d, _)| dead(d))
-                .map(|(_, n)| n.clone())
+                .zip(&dead)
+                .filter(|(_, dead)| **dead)
+                .map(|(n, _)| n.clone())
                 .collect(),
             dead_parts: parts.collect(),
             mean: days.iter().map(|d| finite(d.mean)).collect(),
+            sd: days.iter().map(|d| finite(d.sd)).collect(),
             noise: days.iter().map(|d| finite(d.noise)).collect(),
             gain: days.iter().map(|d| finite(d.gain)).collect(),
             offset: days.iter().map(|d| finite(d.offset)).collect(),
@@ -132,11 +160,7 @@ impl GaugeHistory {
             .filter(|(i, _)| misread.get(*i) != Some(&true))
             .filter_map(|(i, x)| Some((i, (*x)?)))
             .collect();
-        let median = |list: &[(usize, f64)]| {
-            let mut values: Vec<f64> = list.iter().map(|x| x.1).collect();
-            values.sort_by(f64::total_cmp);
-            values.get(values.len() / 2).copied()
-        };
+        let median = |list: &[(usize, f64)]| median(list.iter().map(|x| x.1).collect());
         // The day that leaves least: medians jump alike wherever most of the days stand on their own side. Two days before and two after, so that one
         // odd day is no change.
         let left = |list: &[(usize, f64)]| -> f64 {

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Folder of the kept results within the output folder.
 pub const FOLDER: &str = "days";
 /// Counts up when what is kept changes its meaning.
-const FORM: u32 = 6;
+const FORM: u32 = 7;
 /// What stands before the digest of a kept result, which ends its file.
 const SEAL: &[u8] = b",\"content\":\"";
 
@@ -221,9 +221,14 @@ impl KeptDays {
         let nanos = now.map_or(0, |t| t.as_nanos());
         let part = place.with_extension(format!("{}-{nanos}.part", std::process::id()));
         let mut out = std::fs::File::create(&part)?;
-        out.write_all(bytes)?;
+        let written = out.write_all(bytes);
         drop(out);
-        std::fs::rename(&part, place)
+        let kept = written.and_then(|()| std::fs::rename(&part, place));
+        if kept.is_err() {
+            // A disk that is full has no room for halves.
+            let _ = std::fs::remove_file(&part);
+        }
+        kept
     }
 
     /// Keeps what a run is asked for, before it begins: a merge knows by it what is missing. Where it stands.

@@ -18,6 +18,7 @@ use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::stuck::changes;
 use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
@@ -31,6 +32,8 @@ use std::ops::ControlFlow;
 
 /// Pieces of a record that are looked at beforehand.
 const LOOKED_AT: usize = 10;
+/// Samples of them that tell whether the vehicle moves.
+const ENOUGH: usize = 200;
 
 /// What a record gives in one pass.
 struct Pass {
@@ -267,7 +270,9 @@ impl Kernel {
         // What one gives in a part alone is told by those who read there.
         let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
         let given = looked.throughout(record, &columns);
-        for (&(g, c, scale), gives) in found.iter().zip(given.map_err(|e| e.to_string())?) {
+        let mut given = given.map_err(|e| e.to_string())?;
+        self.wake(&found, &sampled, &mut given);
+        for (&(g, c, scale), gives) in found.iter().zip(given) {
             let name = all.gauges.get(g).map_or("", String::as_str);
             match gives {
                 Gives::Signal => alive.push((g, c, scale)),
@@ -293,6 +298,50 @@ impl Kernel {
             samples: record.clock.samples,
             ..self.recovering(&alive, &alive_values)?
         })
+    }
+
+    /// Takes columns that give one value for signals where the others don't say that the strain there changes: the vehicle stands, or is loaded so
+    /// little that a coarse reading stays what it is.
+    fn wake(&self, found: &[(usize, usize, [f64; 2])], sampled: &[f64], given: &mut [Gives]) {
+        let n_gauges = self.sensitivity.gauges.len();
+        let by_gauge = found.iter().zip(&*given);
+        let used = by_gauge.filter(|g| *g.1 == Gives::Signal).map(|g| g.0.0);
+        let used: Vec<usize> = used.collect();
+        let rows = sampled.chunks_exact(found.len().max(1));
+        let step = (rows.len() / ENOUGH).max(1);
+        let of_gauges = |row: &[f64]| {
+            let mut out = vec![f64::NAN; n_gauges];
+            for ((g, ..), v) in found.iter().zip(row) {
+                if let Some(slot) = out.get_mut(*g) {
+                    *slot = *v;
+                }
+            }
+            out
+        };
+        let rows: Vec<Vec<f64>> = rows.step_by(step).map(of_gauges).collect();
+        let whole = |row: &&Vec<f64>| {
+            used.iter()
+                .all(|g| row.get(*g).is_some_and(|v| v.is_finite()))
+        };
+        let rows: Vec<&Vec<f64>> = rows.iter().filter(whole).collect();
+        if used.is_empty() || rows.is_empty() {
+            return;
+        }
+        for (gives, (g, ..)) in given.iter_mut().zip(found) {
+            let still = *gives == Gives::OneValue;
+            if still
+                && !changes(
+                    &self.sensitivity,
+                    &used,
+                    &rows,
+                    *g,
+                    self.errors,
+                    self.noise_factor,
+                )
+            {
+                *gives = Gives::Signal;
+            }
+        }
     }
 
     fn recovering(

@@ -2,8 +2,8 @@
 
 use super::compared::Reference;
 use super::day::{Day, FileHead, GaugeDay, LoadDay};
+use super::days::DayOrder;
 use super::gauge_history::is_misread;
-use super::name::by_day;
 use crate::series::rainflow::{DamageInterval, DamageParts, Ratio, Tally};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -112,7 +112,10 @@ pub struct Vehicle {
 ///
 /// Of two files for one day, or with the same bytes, that with the first path counts. What comes out does not depend on the order of
 /// `files`.
-pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status>) {
+pub fn sorted(
+    files: &[FileHead],
+    days_in: DayOrder,
+) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status>) {
     let mut order: Vec<usize> = (0..files.len()).collect();
     let key = |i: &usize| files.get(*i).map(|f| f.path.as_str()).unwrap_or_default();
     order.sort_by(|a, b| key(a).cmp(key(b)));
@@ -150,7 +153,7 @@ pub fn sorted(files: &[FileHead]) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status
         }
     }
     for list in days.values_mut() {
-        list.sort_by(|a, b| by_day(&a.day, &b.day).then(a.day.cmp(&b.day)));
+        list.sort_by(|a, b| days_in.compare(&a.day, &b.day));
     }
     (days, status)
 }

@@ -7,6 +7,7 @@
 mod asked;
 mod compared;
 pub mod day;
+mod days;
 mod dead_parts;
 mod drift;
 mod exchange;
@@ -19,6 +20,7 @@ pub mod kernel;
 pub mod merge;
 mod mission;
 pub mod name;
+mod other_unit;
 mod outcome;
 mod prepared;
 mod recovering;
@@ -42,11 +44,13 @@ use crate::finding::{Finding, Severity, few};
 use crate::series::record::{Options, open_source};
 use compared::{Compared, check_targets};
 use day::{Day, FileHead, FileResult};
+use days::DayOrder;
 use drift::drift;
 use kept::{KeptDays, digest};
 use kernel::Kernel;
 use merge::{Status, sorted, vehicle};
 use name::{NameForm, Shard};
+use other_unit::in_other_units;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -96,24 +100,47 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         .collect();
     check_targets(&job.file, section, &loads)?;
     let kept = KeptDays::new(&spec.folder, job_digest(&mut work, job, section));
+    let order = |names: &mut dyn Iterator<Item = &str>| {
+        DayOrder::of(names).map_err(|e| {
+            let line = section.file_name.line;
+            Fault::at(&*job.file, line, "fleet.file_name", e.wrong, e.remedy)
+        })
+    };
+    // Before hours of work come to nothing.
+    let asked = spec.files.iter();
+    let asked: Vec<name::Named> = asked
+        .filter_map(|p| form.read(&p.display().to_string()))
+        .collect();
+    order(&mut asked.iter().map(|n| n.day.as_str()))?;
     let (files, reused) = if spec.files.is_empty() {
         held(&mut work, &kept, &spec.folder)?
     } else {
         work.sources.extend(spec.files.iter().cloned());
         work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
     };
+    let days_in = order(
+        &mut files
+            .iter()
+            .map(|f| f.day.as_str())
+            .filter(|d| !d.is_empty()),
+    )?;
     let Merged {
         vehicles,
         status,
         compared,
-    } = work.stage("merge", |w| merged(w, &kept, &files, &job.file, section))?;
+    } = work.stage("merge", |w| {
+        merged(w, &kept, &files, days_in, &job.file, section)
+    })?;
     if spec.shard.is_none() {
         let is_all = spec.files.is_empty();
         let absent = compared.check(&job.file, section, is_all)?;
         work.findings.extend(absent);
     }
     let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared, reused);
-    work.findings.extend(answer.findings(&files, &status));
+    work.findings
+        .extend(answer.findings(&files, &status, days_in));
+    work.findings
+        .extend(in_other_units(&answer.vehicles, &kernel.errors));
     let drifts = answer.vehicles.iter();
     work.findings
         .extend(drifts.filter_map(|v| drift(v, &kernel.errors)));
@@ -135,10 +162,11 @@ fn merged(
     work: &mut Work,
     kept: &KeptDays,
     files: &[FileHead],
+    days_in: DayOrder,
     job: &str,
     keys: &FleetKeys,
 ) -> Result<Merged, Faults> {
-    let (by_vehicle, status) = sorted(files);
+    let (by_vehicle, status) = sorted(files, days_in);
     let mut compared = Compared::of(keys, kept, &by_vehicle);
     let mut vehicles = Vec::with_capacity(by_vehicle.len());
     for (name, list) in by_vehicle {

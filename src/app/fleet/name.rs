@@ -1,7 +1,5 @@
 //! Which vehicle and which day a file is of, by its name.
 
-use std::cmp::Ordering;
-
 /// The form of file names: text with `{vehicle}` and `{day}`, each once; `{any}` for what doesn't matter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameForm {
@@ -115,38 +113,6 @@ impl NameForm {
     }
 }
 
-/// The order of days: runs of digits by their number, the rest as text (`day9` before `day10`).
-pub fn by_day(a: &str, b: &str) -> Ordering {
-    let (mut a, mut b) = (a.as_bytes(), b.as_bytes());
-    loop {
-        let digits = |t: &[u8]| t.iter().take_while(|c| c.is_ascii_digit()).count();
-        match (digits(a), digits(b)) {
-            (0, _) | (_, 0) => match (a.split_first(), b.split_first()) {
-                (None, None) => return Ordering::Equal,
-                (None, _) => return Ordering::Less,
-                (_, None) => return Ordering::Greater,
-                (Some((x, ra)), Some((y, rb))) if x == y => (a, b) = (ra, rb),
-                (Some((x, _)), Some((y, _))) => return x.cmp(y),
-            },
-            (n, m) => {
-                let ((x, ra), (y, rb)) = (a.split_at(n), b.split_at(m));
-                let bare = |t: &[u8]| {
-                    t.iter()
-                        .skip_while(|c| **c == b'0')
-                        .copied()
-                        .collect::<Vec<u8>>()
-                };
-                let (x, y) = (bare(x), bare(y));
-                let order = x.len().cmp(&y.len()).then(x.cmp(&y));
-                if order != Ordering::Equal {
-                    return order;
-                }
-                (a, b) = (ra, rb);
-            }
-        }
-    }
-}
-
 /// A part of the files: number `number` of `of`, counted from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
@@ -207,32 +173,6 @@ mod tests {
         ] {
             assert!(NameForm::of(text).is_err(), "{text}");
         }
-    }
-
-    #[test]
-    fn days_are_ordered_by_their_numbers() {
-        let mut days = vec![
-            "day10",
-            "day9",
-            "2026-05-02",
-            "2026-05-01",
-            "day09b",
-            "1",
-            "02",
-        ];
-        days.sort_by(|a, b| by_day(a, b));
-        assert_eq!(
-            days,
-            [
-                "1",
-                "02",
-                "2026-05-01",
-                "2026-05-02",
-                "day9",
-                "day09b",
-                "day10"
-            ]
-        );
     }
 
     #[test]

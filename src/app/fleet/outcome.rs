@@ -2,8 +2,9 @@
 
 use super::compared::{Compared, ReferenceAnswer};
 use super::day::{DayFinding, FileHead};
+use super::days::DayOrder;
 use super::found::of_records;
-use super::gauge_history::{GainChange, GaugeHistory};
+use super::gauge_history::{GainChange, GaugeHistory, moving_days};
 use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
@@ -171,13 +172,14 @@ impl Answer for Fleet {
 impl VehicleAnswer {
     /// What is told of a vehicle; [`VehicleAnswer::compare`] sees the others.
     pub(super) fn of(v: Vehicle, keys: &FleetKeys) -> Self {
+        let moves = moving_days(&v.gauges, v.days.len());
         Self {
             files: v.days.len(),
             hours: v.hours,
             gauges: v
                 .gauges
                 .iter()
-                .map(|(name, days)| GaugeHistory::of(name, days, &v.days))
+                .map(|(name, days)| GaugeHistory::of(name, days, &v.days, &moves))
                 .collect(),
             loads: v
                 .loads
@@ -330,7 +332,12 @@ impl Fleet {
     }
 
     /// What is to be known: files that don't count, gauges that died, findings of single records.
-    pub(super) fn findings(&self, files: &[FileHead], status: &[Status]) -> Vec<Finding> {
+    pub(super) fn findings(
+        &self,
+        files: &[FileHead],
+        status: &[Status],
+        days_in: DayOrder,
+    ) -> Vec<Finding> {
         let mut out = Vec::new();
         for (file, status) in files.iter().zip(status) {
             let (severity, code, remedy) = match status {
@@ -365,7 +372,7 @@ impl Fleet {
                 remedy,
             ));
         }
-        out.extend(of_records(files, status));
+        out.extend(of_records(files, status, days_in));
         for v in &self.vehicles {
             let dead = v.gauges.iter();
             out.extend(dead.filter_map(|g| g.dead(&v.name, v.days.len())));

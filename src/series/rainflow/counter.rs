@@ -12,6 +12,8 @@ const BLOCK: usize = 512;
 pub struct Counter {
     load: usize,
     seed: u64,
+    /// A factor for each load, by which the noise of a sample is drawn.
+    keys: Vec<u64>,
     /// Standard deviation of the noise in a sample.
     noise: f64,
     plain: Rainflow<Tag>,
@@ -94,6 +96,7 @@ impl Counter {
         Self {
             load,
             seed: mixed(load as u64 + 1),
+            keys: (0..n_loads as u64).map(|l| mixed(!l) | 1).collect(),
             noise: if noise.is_finite() { noise } else { 0.0 },
             plain: Rainflow::default(),
             noisy: [Rainflow::default(), Rainflow::default()],
@@ -164,8 +167,9 @@ impl Counter {
             self.plain
                 .push_block(at, values, &mut room.turns, &mut listener);
             if self.noise > 0.0 {
-                for (w, i) in room.white.iter_mut().zip(at..) {
-                    *w = white(self.seed, i as u64);
+                let per_noise = FINE / self.noise;
+                for (w, row) in room.white.iter_mut().zip(block.chunks_exact(k)) {
+                    *w = white(self.seed ^ mark(row, per_noise, &self.keys));
                 }
                 let [one, ..] = NOISE;
                 let levels = NOISE.iter().zip(&mut damage).skip(1);
@@ -352,11 +356,25 @@ fn rises(levels: &mut Counts<i32>, width: f64, latest: Option<Point>, values: &[
     }
 }
 
-/// A number of mean 0 and variance 1 that belongs to a sample: the sum of four even ones, much like a normal one up to three standard
-/// deviations. The same wherever a record is cut.
+/// Parts of the noise of a load in which samples are told apart: what rounding makes of loads moves none into another part, and samples that noise
+/// itself tells apart stand in parts of their own.
+const FINE: f64 = 1024.0;
+
+/// What tells the loads of a sample from those of others, in units of 1 / `per_noise`.
 #[inline(always)]
-fn white(seed: u64, at: u64) -> f64 {
-    let bits = mixed(seed ^ at.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+fn mark(row: &[f64], per_noise: f64, keys: &[u64]) -> u64 {
+    /// Added, it leaves whole numbers in the last digits.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    let part = |(v, key): (&f64, &u64)| (v * per_noise + WHOLE).to_bits().wrapping_mul(*key);
+    let known = row.iter().zip(keys).filter(|p| p.0.is_finite());
+    known.map(part).fold(0, u64::wrapping_add)
+}
+
+/// A number of mean 0 and variance 1 that belongs to a sample by its loads: the sum of four even ones, much like a normal one up to three standard
+/// deviations. The same wherever a record is cut, and whatever stands before it.
+#[inline(always)]
+fn white(mark: u64) -> f64 {
+    let bits = mixed(mark);
     let sum: u32 = (0..4).map(|i| (bits >> (16 * i)) as u32 & 0xffff).sum();
     // Four whole numbers of 0 to 65535: mean 2 x 65535, variance (65536^2 - 1) / 3.
     (f64::from(sum) - 131_070.0) / 37_837.227_237

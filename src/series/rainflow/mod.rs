@@ -1,6 +1,7 @@
 //! Rainflow cycles and the pseudo-damage they make.
 //!
 //! - [`absent`]: numbers that are not finite, kept in JSON
+//! - `bias`: what noise adds to damage, from counts with more of it
 //! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
 //! - `counter`: a tally under way, `counts` its cycles and rises by class
 //! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
@@ -9,6 +10,7 @@
 //! - [`damage`]: damage of one record, range by range
 
 pub mod absent;
+mod bias;
 pub mod count;
 mod counter;
 mod counts;

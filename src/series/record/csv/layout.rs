@@ -1,6 +1,7 @@
 //! How a table is laid out: what divides fields, which lines come first, where its times are.
 
 use super::date;
+use super::mark;
 use super::text::{Encoding, bare, field_end, has_bare_returns, is_empty_line, shown};
 use crate::series::error::SeriesError;
 use crate::series::number::{DecimalMark, number};
@@ -110,6 +111,15 @@ impl Layout {
         let first = fields.get(row).ok_or(SeriesError::Empty)?;
         let start = lines.get(row).map_or(bytes.len(), |l| l.from);
         let time = time_field(&columns, first, mark);
+        let rows = fields.get(row..).unwrap_or_default();
+        let mark = mark::settled(rows, mark).map_err(|(at, what)| {
+            let from = lines.get(row + at).map_or(0, |l| l.from);
+            SeriesError::Line {
+                line: encoding.lines(bytes.get(..from).unwrap_or_default()) + 1,
+                what,
+                remedy: mark::REMEDY,
+            }
+        })?;
         let mut layout = Self {
             encoding,
             delimiter,

@@ -7,6 +7,9 @@
 mod date;
 mod end;
 mod layout;
+mod mark;
+#[cfg(test)]
+mod tests;
 mod text;
 
 pub use end::{is_cut, unsure_end};
@@ -16,7 +19,7 @@ pub use text::has_bare_returns;
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
-use crate::series::number::{number, short_number};
+use crate::series::number::{DecimalMark, number, short_number};
 use layout::TimeKind;
 use text::Encoding;
 
@@ -280,6 +283,19 @@ impl Parser<'_> {
         }
     }
 
+    /// Where no row of the beginning tells what marks a fraction, a number in the form of thousands tells nothing either.
+    #[inline(always)]
+    fn check_mark(&self, rest: &[u8], used: usize) -> Result<(), Wrong> {
+        if self.layout.mark != DecimalMark::CommaOrPoint {
+            return Ok(());
+        }
+        let field = text::bare(rest.get(..used).unwrap_or_default());
+        match mark::may_be_thousands(field) {
+            true => Err((mark::in_words(field), mark::REMEDY)),
+            false => Ok(()),
+        }
+    }
+
     /// Value of the field at the beginning of `rest`, and its length up to the delimiter or the end of the line.
     fn value(&self, rest: &[u8], field: usize) -> Result<(f64, usize), Wrong> {
         let delimiter = self.layout.delimiter;
@@ -297,13 +313,20 @@ impl Parser<'_> {
                 used += 1;
             }
             match rest.get(used) {
-                None => return Ok((v * factor, used)),
-                Some(b) if *b == delimiter || *b == b'\n' => return Ok((v * factor, used)),
+                None => {
+                    self.check_mark(rest, used)?;
+                    return Ok((v * factor, used));
+                }
+                Some(b) if *b == delimiter || *b == b'\n' => {
+                    self.check_mark(rest, used)?;
+                    return Ok((v * factor, used));
+                }
                 _ => {}
             }
         }
         let used = text::field_end(rest, delimiter);
         let shown = text::bare(rest.get(..used).unwrap_or_default());
+        self.check_mark(shown, shown.len())?;
         match number(shown, mark) {
             Some(v) => Ok((v * factor, used)),
             None => {

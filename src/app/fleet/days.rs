@@ -1,0 +1,374 @@
+//! The order of days by their names: dates by the calendar, other names by their numbers.
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+/// In which order a date that does not begin with its year has day and month.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum First {
+    #[default]
+    Day,
+    Month,
+}
+
+/// How the days of a fleet follow each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DayOrder {
+    /// By numbers, from left to right.
+    #[default]
+    Numbers,
+    /// By dates whose day stands before the month.
+    DayFirst,
+    /// By dates whose month stands before the day.
+    MonthFirst,
+}
+
+/// Days of which nobody knows which comes first.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unordered {
+    /// What is wrong.
+    pub wrong: String,
+    /// What to do.
+    pub remedy: &'static str,
+}
+
+/// A date in a name that does not begin with its year.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Date {
+    year: u32,
+    /// The two others, as they stand.
+    two: [u32; 2],
+    /// Whether points divide them, or a word says the month: the day comes first.
+    is_told: bool,
+}
+
+impl DayOrder {
+    /// The order of days with these names.
+    ///
+    /// # Errors
+    /// Dates whose day and month could be exchanged, where that would change their order, or contradict each other; dates beside names that are none.
+    pub fn of<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, Unordered> {
+        let names: BTreeSet<&str> = names.collect();
+        let dates: Vec<(&str, Option<Date>)> = names.iter().map(|n| (*n, date(n))).collect();
+        let of_year_last: Vec<(&str, Date)> = dates
+            .iter()
+            .filter_map(|(n, d)| Some((*n, (*d)?)))
+            .collect();
+        let Some((first, _)) = of_year_last.first() else {
+            return Ok(Self::Numbers);
+        };
+        let other = dates
+            .iter()
+            .find(|d| d.1.is_none() && year_first(d.0).is_none());
+        if let Some((other, _)) = other {
+            return Err(Unordered {
+                wrong: format!(
+                    "of the days `{first}` and `{other}` nobody knows which came first: the one is a date, the other none"
+                ),
+                remedy: "let {day} in [fleet] file_name take in dates alone, or write them with the year first (2026-05-31)",
+            });
+        }
+        let is = |of: [bool; 2]| of_year_last.iter().find(|(_, d)| fits(d) == of);
+        match (is([true, false]), is([false, true])) {
+            (Some((a, _)), Some((b, _))) => Err(Unordered {
+                wrong: format!(
+                    "of the days `{a}` and `{b}` the one has the day before the month and the other has it behind"
+                ),
+                remedy: "write dates with the year first (2026-05-31)",
+            }),
+            (Some(_), None) => Ok(Self::DayFirst),
+            (None, Some(_)) => Ok(Self::MonthFirst),
+            (None, None) => {
+                let order = |first: First| {
+                    let mut list: Vec<&str> = names.iter().copied().collect();
+                    list.sort_by(|a, b| by_date(first, a, b));
+                    list
+                };
+                if order(First::Day) == order(First::Month) {
+                    return Ok(Self::DayFirst);
+                }
+                Err(Unordered {
+                    wrong: format!(
+                        "the day `{first}` may have its day or its month first, and no other day tells"
+                    ),
+                    remedy: "write dates with the year first (2026-05-31), or with points where the day comes first (31.05.2026)",
+                })
+            }
+        }
+    }
+
+    /// Which of two days comes first.
+    pub fn compare(self, a: &str, b: &str) -> Ordering {
+        match self {
+            Self::Numbers => by_numbers(a, b),
+            Self::DayFirst => by_date(First::Day, a, b),
+            Self::MonthFirst => by_date(First::Month, a, b),
+        }
+    }
+}
+
+/// Whether a date can have its day first, and whether its month.
+fn fits(d: &Date) -> [bool; 2] {
+    let [a, b] = d.two;
+    let is = |day: u32, month: u32| (1..=31).contains(&day) && (1..=12).contains(&month);
+    [is(a, b), is(b, a) && !d.is_told]
+}
+
+/// By year, month and day, then by the names.
+fn by_date(first: First, a: &str, b: &str) -> Ordering {
+    let key = |name: &str| match date(name) {
+        Some(d) => {
+            let [x, y] = d.two;
+            match first {
+                First::Day => [d.year, y, x],
+                First::Month if d.is_told => [d.year, y, x],
+                First::Month => [d.year, x, y],
+            }
+        }
+        None => year_first(name).unwrap_or_default(),
+    };
+    key(a).cmp(&key(b)).then_with(|| by_numbers(a, b))
+}
+
+/// A run of digits or letters of a name.
+#[derive(Clone, Copy)]
+struct Word<'a> {
+    text: &'a str,
+    /// What stands before it.
+    mark: &'a str,
+}
+
+/// The words of a name: runs of digits and of letters.
+fn words(name: &str) -> Vec<Word<'_>> {
+    let kind = |c: char| match c {
+        c if c.is_ascii_digit() => 1,
+        c if c.is_alphabetic() => 2,
+        _ => 0,
+    };
+    let (mut out, mut rest, mut mark) = (Vec::new(), name, "");
+    while let Some(first) = rest.chars().next() {
+        let end = rest.find(|c| kind(c) != kind(first)).unwrap_or(rest.len());
+        let (text, left) = rest.split_at(end);
+        if kind(first) == 0 {
+            mark = text;
+        } else {
+            out.push(Word { text, mark });
+            mark = "";
+        }
+        rest = left;
+    }
+    out
+}
+
+/// A number of so many digits.
+fn number(text: &str, digits: std::ops::RangeInclusive<usize>) -> Option<u32> {
+    let fits = digits.contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+    fits.then(|| text.parse().ok())?
+}
+
+/// A year of four digits in which records are made.
+fn year(text: &str) -> Option<u32> {
+    number(text, 4..=4).filter(|y| (1950..2150).contains(y))
+}
+
+/// The number of a month by its English or German name or the first three letters of it.
+fn month(text: &str) -> Option<u32> {
+    const MONTHS: [&[&str]; 12] = [
+        &["jan"],
+        &["feb"],
+        &["mar", "mär", "mrz"],
+        &["apr"],
+        &["may", "mai"],
+        &["jun"],
+        &["jul"],
+        &["aug"],
+        &["sep"],
+        &["oct", "okt"],
+        &["nov"],
+        &["dec", "dez"],
+    ];
+    let word = text.to_lowercase();
+    let is = |list: &&[&str]| list.iter().any(|m| word.starts_with(m));
+    let at = MONTHS
+        .iter()
+        .position(is)
+        .filter(|_| text.chars().count() >= 3)?;
+    u32::try_from(at + 1).ok()
+}
+
+/// A date in a name.
+#[derive(Clone, Copy)]
+enum Found {
+    /// Year, month and day: `2026-05-31`, `20260531`, `2026-May-31`.
+    YearFirst([u32; 3]),
+    /// `31.05.2026`, `5-31-2026`, `31052026`, `31-May-2026`, `31.05.26`. Two digits are a year behind points alone.
+    YearLast(Date),
+}
+
+/// The first date in a name.
+fn found(name: &str) -> Option<Found> {
+    let words = words(name);
+    let at = |i: usize| words.get(i..).unwrap_or_default();
+    (0..words.len()).find_map(|i| match at(i) {
+        [a, b, c, ..] => of_three(a, b, c).or_else(|| of_one(a)),
+        [a, ..] => of_one(a),
+        [] => None,
+    })
+}
+
+fn date(name: &str) -> Option<Date> {
+    match found(name)? {
+        Found::YearLast(date) => Some(date),
+        Found::YearFirst(_) => None,
+    }
+}
+
+fn year_first(name: &str) -> Option<[u32; 3]> {
+    match found(name)? {
+        Found::YearFirst(date) => Some(date),
+        Found::YearLast(_) => None,
+    }
+}
+
+fn is_month_and_day(month: u32, day: u32) -> bool {
+    (1..=12).contains(&month) && (1..=31).contains(&day)
+}
+
+fn of_three(a: &Word, b: &Word, c: &Word) -> Option<Found> {
+    let by_word = month(b.text);
+    let second = || by_word.or_else(|| number(b.text, 1..=2));
+    if let Some(y) = year(a.text) {
+        let (m, d) = (second()?, number(c.text, 1..=2)?);
+        return is_month_and_day(m, d).then_some(Found::YearFirst([y, m, d]));
+    }
+    let points = [b.mark, c.mark] == ["."; 2];
+    let divided = b.mark == c.mark && !b.mark.is_empty() || by_word.is_some();
+    let y = year(c.text).or_else(|| Some(2000 + number(c.text, 2..=2).filter(|_| points)?))?;
+    let d = Date {
+        year: y,
+        two: [number(a.text, 1..=2)?, second()?],
+        is_told: points || by_word.is_some(),
+    };
+    (divided && fits(&d) != [false, false]).then_some(Found::YearLast(d))
+}
+
+/// Eight digits.
+fn of_one(word: &Word) -> Option<Found> {
+    let digits = word.text;
+    let (begin, end) = digits.split_at_checked(4).filter(|_| digits.len() == 8)?;
+    let two = |text: &str| {
+        let (a, b) = text.split_at(2);
+        Some([number(a, 2..=2)?, number(b, 2..=2)?])
+    };
+    if let (Some(y), Some([m, d])) = (year(begin), two(end))
+        && is_month_and_day(m, d)
+    {
+        return Some(Found::YearFirst([y, m, d]));
+    }
+    let d = Date {
+        year: year(end)?,
+        two: two(begin)?,
+        is_told: false,
+    };
+    (fits(&d) != [false, false]).then_some(Found::YearLast(d))
+}
+
+/// Runs of digits by their number, the rest as text (`day9` before `day10`).
+fn by_numbers(a: &str, b: &str) -> Ordering {
+    let (mut x, mut y) = (a.as_bytes(), b.as_bytes());
+    loop {
+        let digits = |t: &[u8]| t.iter().take_while(|c| c.is_ascii_digit()).count();
+        match (digits(x), digits(y)) {
+            (0, _) | (_, 0) => match (x.split_first(), y.split_first()) {
+                (None, None) => return a.cmp(b),
+                (None, _) => return Ordering::Less,
+                (_, None) => return Ordering::Greater,
+                (Some((p, rx)), Some((q, ry))) if p == q => (x, y) = (rx, ry),
+                (Some((p, _)), Some((q, _))) => return p.cmp(q),
+            },
+            (n, m) => {
+                let ((p, rx), (q, ry)) = (x.split_at(n), y.split_at(m));
+                let bare = |t: &[u8]| -> Vec<u8> {
+                    t.iter().skip_while(|c| **c == b'0').copied().collect()
+                };
+                let (p, q) = (bare(p), bare(q));
+                let order = p.len().cmp(&q.len()).then(p.cmp(&q));
+                if order != Ordering::Equal {
+                    return order;
+                }
+                (x, y) = (rx, ry);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sorted(names: &[&str]) -> Result<Vec<String>, Unordered> {
+        let order = DayOrder::of(names.iter().copied())?;
+        let mut list: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
+        list.sort_by(|a, b| order.compare(a, b));
+        Ok(list)
+    }
+
+    #[test]
+    fn days_are_ordered_by_the_calendar_or_by_their_numbers() {
+        for days in [
+            // By numbers.
+            &[
+                "1",
+                "02",
+                "2026-05-01",
+                "2026-05-02",
+                "day9",
+                "day09b",
+                "day10",
+            ][..],
+            &["20260228", "20260301", "20261001"],
+            &["2026-05-01_2", "2026-05-01_10", "2026-05-02_1"],
+            &["w22", "w23"],
+            // Day first, as points, words or a day beyond twelve tell.
+            &["31.12.2025", "02.01.2026", "01.02.2026"],
+            &["30.4.2026 10.15", "30.4.2026 9.15", "1.5.2026"],
+            &["31.12.25", "02.01.26", "01.02.26"],
+            &["02-11-2025", "13-11-2025", "01-12-2025"],
+            &["31122025", "02012026"],
+            &["30-Apr-2026", "1-May-2026", "02-Jun-2026"],
+            &["day 30Apr2026", "day 1May2026"],
+            &["28_Feb_2026", "1_März_2026", "2_Okt_2026"],
+            // Month first.
+            &["11-30-2025", "01-02-2026", "02-01-2026"],
+            &["2026-Feb-11", "2026-Mar-01"],
+            // Either way the same.
+            &["01-01-2026", "02-02-2026", "03-03-2026"],
+            // Dates of both kinds that tell.
+            &["31.12.2025", "2026-01-01", "01.02.2026"],
+        ] {
+            let mut expected: Vec<String> = days.iter().map(|d| (*d).to_owned()).collect();
+            if days[0].starts_with("30.4.2026 10") {
+                expected.swap(0, 1);
+            }
+            let mut turned = days.to_vec();
+            turned.reverse();
+            assert_eq!(sorted(&turned), Ok(expected));
+        }
+    }
+
+    #[test]
+    fn days_that_nobody_can_order_are_said() {
+        for days in [
+            &["05-06-2026", "06-05-2026"][..],
+            &["05062026", "06052026"],
+            &["13-05-2026", "05-13-2026"],
+            &["31.05.2026", "day 4"],
+        ] {
+            let said = sorted(days).unwrap_err();
+            assert!(
+                said.wrong.contains(days[0]) || said.wrong.contains(days[1]),
+                "{said:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Days whose readings are so many times larger or smaller than those of the fleet's other days, noise and all, that their unit must be another one.
+
+use super::outcome::VehicleAnswer;
+use crate::finding::{Finding, Severity, few};
+use crate::recovery::ErrorModel;
+use crate::units::MICROSTRAIN;
+use std::collections::BTreeMap;
+
+/// How many times larger or smaller. What a vehicle does changes the scatter of its readings as much; their noise is that of the electronics.
+const TIMES: f64 = 100.0;
+/// How many times the change of the noise may be that of the scatter, or the other way round.
+const ALIKE: f64 = 5.0;
+/// Share of the stated noise below which no reading's noise falls.
+const OF_STATED: f64 = 0.3;
+
+/// Scatter and noise of a gauge on a day.
+type Sizes = [Option<f64>; 2];
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// One finding a vehicle that has such days; the units of loads and damage of these days are wrong by the power of the factor.
+pub(super) fn in_other_units(vehicles: &[VehicleAnswer], errors: &ErrorModel) -> Vec<Finding> {
+    let mut all: BTreeMap<&str, [Vec<f64>; 2]> = BTreeMap::new();
+    for g in vehicles.iter().flat_map(|v| &v.gauges) {
+        let lists = all.entry(&g.name).or_default();
+        for (list, values) in lists.iter_mut().zip([&g.sd, &g.noise]) {
+            list.extend(values.iter().flatten().filter(|v| **v > 0.0));
+        }
+    }
+    let typical: BTreeMap<&str, Sizes> = all.into_iter().map(|(g, l)| (g, l.map(median))).collect();
+    let of_vehicle = |v: &VehicleAnswer| {
+        let days: Vec<(&String, f64)> = v
+            .days
+            .iter()
+            .enumerate()
+            .filter_map(|(i, day)| Some((day, factor(v, i, &typical, errors)?)))
+            .collect();
+        let (first, times) = days.first()?;
+        let (times, word) = match *times {
+            t if t < 1.0 => (1.0 / t, "smaller"),
+            t => (t, "larger"),
+        };
+        let names: Vec<&String> = days.iter().map(|d| d.0).collect();
+        let message = format!(
+            "on {} of {} days ({}) its readings are {times:.0} times {word} than on the other days of the fleet, and so is their noise, from {first} on: they \
+             are in another unit, and damage of these days is of no use",
+            days.len(),
+            v.days.len(),
+            few(&names),
+        );
+        let remedy = "state the unit in the columns of these records ([um/m], [mm/m], [m/m]), or put them right with [[correction]]";
+        let found = Finding::new(Severity::Error, "fleet-day-unit", &v.name, message, remedy);
+        Some(found.with_numbers(times, TIMES))
+    };
+    vehicles.iter().filter_map(of_vehicle).collect()
+}
+
+/// How many times larger than typical the readings of a day are, where their unit must be another one.
+fn factor(
+    v: &VehicleAnswer,
+    day: usize,
+    typical: &BTreeMap<&str, Sizes>,
+    errors: &ErrorModel,
+) -> Option<f64> {
+    let share = |which: usize| {
+        let of = v.gauges.iter().filter_map(|g| {
+            let own = [&g.sd, &g.noise].get(which)?.get(day).copied()??;
+            let typical = (*typical.get(&*g.name)?.get(which)?)?;
+            (own > 0.0).then_some(own / typical)
+        });
+        median(of.collect())
+    };
+    let (scatter, noise) = (share(0)?, share(1)?);
+    let apart = (scatter / noise).ln().abs() < ALIKE.ln();
+    let far = (scatter > TIMES && noise > TIMES) || (scatter * TIMES < 1.0 && noise * TIMES < 1.0);
+    let stated = errors.noise / MICROSTRAIN * OF_STATED;
+    let quiet = median(v.gauges.iter().filter_map(|g| *g.noise.get(day)?).collect())?;
+    (apart && far && (scatter > 1.0 || quiet < stated)).then_some(scatter)
+}

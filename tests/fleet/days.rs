@@ -1,0 +1,212 @@
+//! Days that are not alike: their order by the calendar, other units, other rates, a vehicle that stands.
+
+use super::command::{GAUGES, findings_of, fleet, folder, table_of};
+use super::drawn::Splitmix;
+use super::program::JOB;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+/// The job of these tests, with the noise that its records have.
+fn noisy(name: &str) -> PathBuf {
+    let (dir, _) = folder(name);
+    let job = JOB.replace("noise_microstrain = 0.001", "noise_microstrain = 1.0");
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    dir
+}
+
+/// Of mean 0 and standard deviation 1: the sum of twelve even numbers, halved.
+fn normal(numbers: &mut Splitmix) -> f64 {
+    (0..12).map(|_| 0.5 * numbers.next()).sum()
+}
+
+/// A day's table with noise of 1 microstrain in each reading, wronged by `change`.
+fn table(day: usize, mut change: impl FnMut(usize, &mut [f64; GAUGES])) -> String {
+    let mut numbers = Splitmix(900 + day as u64);
+    table_of(1, day, None, |i, y| {
+        for v in y.iter_mut() {
+            *v += normal(&mut numbers);
+        }
+        change(i, y);
+    })
+}
+
+fn write(dir: &Path, name: &str, text: &str) -> String {
+    std::fs::write(dir.join(name), text).unwrap();
+    name.to_owned()
+}
+
+fn number(v: &Value) -> f64 {
+    v.as_f64().unwrap_or_else(|| panic!("{v}"))
+}
+
+fn damages(result: &Value) -> Vec<f64> {
+    let loads = result["vehicles"][0]["loads"].as_array().unwrap();
+    loads.iter().map(|l| number(&l["damage"])).collect()
+}
+
+#[test]
+fn days_named_by_day_month_and_year_are_counted_in_the_order_of_the_calendar() {
+    let dir = noisy("calendar");
+    let days = [
+        "2025-11-30",
+        "2025-12-01",
+        "2025-12-31",
+        "2026-01-02",
+        "2026-02-01",
+    ];
+    let named = [
+        "30.11.2025",
+        "1.12.2025",
+        "31.12.2025",
+        "02.01.2026",
+        "1.2.2026",
+    ];
+    let mut files = [Vec::new(), Vec::new()];
+    for (i, (iso, name)) in days.iter().zip(named).enumerate() {
+        let text = table(i + 1, |_, _| ());
+        files[0].push(write(&dir, &format!("A_{iso}.csv"), &text));
+        files[1].push(write(&dir, &format!("A_{name}.csv"), &text));
+    }
+    let (code, right) = fleet(&dir, "iso", &files[0], &[]);
+    assert_eq!(code, 0, "{right}");
+    let (code, result) = fleet(&dir, "named", &files[1], &[]);
+    assert_eq!(code, 0, "{result}");
+    let vehicle = &result["vehicles"][0];
+    assert_eq!(vehicle["days"], Value::from(named.to_vec()));
+    // Cycles that close from day to day are those of this order.
+    assert_eq!(damages(&result), damages(&right));
+    for (a, b) in ["cycles", "damage_counted"].iter().map(|k| {
+        let of = |r: &Value| r["vehicles"][0]["loads"][0][*k].clone();
+        (of(&result), of(&right))
+    }) {
+        assert_eq!(a, b);
+    }
+    // Day or month first: nobody knows; nothing is read and nothing written.
+    let text = table(1, |_, _| ());
+    let two = ["B_05-06-2026.csv", "B_06-05-2026.csv"].map(|n| write(&dir, n, &text));
+    let (code, said) = fleet(&dir, "unknown", &two, &[]);
+    assert_eq!(code, 2, "{said}");
+    assert!(said.to_string().contains("05-06-2026"), "{said}");
+    assert!(!dir.join("unknown").join("days").exists());
+}
+
+#[test]
+fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_not() {
+    let dir = noisy("unit");
+    let mut files = Vec::new();
+    for day in 1..=4 {
+        files.push(write(&dir, &format!("A_{day}.csv"), &table(day, |_, _| ())));
+    }
+    let (code, right) = fleet(&dir, "right", &files, &[]);
+    assert_eq!(code, 0, "{right}");
+    let thousandth = |_: usize, y: &mut [f64; GAUGES]| y.iter_mut().for_each(|v| *v *= 1e-3);
+    let stated = table(3, thousandth).replace("[um/m]", "[mm/m]");
+    write(&dir, "A_3.csv", &stated);
+    let (code, result) = fleet(&dir, "stated", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    // Six digits behind the point of mm/m are a thousandth of a microstrain.
+    for (a, b) in damages(&result).iter().zip(damages(&right)) {
+        assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
+    }
+    for (factor, words) in [(1e-3, "1000 times smaller"), (1e3, "1000 times larger")] {
+        let unstated = table(3, |_, y| y.iter_mut().for_each(|v| *v *= factor));
+        write(&dir, "A_3.csv", &unstated.replace(" [um/m]", ""));
+        let (code, result) = fleet(&dir, "unstated", &files, &[]);
+        assert_eq!(code, 1, "{result}");
+        let found = findings_of(&result, &["error"]);
+        let of_unit: Vec<_> = found.iter().filter(|f| f[0] == "fleet-day-unit").collect();
+        let [[_, subject, message]] = of_unit.as_slice() else {
+            panic!("{found:?}");
+        };
+        assert_eq!(subject, "A");
+        assert!(
+            message.contains(words) && message.contains("(3)"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn a_day_that_the_vehicle_stands_names_no_gauge() {
+    let dir = noisy("standing");
+    let mut files = Vec::new();
+    for day in 1..=5 {
+        let mut numbers = Splitmix(day);
+        // It stands: noise alone, and one gauge whose amplifier rounds to whole numbers reads one of them.
+        let text = match day {
+            3 => table(3, |_, y| {
+                for v in y.iter_mut() {
+                    *v = 0.3 * normal(&mut numbers);
+                }
+                y[2] = 4.0;
+            }),
+            _ => table(day as usize, |_, _| ()),
+        };
+        files.push(write(&dir, &format!("A_{day}.csv"), &text));
+    }
+    let (_, result) = fleet(&dir, "out", &files, &[]);
+    let found = findings_of(&result, &["warning", "error"]);
+    let named = ["dead_channel", "gauge_gain", "fleet-day-unit", "zero_drift"];
+    assert!(
+        found.iter().all(|f| !named.contains(&f[0].as_str())),
+        "{found:?}"
+    );
+    // A gauge that is dead while it drives is named, on the day that it stands as well as not.
+    for (day, file) in files.iter().enumerate() {
+        if day >= 3 {
+            let text = table(day + 1, |_, y| y[2] = 4.0);
+            write(&dir, file, &text);
+        }
+    }
+    let (_, result) = fleet(&dir, "dead", &files, &[]);
+    let found = findings_of(&result, &["warning"]);
+    let dead: Vec<_> = found.iter().filter(|f| f[0] == "dead_channel").collect();
+    let [[_, subject, message]] = dead.as_slice() else {
+        panic!("{found:?}");
+    };
+    assert_eq!(subject, "A G2");
+    assert!(message.contains("on 2 of 5 days, the first 4"), "{message}");
+}
+
+#[test]
+fn days_of_other_rates_and_with_a_renamed_gauge_are_counted_alike() {
+    let dir = noisy("rates");
+    let mut files = Vec::new();
+    for day in 1..=4 {
+        files.push(write(&dir, &format!("A_{day}.csv"), &table(day, |_, _| ())));
+    }
+    let (_, right) = fleet(&dir, "right", &files, &[]);
+    let hours = number(&right["vehicles"][0]["hours"]);
+    // The same samples, half as fast.
+    let slow: String = table(2, |_, _| ())
+        .lines()
+        .map(|line| match line.split_once(',') {
+            Some((t, rest)) if t != "time" => {
+                format!("{:.2},{rest}\n", 2.0 * t.parse::<f64>().unwrap())
+            }
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    write(&dir, "A_2.csv", &slow);
+    let (code, result) = fleet(&dir, "slow", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    assert_eq!(damages(&result), damages(&right));
+    assert!((number(&result["vehicles"][0]["hours"]) / hours - 1.25).abs() < 1e-9);
+    // A gauge under another name: its readings are missing and said to be; the others tell the loads, here within their noise.
+    let renamed = table(3, |_, _| ()).replace("G4 [um/m]", "SG4 [um/m]");
+    write(&dir, "A_3.csv", &renamed);
+    let (code, result) = fleet(&dir, "renamed", &files, &[]);
+    assert_eq!(code, 0, "{result}");
+    let found = findings_of(&result, &["warning"]);
+    for (code, subject) in [("gauge-missing", "G4"), ("strain-without-gauge", "SG4")] {
+        assert!(
+            found.iter().any(|f| f[0] == code && f[1].contains(subject)),
+            "{code}: {found:?}"
+        );
+    }
+    for ((a, b), l) in damages(&result).iter().zip(damages(&right)).zip(0..) {
+        let load = &result["vehicles"][0]["loads"][l];
+        let sigma = number(&load["sigma_noise"]).hypot(number(&load["sigma_bias"]));
+        assert!((a - b).abs() < 4.0 * sigma, "{a} {b} {sigma}");
+    }
+}
