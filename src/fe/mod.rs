@@ -64,5 +64,5 @@ pub use solve::{
     Triplets, solution_of, solve_cases, solve_displacements, solve_unit_loads, solve_unit_loads_on,
     supported_stiffness,
 };
-pub use support::{Support, SupportChoice, SupportError, assumed_relief, support_of};
+pub use support::{Support, SupportChoice, SupportError, assumed_relief, check_spcs, support_of};
 pub use variants::solve_variants;

@@ -142,6 +142,14 @@ pub fn assumed_relief(model: &Model, support: Support) -> Option<Finding> {
     )
 }
 
+/// Contradictions of each SPC set that a subcase of the deck selects.
+pub fn check_spcs(model: &Model) -> Vec<Finding> {
+    let selected = model.selected_spcs.iter();
+    selected
+        .filter_map(|set| contradictions(model, Some(*set)))
+        .collect()
+}
+
 /// Contradictions of an SPC set: dofs that its cards hold at different values.
 pub(super) fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
     /// Dofs that a message names.

@@ -20,7 +20,7 @@ pub(super) struct BeamSeat {
 /// twice (half bridge) or four times (full bridge) the strain of the point less that of the neutral axis.
 ///
 /// # Errors
-/// A beam that is not there.
+/// A beam that is not there; a shear bridge.
 pub(super) fn on_beam(
     model: &Model,
     spec: &GaugeSpec,
@@ -65,7 +65,13 @@ pub(super) fn on_beam(
         ]
     };
     let arms = match spec.bridge {
-        Bridge::Quarter | Bridge::Shear => vec![arm(here, 1.0)],
+        Bridge::Quarter => vec![arm(here, 1.0)],
+        Bridge::Shear => {
+            return Err(GaugeError::ShearOnBar {
+                gauge: spec.name.clone(),
+                element: b.id,
+            });
+        }
         Bridge::HalfBending => bending(2.0),
         Bridge::FullBending => bending(4.0),
     };

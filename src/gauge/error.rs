@@ -29,6 +29,13 @@ pub enum GaugeError {
         /// Name.
         gauge: String,
     },
+    /// A shear bridge on a bar or beam, of which the strain along the axis alone is known.
+    ShearOnBar {
+        /// Name.
+        gauge: String,
+        /// Element id.
+        element: u32,
+    },
 }
 
 impl GaugeError {
@@ -50,6 +57,12 @@ impl GaugeError {
             Self::NoElement { gauge } => (
                 format!("gauge `{gauge}`: its element is not in the model"),
                 "correct the id",
+            ),
+            Self::ShearOnBar { gauge, element } => (
+                format!(
+                    "gauge `{gauge}`: bar {element} has strain along its axis alone, and none that a shear bridge reads"
+                ),
+                "use a quarter, half or full bridge, or model the bar in shells",
             ),
         }
     }

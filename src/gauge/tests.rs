@@ -421,6 +421,20 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
     // Across the neutral axis the bending strain turns its sign: half bridge twice, full bridge four times the bending strain.
     assert!((at(0, 0.0, Bridge::HalfBending) - 2.0 * 0.9e-6).abs() < 1e-18);
     assert!((at(0, 0.5, Bridge::FullBending) - 4.0 * (2e-6 - 2e-7)).abs() < 1e-18);
+    // What a shear bridge would read of a bar nobody knows.
+    let shear = GaugeSpec {
+        place: GaugePlace::Beam {
+            beam: BeamIx(0),
+            point: 0,
+            station: 0.0,
+        },
+        bridge: Bridge::Shear,
+        ..GaugeSpec::on("b", ShellIx(0))
+    };
+    assert!(matches!(
+        build(&m, &shear, CornerRows::Absent),
+        Err(GaugeError::ShearOnBar { element: 7, .. })
+    ));
 }
 
 #[test]

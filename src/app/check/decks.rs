@@ -4,6 +4,7 @@ use crate::app::deck::{DeckModel, model_of_deck};
 use crate::app::fault::FaultList;
 use crate::app::words::short;
 use crate::app::work::Work;
+use crate::fe::{check_shapes, check_spcs};
 use crate::model::Model;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -47,6 +48,8 @@ pub(super) fn look(
 ) -> (DeckEntry, FaultList) {
     let read = model_of_deck(&mut work.inputs, base, given, bytes);
     work.findings.extend(read.findings.iter().cloned());
+    work.findings.extend(check_spcs(&read.model));
+    work.findings.extend(check_shapes(&read.model));
     let faults = read.faults.clone();
     (DeckEntry::of(read), faults)
 }
