@@ -267,6 +267,59 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
     }
 }
 
+/// What is to be solved in a second or two; `STRAINBRIDGE_ALL_CUTS` takes all.
+const SMALL_SET: u64 = 500_000;
+
+#[test]
+fn on_every_set_the_quick_start_gives_an_answer_or_init_says_why_not() {
+    let Some(sets) = sets() else { return };
+    let all = std::env::var("STRAINBRIDGE_ALL_CUTS").is_ok();
+    let folder = scratch("quick_start");
+    let mut inputs: Vec<Vec<String>> = Vec::new();
+    for (op2, deck) in sets {
+        let Some(deck) = deck else { continue };
+        let size = |p: &Path| std::fs::metadata(p).unwrap().len();
+        if !all && size(&op2) + size(&deck) > SMALL_SET {
+            continue;
+        }
+        let [deck, op2] = [deck, op2].map(|p| p.display().to_string());
+        if !inputs.contains(&vec![deck.clone()]) {
+            inputs.push(vec![deck.clone()]);
+        }
+        inputs.push(vec![deck, op2]);
+    }
+    let (mut answered, mut told, mut neither) = (0, 0, Vec::new());
+    for files in &inputs {
+        let _ = std::fs::remove_dir_all(&folder);
+        let out = folder.display().to_string();
+        let mut arguments = vec!["init"];
+        arguments.extend(files.iter().map(String::as_str));
+        arguments.extend(["--out", &out]);
+        let done = strainbridge(&arguments);
+        if !String::from_utf8_lossy(&done.stdout).contains("then run `place") {
+            // Refused with a fault, or a job with the reason why nothing can be placed.
+            assert!(!done.stderr.is_empty(), "{files:?}: nothing is said");
+            told += 1;
+            continue;
+        }
+        let job = folder.join("job.toml");
+        let placed = strainbridge(&["place", job.to_str().unwrap(), "--no-cache"]);
+        match placed.status.code() {
+            Some(0) => answered += 1,
+            _ => neither.push((files, String::from_utf8_lossy(&placed.stderr).into_owned())),
+        }
+    }
+    println!(
+        "{answered} of {} answered, {told} told why not, neither {neither:?}",
+        inputs.len()
+    );
+    // Nine of ten are asked for.
+    assert!(
+        answered > 0 && told > 0 && 10 * neither.len() <= inputs.len(),
+        "{neither:?}"
+    );
+}
+
 /// The first grid and the first shell that the texts of a deck's folder name.
 fn ids(deck: &Path) -> Option<[u32; 2]> {
     let texts: Vec<String> = files(deck.parent()?, &["bdf", "dat", "nas", "inc"])

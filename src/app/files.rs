@@ -246,7 +246,7 @@ fn is_table(given: &str) -> bool {
 pub(super) fn may_be_cut(file: &str, severity: Severity) -> Finding {
     let (message, remedy) = match severity {
         Severity::Error => (
-            "its last line has no end, and its last number has fewer digits than those of its column: the file is cut, and that number is wrong",
+            "its last line has no end, and its last number lacks digits, a point or an exponent that those of its column have: the file is cut, and that number is wrong",
             "copy the file again, or end its last line",
         ),
         Severity::Warning | Severity::Info => (

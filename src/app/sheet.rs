@@ -10,6 +10,10 @@ const MOST_UNPACKED: u64 = 1 << 30;
 #[cfg(feature = "xlsx")]
 const MOST_TEXT: usize = 256 << 20;
 
+/// Rows and columns of a sheet. An address beyond them is damaged: one of many digits wraps in the reader of cells, and would stand elsewhere.
+#[cfg(feature = "xlsx")]
+const MOST_CELLS: (u32, u32) = (1 << 20, 1 << 14);
+
 /// Whether the bytes begin as an archive, which XLSX is.
 pub(super) fn is_sheet(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
@@ -70,6 +74,9 @@ struct Lines {
 #[cfg(feature = "xlsx")]
 impl Lines {
     fn add(&mut self, (row, column): (u32, u32), text: &str) -> Result<(), String> {
+        if row >= MOST_CELLS.0 || column >= MOST_CELLS.1 {
+            return Err("a spreadsheet with a cell beyond the last row or column".to_owned());
+        }
         let before = match self.last {
             Some(last) if last >= (row, column) => {
                 return Err("a spreadsheet whose cells are out of order".to_owned());
@@ -147,4 +154,19 @@ fn unpacked_size(bytes: &[u8]) -> Option<u64> {
         at += 46 + more;
     }
     Some(sum)
+}
+
+#[cfg(all(test, feature = "xlsx"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_beyond_the_last_row_or_column_are_refused() {
+        let mut lines = Lines::default();
+        assert!(lines.add((0, 0), "run").is_ok());
+        assert!(lines.add((1, (1 << 14) - 1), "1").is_ok());
+        for beyond in [(1 << 20, 0), (2, 1 << 14), (u32::MAX, u32::MAX)] {
+            assert!(lines.add(beyond, "1").is_err(), "{beyond:?}");
+        }
+    }
 }

@@ -254,7 +254,7 @@ impl Run {
 
     fn say(&self, said: &Said) -> ExitCode {
         let voice = Voice::of(&self.common);
-        voice.answer(said.text, said.json);
+        let is_told = voice.answer(said.text, said.json);
         voice.findings(said.findings);
         let notes = said.notes.iter().map(|note| format!("note: {note}"));
         let written = said.folder.map(|f| format!("written to `{}`", f.display()));
@@ -267,6 +267,7 @@ impl Run {
             return ExitCode::from(2);
         }
         match said.findings.worst() {
+            _ if !is_told => ExitCode::from(2),
             Some(Severity::Error) => ExitCode::from(1),
             _ => ExitCode::SUCCESS,
         }

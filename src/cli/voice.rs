@@ -6,7 +6,7 @@ use crate::app::outcome::Seconds;
 use crate::app::words::finding_text;
 use crate::finding::{Finding, Severity};
 use serde_json::{Value, json};
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
 /// How much is said.
@@ -50,13 +50,13 @@ impl Voice {
         self.level == Level::Quiet
     }
 
-    /// Prints the answer to standard output: `result.json` where asked for, else words.
-    pub fn answer(self, words: &str, json: &str) {
+    /// Prints the answer to standard output: `result.json` where asked for, else words; whether it got there.
+    pub fn answer(self, words: &str, json: &str) -> bool {
         match (self.json, self.level) {
-            (true, _) => print(json.as_bytes()),
-            (false, Level::Quiet) => return,
-            (false, _) => print(words.as_bytes()),
-        };
+            (true, _) => is_printed(json.as_bytes()),
+            (false, Level::Quiet) => true,
+            (false, _) => is_printed(words.as_bytes()),
+        }
     }
 
     /// Says findings, the worst first.
@@ -155,7 +155,23 @@ fn say(text: &str) {
 
 /// Prints to standard output.
 pub(super) fn print(text: &[u8]) -> ExitCode {
-    // A closed pipe (`| head`) is no fault of ours.
-    let _ = std::io::stdout().write_all(text);
-    ExitCode::SUCCESS
+    match is_printed(text) {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(2),
+    }
+}
+
+/// Whether a text got to standard output; said where it did not.
+fn is_printed(text: &[u8]) -> bool {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text).and_then(|()| out.flush()) {
+        // A closed pipe (`| head`) is no fault of ours.
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
+            say(&format!(
+                "standard output can't be written ({e}): what was printed is not whole\n"
+            ));
+            false
+        }
+        _ => true,
+    }
 }

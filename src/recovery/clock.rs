@@ -2,6 +2,7 @@
 
 use crate::finding::{Finding, Severity};
 use crate::series::record::{Clock, EVEN, Evenness};
+use crate::units::number;
 
 /// Step, s, from which a record is slower than any logger of loads that move: 2 Hz. Half a millisecond is that of a logger of 2 kHz.
 const SLOW: f64 = 0.5;
@@ -70,8 +71,9 @@ pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
             "time-unit-doubtful",
             "time",
             format!(
-                "a sample every {step_s} s, and each follows the one before as if a thousand times faster: is `time` in milliseconds? \
-                 Sample rate, duration and everything in Hz hang on it"
+                "a sample every {} s, and each follows the one before as if a thousand times faster: is `time` in milliseconds? \
+                 Sample rate, duration and everything in Hz hang on it",
+                number(step_s)
             ),
             "state it: [measured] time_unit = \"ms\", or \"s\" where it is right",
         )

@@ -6,6 +6,7 @@
 //! the first few turned runs; the others hold noise alone.
 
 use super::errors::ErrorModel;
+use super::gain::Gain;
 use super::types::ShiftKind;
 use crate::linalg::{Matrix, SymmetricEigen, dense, spd};
 use crate::sensitivity::Sensitivity;
@@ -52,6 +53,16 @@ pub struct Joint {
     pub effective: f64,
     /// Errors of single gauges.
     pub gauges: Vec<GaugeTest>,
+}
+
+/// Runs in which the same gauges read, judged together.
+pub(super) struct Judged<'a> {
+    pub pattern: &'a Pattern,
+    pub gain: &'a Gain,
+    pub projection: Projection,
+    /// By run of the pattern.
+    pub strain: Vec<&'a [f64]>,
+    pub joint: Joint,
 }
 
 /// The part of readings that a set of loads can't make.
@@ -182,7 +193,33 @@ impl Projection {
     /// All runs of a pattern together; `strain` and `loads` by run of the pattern.
     pub fn judge(&self, pattern: &Pattern, strain: &[&[f64]], loads: &[Vec<f64>]) -> Option<Joint> {
         let m = self.m();
-        let runs = strain.len();
+        let together = self.together(pattern, strain, loads)?;
+        let dof = m * strain.len();
+        let share = self.share_of_model(loads);
+        let turned: usize = together.turned.iter().map(|b| b.over_runs.len()).sum();
+        let independent = (turned * m).clamp(m.min(dof), dof.max(1));
+        let effective = (dof as f64).min(
+            1.0 / (share * share / independent.max(1) as f64
+                + (1.0 - share) * (1.0 - share) / dof.max(1) as f64),
+        );
+        let kinds = [ShiftKind::Gain, ShiftKind::Offset];
+        let gauges = (0..pattern.used.len()).flat_map(|i| kinds.map(|kind| (i, kind)));
+        let gauges = gauges.filter_map(|(i, kind)| self.test(&together, pattern, loads, i, kind));
+        Some(Joint {
+            chi2: together.chi2,
+            dof,
+            effective,
+            gauges: gauges.collect(),
+        })
+    }
+
+    /// The residuals of all runs over their covariance at `loads`.
+    pub fn together(
+        &self,
+        pattern: &Pattern,
+        strain: &[&[f64]],
+        loads: &[Vec<f64>],
+    ) -> Option<Together> {
         let white: Vec<Vec<f64>> = strain
             .iter()
             .map(|y| {
@@ -196,64 +233,58 @@ impl Projection {
         for block in &turned {
             chi2 += block.chi2 - block.chi2_of_noise;
         }
-        let dof = m * runs;
-        let share = self.share_of_model(loads);
-        let independent = (turned.iter().map(|b| b.over_runs.len()).sum::<usize>() * m)
-            .clamp(m.min(dof), dof.max(1));
-        let effective = (dof as f64).min(
-            1.0 / (share * share / independent.max(1) as f64
-                + (1.0 - share) * (1.0 - share) / dof.max(1) as f64),
-        );
-        let mut gauges = Vec::new();
-        for (i, &gauge) in pattern.used.iter().enumerate() {
-            let column: Vec<f64> = self.t.column(i).iter().copied().collect();
-            if spd::dot(&column, &column) * self.sd[i] * self.sd[i] < UNCHECKED {
-                continue;
-            }
-            let mut own = column.clone();
-            spd::solve_lower(&self.noise, &mut own);
-            let own_square = spd::dot(&own, &own);
-            let by_run: Vec<f64> = white.iter().map(|z| spd::dot(&own, z)).collect();
-            let gain: Vec<f64> = loads
+        Some(Together {
+            chi2,
+            white,
+            turned,
+        })
+    }
+
+    /// The error of the `i`-th gauge of the pattern that these residuals suggest; `None` where nothing checks it.
+    pub fn test(
+        &self,
+        together: &Together,
+        pattern: &Pattern,
+        loads: &[Vec<f64>],
+        i: usize,
+        kind: ShiftKind,
+    ) -> Option<GaugeTest> {
+        let column: Vec<f64> = self.t.column(i).iter().copied().collect();
+        if spd::dot(&column, &column) * self.sd[i] * self.sd[i] < UNCHECKED {
+            return None;
+        }
+        let mut own = column.clone();
+        spd::solve_lower(&self.noise, &mut own);
+        let along: Vec<f64> = match kind {
+            ShiftKind::Gain => loads
                 .iter()
                 .map(|f| self.s.row(i).iter().zip(f).map(|(s, f)| s * f).sum())
-                .collect();
-            for (kind, along) in [
-                (ShiftKind::Gain, gain),
-                (ShiftKind::Offset, vec![1.0; runs]),
-            ] {
-                let mut rest = along.clone();
-                let (mut information, mut score) = (0.0, 0.0);
-                for block in &turned {
-                    let shares = block.shares(&along);
-                    for (r, u) in shares.iter().zip(&block.over_runs) {
-                        rest.iter_mut().zip(u).for_each(|(v, u)| *v -= r * u);
-                    }
-                    let mut d: Vec<f64> = shares
-                        .iter()
-                        .flat_map(|b| column.iter().map(move |c| b * c))
-                        .collect();
-                    spd::solve_lower(&block.factor, &mut d);
-                    information += spd::dot(&d, &d);
-                    score += spd::dot(&d, &block.white);
-                }
-                information += own_square * rest.iter().map(|v| v * v).sum::<f64>();
-                score += spd::dot(&rest, &by_run);
-                if information > 0.0 && information.is_finite() {
-                    gauges.push(GaugeTest {
-                        gauge,
-                        kind,
-                        t: score / information.sqrt(),
-                        size: score / information,
-                    });
-                }
+                .collect(),
+            ShiftKind::Offset => vec![1.0; loads.len()],
+        };
+        let mut rest = along.clone();
+        let (mut information, mut score) = (0.0, 0.0);
+        for block in &together.turned {
+            let shares = block.shares(&along);
+            for (r, u) in shares.iter().zip(&block.over_runs) {
+                rest.iter_mut().zip(u).for_each(|(v, u)| *v -= r * u);
             }
+            let mut d: Vec<f64> = shares
+                .iter()
+                .flat_map(|b| column.iter().map(move |c| b * c))
+                .collect();
+            spd::solve_lower(&block.factor, &mut d);
+            information += spd::dot(&d, &d);
+            score += spd::dot(&d, &block.white);
         }
-        Some(Joint {
-            chi2,
-            dof,
-            effective,
-            gauges,
+        information += spd::dot(&own, &own) * rest.iter().map(|v| v * v).sum::<f64>();
+        let by_run = together.white.iter().map(|z| spd::dot(&own, z));
+        score += rest.iter().zip(by_run).map(|(r, z)| r * z).sum::<f64>();
+        (information > 0.0 && information.is_finite()).then(|| GaugeTest {
+            gauge: pattern.used[i],
+            kind,
+            t: score / information.sqrt(),
+            size: score / information,
         })
     }
 
@@ -345,6 +376,15 @@ impl Projection {
             white,
         })
     }
+}
+
+/// Residuals of all runs over their covariance.
+pub(super) struct Together {
+    /// Sum of squares.
+    pub chi2: f64,
+    /// By run, over the covariance of noise and nuisance loads.
+    white: Vec<Vec<f64>>,
+    turned: Vec<Block>,
 }
 
 /// Turned runs whose residuals depend on each other.

@@ -66,6 +66,24 @@ pub fn check(
     runs.iter().filter_map(dead).collect()
 }
 
+/// Parts of a record, first and last of the samples looked at, in which no gauge changes by a digit while elsewhere they do: it stands still
+/// there, or its logger gave nothing and repeats itself. `samples` as in [`check`].
+pub fn still_parts(samples: &[(usize, &[f64])]) -> Vec<[usize; 2]> {
+    /// Gauges that keep still to the last digit, all of them, by chance in no part.
+    const MANY: usize = 3;
+    let reads = |row: &[f64]| row.iter().filter(|v| v.is_finite()).count() >= MANY;
+    let alike = |a: &[f64], b: &[f64]| {
+        let mut pairs = a.iter().zip(b);
+        reads(a) && pairs.all(|(a, b)| a == b || (a.is_nan() && b.is_nan()))
+    };
+    let parts = samples.chunk_by(|a, b| alike(a.1, b.1));
+    let parts: Vec<[usize; 2]> = parts
+        .filter(|part| part.len() >= LEAST && part.len() < samples.len())
+        .filter_map(|part| Some([part.first()?.0, part.last()?.0]))
+        .collect();
+    parts
+}
+
 /// From where to where (the latter left out) a gauge gives nothing, or one value, `least` samples or more: of one value those that have a number
 /// count.
 fn runs_of(samples: &[(usize, &[f64])], gauge: usize, least: usize) -> Vec<(Gives, [usize; 2])> {

@@ -3,14 +3,14 @@
 use super::errors::ErrorModel;
 use super::interval::{NORMAL_95, student_95};
 use super::outlier;
-use super::residuals::{Joint, Out, Projection};
+use super::residuals::{Joint, Judged, Out, Projection};
 use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::finding::{Finding, Severity, few};
 use crate::linalg::tail::chi_square_tail;
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
-use crate::units::MICROSTRAIN;
+use crate::units::{MICROSTRAIN, number};
 
 /// Code of strain that the loads don't explain, beyond doubt.
 pub const UNEXPLAINED: &str = "strain-not-explained";
@@ -82,7 +82,8 @@ pub(super) fn check(
         ));
         return verdict;
     }
-    let joints = joints(s, readings, solved, errors);
+    let judged = judged(s, readings, solved, errors);
+    let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
     let evidence = weigh(s, runs, &joints);
     verdict.misfit = evidence.high < SIGNIFICANT;
     if verdict.misfit && evidence.pooled > 1.0 {
@@ -103,7 +104,7 @@ pub(super) fn check(
     verdict
         .findings
         .extend(size_finding(&evidence, &sizes, errors));
-    let gauges = outlier::check(s, readings, solved, errors, joints.first());
+    let gauges = outlier::check(s, readings, solved, errors, judged.first());
     verdict.findings.extend(gauges.findings);
     for w in verdict.by_run.iter_mut().chain([&mut verdict.widening]) {
         w.shifts.clone_from(&gauges.shifts);
@@ -156,15 +157,15 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
 
 /// The most frequent patterns of silent gauges, each judged over its runs together. All loads are taken out, those of a stated size
 /// too: whether a nuisance load is the same in all runs is not known.
-fn joints(
+fn judged<'a>(
     s: &Sensitivity,
-    readings: &[Readings],
-    solved: &Solved,
+    readings: &'a [Readings],
+    solved: &'a Solved,
     errors: ErrorModel,
-) -> Vec<Joint> {
+) -> Vec<Judged<'a>> {
     let most = solved.patterns.iter().take(PATTERNS);
     most.filter_map(|(pattern, gain)| {
-        gain.as_ref()?;
+        let gain = gain.as_ref()?;
         let projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
         let strain: Vec<&[f64]> = pattern
             .runs
@@ -176,13 +177,20 @@ fn joints(
             .iter()
             .map(|&i| solved.runs[i].estimate.values.clone())
             .collect();
-        projection.judge(pattern, &strain, &loads)
+        let joint = projection.judge(pattern, &strain, &loads)?;
+        Some(Judged {
+            pattern,
+            gain,
+            projection,
+            strain,
+            joint,
+        })
     })
     .collect()
 }
 
 /// All tests together, each held against its share of the chance (Bonferroni).
-fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[Joint]) -> Evidence {
+fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[&Joint]) -> Evidence {
     let ratio = |chi2: f64, dof: usize| (chi2 / dof.max(1) as f64).sqrt();
     let (chi2, dof) = runs
         .iter()
@@ -309,9 +317,10 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
                 UNEXPLAINED,
                 subject,
                 format!(
-                    "the loads asked for leave {:.0} % of the measured strain unexplained, {excess:.1} times what {stated} make: something \
+                    "the loads asked for leave {:.0} % of the measured strain unexplained, {} times what {stated} make: something \
                      else strains the structure, and these loads have taken over part of it. They can't be trusted, nor can their intervals",
-                    sizes.share * 100.0
+                    sizes.share * 100.0,
+                    number(excess)
                 ),
                 missing_load_remedy(sizes.patterns),
             )
@@ -320,7 +329,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
     }
     if evidence.high < SIGNIFICANT {
         let then = if evidence.pooled > 1.0 {
-            format!("intervals are {:.2} times as wide", evidence.pooled)
+            format!("intervals are {} times as wide", number(evidence.pooled))
         } else {
             "intervals stay as they are, since the model's stated error is most of their width"
                 .to_owned()
@@ -331,7 +340,8 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
                 "residual-above-stated-errors",
                 "residual",
                 format!(
-                    "residuals are {excess:.2} times what {stated} make ({:.1} % of the measured strain): {then}",
+                    "residuals are {} times what {stated} make ({:.1} % of the measured strain): {then}",
+                    number(excess),
                     sizes.share * 100.0
                 ),
                 "state the noise and `model_uncertainty_rel` you believe in; if you do, a small load is missing or a gauge is off",
@@ -344,7 +354,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
             Severity::Info,
             "residual-below-stated-errors",
             "residual",
-            format!("residuals are {excess:.2} times what {stated} make: intervals are wider than the readings call for"),
+            format!("residuals are {} times what {stated} make: intervals are wider than the readings call for", number(excess)),
             "state a smaller noise or model uncertainty, if that is what you believe",
         )
         .with_numbers(excess, 1.0)

@@ -3,4 +3,5 @@
 mod check;
 mod copies;
 mod files;
+mod strange;
 mod units;

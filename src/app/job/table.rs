@@ -205,7 +205,7 @@ impl Table {
                     *line,
                     name,
                     format!("`{text}` is no number"),
-                    "write a number with a decimal point",
+                    "write a number with a decimal point; leave the field blank where nothing was read",
                 ))
             }
         }

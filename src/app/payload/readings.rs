@@ -106,6 +106,7 @@ pub(super) fn runs_of(
             shift: [0.0; 2],
         }));
     }
+    same_runs(work, task, &rows, &out)?;
     let without = shifts_and_reactions(task, &rows, unloaded, reactions, &mut out);
     if !without.is_empty() {
         if model.floor.is_none() || !use_strain {
@@ -121,7 +122,7 @@ pub(super) fn runs_of(
             Severity::Warning,
             "run-without-wheel-forces",
             few(&without),
-            "not every wheel was measured: the payload is weighed by strain on a flat floor",
+            "not every wheel was measured in these runs: all runs are weighed by strain on a flat floor",
             "add their rows and columns to the runs file",
         ));
     } else if !reactions && model.floor.is_none() {
@@ -146,6 +147,55 @@ pub(super) fn runs_of(
         out.iter_mut().for_each(|r| r.reactions.clear());
     }
     Ok(Readings { runs: out, net })
+}
+
+/// Whether the runs file speaks of the runs that were read: of some of them, and of the place of all or of none of them.
+///
+/// # Errors
+/// A runs file of other runs.
+fn same_runs(
+    work: &mut Work,
+    task: &Task,
+    rows: &[RunRow],
+    read: &[PayloadRun],
+) -> Result<(), Faults> {
+    let Some(runs) = task.job.runs.as_ref().filter(|_| !rows.is_empty()) else {
+        return Ok(());
+    };
+    let row = |run: &PayloadRun| rows.iter().find(|row| row.run == run.run);
+    let names = |some: &mut dyn Iterator<Item = &PayloadRun>| {
+        let names: Vec<&str> = some.map(|r| r.run.as_str()).collect();
+        few(&names)
+    };
+    // The strain of a single record has the name of its file, which a runs file need not know.
+    if read.len() > 1 && !read.iter().any(|run| row(run).is_some()) {
+        let all = names(&mut read.iter());
+        return Err(Fault::at(
+            &*runs.file.given,
+            1,
+            "run",
+            format!("no row for any run of the strain file ({all})"),
+            "give the runs the same names in both files",
+        )
+        .into());
+    }
+    let is_placed = |run: &&PayloadRun| {
+        row(run).is_some_and(|r| r.payload_x_m.is_some() || r.payload_y_m.is_some())
+    };
+    let (placed, unplaced): (Vec<&PayloadRun>, Vec<&PayloadRun>) = read.iter().partition(is_placed);
+    if task.payload.position == Place::Known && !placed.is_empty() && !unplaced.is_empty() {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "payload-place-assumed",
+                names(&mut unplaced.iter().copied()),
+                "the runs file gives no place of the payload in these runs: it is taken at its nominal place",
+                "give payload_x and payload_y of every run",
+            )
+            .with_numbers(unplaced.len() as f64, 0.0),
+        );
+    }
+    Ok(())
 }
 
 /// Puts the runs' known places and, where asked for, wheel forces in; names the runs that lack wheel forces.

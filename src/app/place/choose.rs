@@ -74,6 +74,8 @@ pub(super) fn choose(
     match choose_once(task, kinds, spec) {
         Err(Refused::By(PlaceError::Singular { gauges, loads })) => {
             know_the_loads(work, spec, gauges, loads);
+            // What is no plan needs no proof that it is the best: with fewer gauges than loads that may take minutes.
+            spec.proof = 0.0;
             choose_once(task, kinds, spec)
         }
         other => other,

@@ -7,7 +7,7 @@ use crate::app::fault::Faults;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::Readings;
-use crate::recovery::stuck::check;
+use crate::recovery::stuck::{check, still_parts};
 use crate::sensitivity::Sensitivity;
 use crate::series::still::{Gives, blank};
 use std::ops::Range;
@@ -39,6 +39,8 @@ pub(super) fn without_dead_parts(
         true => Vec::new(),
         false => check(s, &looked, task.errors, task.noise_factor),
     };
+    work.findings
+        .extend(stands_still(&record, &still_parts(&looked)));
     let (mut parts, mut blanked) = (Vec::new(), Vec::new());
     for dead in &stuck {
         let span = record.extent(dead)?;
@@ -77,4 +79,25 @@ pub(super) fn without_dead_parts(
         readings,
         dead: parts,
     })
+}
+
+/// The warning of parts in which no gauge changes: whether it stands still there, or its logger gave nothing, the record does not say.
+fn stands_still(record: &Record, parts: &[[usize; 2]]) -> Option<Finding> {
+    let [first, last] = *parts.first()?;
+    let [from, to] = [first, last].map(|i| record.time_s(i));
+    let others = match parts.len() {
+        1 => String::new(),
+        n => format!(" (and in {} more parts)", n - 1),
+    };
+    let finding = Finding::new(
+        Severity::Warning,
+        "record-stands-still",
+        record.file(),
+        format!(
+            "from t = {from:.6} s to t = {to:.6} s{others} no gauge changes by a digit: the structure stands still there, or its logger gave nothing \
+             and repeats itself; the readings count as they are"
+        ),
+        "leave the field blank where nothing was measured: loads and cycles there are then left out",
+    );
+    Some(finding.with_numbers(parts.len() as f64, 0.0))
 }

@@ -6,6 +6,7 @@ use super::known_payload::{self, KnownLoads};
 use super::task::{Task, columns_of};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
+use crate::app::job::correct::channel_of;
 use crate::app::job::strain::{
     StrainRows, StrainTable, no_gauge_column, read_strain, record_fault, wanted_columns,
 };
@@ -14,10 +15,11 @@ use crate::app::sheet::is_sheet;
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
 use crate::app::zeroed::{RowZeros, zeros_by_row};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::recovery::{NORMAL_95, Readings, Recovery, recover};
 use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
+use std::collections::HashMap;
 
 /// Readings of the runs, less their zeros and the strain of loads that are known, and these loads.
 pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, KnownLoads), Faults> {
@@ -60,8 +62,83 @@ pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Known
     }
     let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
     let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
+    // What the job leaves out is not missing.
+    let asked: Vec<(usize, &str)> = (columns.iter().zip(&s.gauges))
+        .filter(|(_, gauge)| !channel_of(&task.job.corrections, gauge).ignore)
+        .filter_map(|(column, gauge)| Some(((*column)?, gauge.as_str())))
+        .collect();
+    work.findings.extend(blanks(&table, names, &asked));
     let known = known_payload::take_out(work, task, &mut readings)?;
     Ok((readings, known))
+}
+
+/// Warnings of runs in which a gauge of the table gives nothing, of those in which all give one and the same number, and of copies of others.
+fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Vec<Finding> {
+    /// Gauges that read the same number, to its last digit, by chance in no run.
+    const MANY: usize = 3;
+    let (mut blank, mut n, mut alike) = (Vec::new(), 0_usize, Vec::new());
+    let (mut first_with, mut repeated) = (HashMap::new(), Vec::new());
+    for (i, name) in names.iter().enumerate() {
+        let row = table.row(i);
+        let read = gauges.iter().filter_map(|(c, _)| row.get(*c));
+        let numbers: Vec<f64> = read.copied().filter(|v| v.is_finite()).collect();
+        let first = numbers.first().filter(|_| numbers.len() >= MANY);
+        if let Some(first) = first
+            && numbers.iter().all(|v| v == first)
+        {
+            alike.push(name.as_str());
+        } else if numbers.len() >= MANY && numbers.len() == gauges.len() {
+            let bits: Vec<u64> = numbers.iter().map(|v| v.to_bits()).collect();
+            let first = *first_with.entry(bits).or_insert(name);
+            if first != name {
+                repeated.push(format!("{first} and {name}"));
+            }
+        }
+        for (c, gauge) in gauges {
+            if row.get(*c).is_none_or(|v| !v.is_finite()) {
+                n += 1;
+                blank.push(format!("{gauge} in {name}"));
+            }
+        }
+    }
+    let mut out = Vec::new();
+    if n > 0 {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "readings-missing",
+                few(&blank),
+                format!("{n} readings of `{}` are blank: the loads of these runs are those of the other gauges, with wider intervals", table.file),
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            )
+            .with_numbers(n as f64, 0.0),
+        );
+    }
+    if !repeated.is_empty() {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "readings-repeated",
+                few(&repeated),
+                "these runs have the same readings at all gauges, to the last digit, as no two measurements have: one is a copy",
+                "look the runs up in the logger's files",
+            )
+            .with_numbers(repeated.len() as f64, 0.0),
+        );
+    }
+    if !alike.is_empty() {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "readings-all-alike",
+                few(&alike),
+                "in these runs all gauges give one and the same number, as loggers do that measure nothing: it counts as read",
+                "leave the run out if nothing was measured; blank fields are no readings",
+            )
+            .with_numbers(alike.len() as f64, 0.0),
+        );
+    }
+    out
 }
 
 /// Reads the strain of the runs and recovers their loads.

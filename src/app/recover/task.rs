@@ -77,6 +77,18 @@ pub(super) fn without_reference<'a>(
     prepared: &'a Prepared,
 ) -> Result<Task<'a>, Faults> {
     let (zero, n_zero) = zero_of(work, job, measured, &prepared.sensitivity.gauges)?;
+    if !measured.states_noise {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "noise-assumed",
+            "measured.noise_microstrain",
+            format!(
+                "the job does not say how much readings scatter: {} microstrain (1 sd) is taken, and all intervals rest on it",
+                measured.noise_microstrain
+            ),
+            "state noise_microstrain: the scatter of a gauge at rest",
+        ));
+    }
     Ok(Task {
         job,
         measured,

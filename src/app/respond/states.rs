@@ -69,9 +69,11 @@ pub(super) fn from_table(
     let mut columns: Option<Columns> = None;
     let mut states = Vec::new();
     let mut blank = 0_usize;
+    let mut before = None;
     each_part(&named.given, &text, PART, &mut |part| {
         let columns = columns.get_or_insert_with(|| Columns::of(&part, job, &names, &mut faults));
         for row in 0..part.rows.len() {
+            faults.extend(columns.out_of_order(&part, row, &mut before));
             match columns.state(&part, row, &units, &mut faults) {
                 Some(state) => states.push(state),
                 None => blank += 1,
@@ -122,6 +124,8 @@ pub(super) fn from_table(
 /// Where in the table the loads stand.
 struct Columns {
     key: usize,
+    /// Whether the rows are samples of a record.
+    is_record: bool,
     /// Of each load its value and its interval.
     loads: Vec<(usize, Option<(usize, usize)>)>,
     /// Of each load what it measures, and SI units of one report unit.
@@ -133,8 +137,11 @@ impl Columns {
     fn of(t: &Table, job: &Job, names: &[String], faults: &mut FaultList) -> Self {
         let unit = |l: &JobLoad| l.report_unit(&job.report_units).map_or(1.0, |u| u.si);
         let sizes = job.loads.iter().map(|l| (l.quantity(), unit(l)));
+        let key = t.column(&["run", "time", "t", "state"]).unwrap_or(0);
+        let named = t.header.get(key).map(String::as_str);
         let mut out = Self {
-            key: t.column(&["run", "time", "t", "state"]).unwrap_or(0),
+            key,
+            is_record: matches!(named, Some("time" | "t")),
             loads: Vec::new(),
             sizes: sizes.collect(),
             without_interval: Vec::new(),
@@ -158,6 +165,22 @@ impl Columns {
             out.loads.push((c, interval));
         }
         out
+    }
+
+    /// A fault where the time of a row is no number, or not later than that of the row before.
+    fn out_of_order(&self, t: &Table, row: usize, before: &mut Option<f64>) -> Option<Fault> {
+        if !self.is_record {
+            return None;
+        }
+        let time = match t.number(row, self.key) {
+            Ok(time) => time?,
+            Err(fault) => return Some(fault),
+        };
+        let last = before.replace(time).filter(|last| time <= *last)?;
+        let line = t.rows.get(row).map_or(0, |r| r.0);
+        let wrong = format!("time {time} after {last}");
+        let remedy = "write samples in order of time, each once";
+        Some(Fault::at(&*t.file, line, "time", wrong, remedy))
     }
 
     /// The state of a row; `None` where it lacks a load.

@@ -28,9 +28,10 @@ fn draw(s: &Sensitivity, seed: u64, size: impl Fn(usize) -> f64) -> (Vec<f64>, V
     (f, strain)
 }
 
-fn assert_covers(covered: u64, of: u64) {
+fn assert_covers(what: &str, covered: u64, of: u64) {
     let share = covered as f64 / of as f64;
-    assert!((0.935..=0.965).contains(&share), "{share}");
+    println!("{what}: {:.1} % of {of} intervals", 100.0 * share);
+    assert!((0.935..=0.965).contains(&share), "{what}: {share}");
 }
 
 /// Runs one by one; `silent` gauge gives nothing.
@@ -53,7 +54,8 @@ fn of_runs(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>) 
             of += 1;
         }
     }
-    assert_covers(covered, of);
+    let dead = silent.map_or("", |_| ", a channel dead");
+    assert_covers(&format!("runs, {} loads{dead}", s.loads.len()), covered, of);
 }
 
 /// All trials as one record, judged as the application does: on 200 of its samples.
@@ -104,7 +106,8 @@ fn of_record(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>
             of += 1;
         }
     }
-    assert_covers(covered, of);
+    let dead = silent.map_or("", |_| ", a channel dead");
+    assert_covers(&format!("a record, {k} loads{dead}"), covered, of);
 }
 
 #[test]

@@ -68,6 +68,20 @@ pub(super) fn measured(
         let wrong = "both `zero` and `zero_runs`";
         c.fault(at, "measured.zero_runs", wrong, "state one of the two");
     }
+    let own = |other: &NamedFile| other.given == strain.given;
+    let zero = c.named(&raw.zero, "measured.zero");
+    if let (Some(at), Some(_)) = (&raw.zero, zero.as_ref().filter(|z| own(z))) {
+        let wrong = "this is the strain file itself: its loads would be those about their mean";
+        let remedy = "name a file measured without load, or leave it out";
+        c.fault(at, "measured.zero", wrong, remedy);
+    }
+    if let (Some(at), HoldOut::File(_)) = (&raw.hold_out, &hold_out)
+        && matches!(&hold_out, HoldOut::File(file) if own(file))
+    {
+        let wrong = "this is the strain file itself: nothing would be held out";
+        let remedy = "name runs of it, or another file";
+        c.fault(at, "measured.hold_out", wrong, remedy);
+    }
     let zero_runs = raw.zero_runs.as_ref().map_or_else(Vec::new, |list| {
         let names = list.value().iter();
         names.map(|w| w.value().clone()).collect()
@@ -75,11 +89,12 @@ pub(super) fn measured(
     Some(Measured {
         strain,
         zero_runs,
-        zero: c.named(&raw.zero, "measured.zero"),
+        zero,
         reference,
         noise_microstrain: c
             .positive(&raw.noise_microstrain, "measured.noise_microstrain")
             .unwrap_or(DEFAULT_NOISE_MICROSTRAIN),
+        states_noise: raw.noise_microstrain.is_some(),
         model_uncertainty_rel: c
             .at_least_zero(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
             .unwrap_or(0.0),

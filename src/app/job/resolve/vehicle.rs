@@ -131,6 +131,13 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
     });
     let leaf = seats(c, section);
     numbers(c, section);
+    if let (Some(data), Some(at)) = (&raw.data, &raw.hold_out)
+        && data.value() == at.value()
+    {
+        let wrong = "this is the data file itself: nothing would be held out";
+        let remedy = "name a record that is not fitted, or leave it out";
+        c.fault(at, "vehicle.hold_out", wrong, remedy);
+    }
     model.as_ref().zip(data.as_ref())?;
     Some(Vehicle {
         model: model?,

@@ -37,6 +37,8 @@ pub struct Measured {
     pub reference: Reference,
     /// Noise, microstrain, 1 sd; default 1.
     pub noise_microstrain: f64,
+    /// Whether the job states it.
+    pub states_noise: bool,
     /// Model uncertainty of the predicted strain, 1 sd; default 0.
     pub model_uncertainty_rel: f64,
     /// Runs kept from fitting.

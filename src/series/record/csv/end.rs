@@ -35,11 +35,9 @@ pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     (!whole && !closed).then_some(start)
 }
 
-/// Whether the last line is cut beyond doubt: [`unsure_end`] doubts it, every column of the lines before has its number of characters after the
-/// point, as programs write numbers and people don't, and the last number has fewer.
+/// Whether the last line is cut beyond doubt: [`unsure_end`] doubts it, and its last number lacks what those of its column have as programs write
+/// numbers: their digits after the point ([`has_fewer_digits`]), their point or their exponent ([`lacks_a_part`]).
 pub fn is_cut(bytes: &[u8]) -> bool {
-    /// Numbers that tell: one of ten ends in a zero, which a person leaves out, so that these stand alike by chance once in seventy.
-    const NUMBERS: usize = 40;
     if unsure_end(bytes).is_none() {
         return false;
     }
@@ -51,6 +49,18 @@ pub fn is_cut(bytes: &[u8]) -> bool {
         return false;
     };
     let delimiter = delimiter_of(previous);
+    let own = last_field(last, delimiter).1;
+    !own.is_empty()
+        && (has_fewer_digits(own, rows, delimiter) || lacks_a_part(own, rows, delimiter))
+}
+
+/// Whether every column of `rows` has its number of characters after the point, and the last number `own` has fewer.
+fn has_fewer_digits(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
+    /// Numbers that tell: one of ten ends in a zero, which a person leaves out, so that these stand alike by chance once in seventy.
+    const NUMBERS: usize = 40;
+    let Some(previous) = rows.first() else {
+        return false;
+    };
     let expected: Vec<Option<usize>> = (fields(previous, delimiter).iter())
         .map(|f| after_point(f))
         .collect();
@@ -62,13 +72,43 @@ pub fn is_cut(bytes: &[u8]) -> bool {
                 .zip(&expected)
                 .all(|(f, e)| after_point(f) == *e)
     };
-    let own = last_field(last, delimiter).1;
     let is_shorter = match expected.last() {
         Some(Some(digits)) => after_point(own).unwrap_or(0) < *digits,
         _ => false,
     };
     let numbers = rows.len() * expected.iter().flatten().filter(|d| **d > 0).count();
-    is_shorter && !own.is_empty() && numbers >= NUMBERS && rows.iter().all(is_alike)
+    is_shorter && numbers >= NUMBERS && rows.iter().all(is_alike)
+}
+
+/// Whether the last number `own` has no point while all numbers of its column have one, or no exponent, or less of one, than all of them: where
+/// digits of any number follow the point, what is lost of them changes little, and what is lost before it changes all.
+fn lacks_a_part(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
+    /// Rows that tell.
+    const ROWS: usize = 5;
+    /// Digits after the point that a number has by chance all zero, and not written, once in a hundred.
+    const DIGITS: usize = 2;
+    if rows.len() < ROWS {
+        return false;
+    }
+    let column: Vec<&[u8]> = rows.iter().map(|r| last_field(r, delimiter).1).collect();
+    let after: Option<Vec<usize>> = column.iter().map(|f| after_point(f)).collect();
+    let exponents: Option<Vec<usize>> = column.iter().map(|f| exponent(f)).collect();
+    if let Some(characters) = exponents {
+        let least = characters.iter().copied().min().unwrap_or(0);
+        return exponent(own).is_none_or(|n| n < least);
+    }
+    // `12.0` is written by what always writes a point.
+    let always = column.iter().any(|f| f.ends_with(b".0"));
+    after_point(own).is_none()
+        && exponent(own).is_none()
+        && after.is_some_and(|all| always || all.iter().all(|d| *d >= DIGITS))
+}
+
+/// Characters of the exponent of a number, its sign among them; `None` where it has none.
+fn exponent(field: &[u8]) -> Option<usize> {
+    let at = field.iter().rposition(|b| matches!(b, b'e' | b'E'))?;
+    let is_number = field.first().is_some_and(|b| !b.is_ascii_alphabetic());
+    is_number.then_some(field.len() - at - 1)
 }
 
 /// Where the last line begins; it and some lines before it, the last first.
@@ -190,6 +230,51 @@ mod tests {
         assert!(!is_cut(&written.as_bytes()[..written.len() - 2]));
         let few = table(&["0.00,1.5,130.2", "0.01,1.6,128.4", "0.02,1.7,131.9"]);
         assert!(!is_cut(&few.as_bytes()[..few.len() - 2]));
+    }
+
+    #[test]
+    fn a_number_without_the_point_or_the_exponent_of_its_column_is_cut_beyond_doubt() {
+        let table = |column: [&str; 6], last: &str| {
+            let rows = column.map(|v| format!("R,{v}")).join("\n");
+            format!("run,A\n{rows}\nR,{last}")
+        };
+        // As many digits as each number takes.
+        let free = [
+            "1234.25",
+            "987.125",
+            "1001.03125",
+            "-55.75",
+            "1200.8125",
+            "640.25",
+        ];
+        for (last, expected) in [
+            ("1999", true),
+            ("1", true),
+            ("-7", true),
+            ("1999.", false),
+            ("1999.2", false),
+            ("", false),
+        ] {
+            assert_eq!(is_cut(table(free, last).as_bytes()), expected, "{last}");
+        }
+        // One digit that is never a zero says little, a zero that is written much.
+        let one = ["1234.2", "987.1", "1001.3", "-55.7", "1200.8", "640.2"];
+        assert!(!is_cut(table(one, "19").as_bytes()));
+        let written = ["1234.2", "987.1", "1001.0", "-55.7", "1200.8", "640.2"];
+        assert!(is_cut(table(written, "19").as_bytes()));
+        let powers = "run,A\n".to_owned() + &"R,1.25e-05\n".repeat(6);
+        for (last, expected) in [
+            ("1.25", true),
+            ("1.25e-0", true),
+            ("1.25e-", true),
+            ("1.5e-05", false),
+        ] {
+            assert_eq!(
+                is_cut(format!("{powers}R,{last}").as_bytes()),
+                expected,
+                "{last}"
+            );
+        }
     }
 
     #[test]

@@ -1,0 +1,382 @@
+//! What a stranger may give to the command: times out of order, numbers cut within, decks that contradict themselves.
+
+use super::copies::{copied, edit};
+use std::path::Path;
+use std::process::Command;
+
+/// Exit code and all words of a call in a folder.
+fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let said = [done.stdout, done.stderr].concat();
+    let said = String::from_utf8_lossy(&said).into_owned();
+    (done.status.code().unwrap_or(-1), said)
+}
+
+#[test]
+fn samples_out_of_order_are_refused_by_respond_too() {
+    let dir = copied("respond_times", "frame");
+    edit(&dir, "respond.toml", |t| {
+        t.replace("[respond]", "[respond]\nloads = \"loads.csv\"")
+    });
+    let table = |key: &str, times: [&str; 4]| {
+        let rows = times.map(|t| format!("{t},1,2,3,0,0,0\n")).concat();
+        let head = "N.FZ,L.FZ,R.FZ,payload.FZ,payload.MX,payload.MY";
+        std::fs::write(dir.join("loads.csv"), format!("{key},{head}\n{rows}")).unwrap();
+    };
+    let respond = ["respond", "respond.toml"];
+    table("time", ["0.0", "0.1", "0.2", "0.3"]);
+    let (code, said) = call(&dir, &respond);
+    assert_eq!(code, 0, "{said}");
+    for (times, line) in [
+        (["0.0", "0.2", "0.1", "0.3"], 4),
+        (["0.0", "0.1", "0.1", "0.3"], 4),
+        (["0.1", "0.0", "0.2", "0.3"], 3),
+        (["0.0", "0.1", "later", "0.3"], 4),
+    ] {
+        table("time", times);
+        for command in [respond, ["check", "respond.toml"]] {
+            let (code, said) = call(&dir, &command);
+            assert_eq!(code, 2, "{times:?}: {said}");
+            let place = format!("loads.csv:{line}: time: ");
+            assert!(said.contains(&place), "{times:?}: {said}");
+        }
+    }
+    // Runs have names, in any order.
+    table("run", ["9", "7", "8", "1"]);
+    let (code, said) = call(&dir, &respond);
+    assert_eq!(code, 0, "{said}");
+}
+
+#[test]
+fn a_last_number_without_the_point_that_all_others_have_is_an_error() {
+    let dir = copied("cut_point", "frame");
+    let whole = std::fs::read_to_string(dir.join("strain.csv")).unwrap();
+    let cut = whole.trim_end().rfind('.').unwrap();
+    // What is left of the last number is a whole one.
+    std::fs::write(dir.join("strain.csv"), &whole[..cut]).unwrap();
+    for command in ["recover", "check"] {
+        let (code, said) = call(&dir, &[command, "recover.toml"]);
+        assert_eq!(code, 1, "{said}");
+        assert!(said.contains("error [table-may-be-cut]"), "{said}");
+    }
+}
+
+#[test]
+fn check_of_a_deck_says_what_solving_it_would_say_of_its_supports_and_shapes() {
+    let dir = copied("strange_deck", "frame");
+    let hexa = |order: [u32; 8]| {
+        let ids = order.map(|i| (9000 + i).to_string());
+        let mut text = String::new();
+        for (i, [x, y, z]) in [
+            [0, 0, 0],
+            [9, 0, 0],
+            [9, 9, 0],
+            [0, 9, 0],
+            [0, 0, 9],
+            [9, 0, 9],
+            [9, 9, 9],
+            [0, 9, 9],
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            text += &format!("GRID,{},,{x}.,{y}.,{z}.\n", 9001 + i);
+        }
+        format!(
+            "SOL 101\nCEND\nSPC = 4\nBEGIN BULK\n{text}CHEXA,1,1,{},\n,{},{}\nPSOLID,1,1\nMAT1,1,210000.,,.3,7.85-9\n\
+             SPC,4,9001,123456,0.\n",
+            ids[..6].join(","),
+            ids[6],
+            ids[7]
+        )
+    };
+    let checked = |text: &str| {
+        std::fs::write(dir.join("cube.bdf"), format!("{text}ENDDATA\n")).unwrap();
+        call(&dir, &["check", "cube.bdf"])
+    };
+    let right = hexa([1, 2, 3, 4, 5, 6, 7, 8]);
+    let (code, said) = checked(&right);
+    assert_eq!(code, 0, "{said}");
+    let (code, said) = checked(&format!("{right}SPC,4,9001,1,0.5\n"));
+    assert!(code == 1 && said.contains("[contradicting-spc]"), "{said}");
+    let (code, said) = checked(&hexa([5, 6, 7, 8, 1, 2, 3, 4]));
+    assert!(code == 0 && said.contains("[inverted-solid]"), "{said}");
+}
+
+/// The table with every field replaced by what `change` makes of it: line (the header is 0), column, field.
+fn fields(text: &str, change: impl Fn(usize, usize, &str) -> String) -> String {
+    let line = |(i, line): (usize, &str)| {
+        let fields = line.split(',').enumerate().map(|(c, f)| change(i, c, f));
+        fields.collect::<Vec<_>>().join(",") + "\n"
+    };
+    text.lines().enumerate().map(line).collect()
+}
+
+#[test]
+fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
+    let dir = copied("own_record", "quarter_truck");
+    edit(&dir, "identify.toml", |t| {
+        t.replace("hold_out = \"holdout.csv\"", "hold_out = \"data.csv\"")
+    });
+    for command in ["identify", "check"] {
+        let (code, said) = call(&dir, &[command, "identify.toml"]);
+        assert!(
+            code == 2 && said.contains("vehicle.hold_out: ") && said.contains("held out"),
+            "{said}"
+        );
+    }
+    for (key, wrong) in [
+        ("zero", "about their mean"),
+        ("hold_out", "nothing would be held out"),
+    ] {
+        let dir = copied(&format!("own_{key}"), "frame");
+        edit(&dir, "recover.toml", |t| {
+            let line = format!("{key} = \"strain.csv\"\nnoise_microstrain");
+            t.replace("noise_microstrain", &line)
+        });
+        for command in ["recover", "check"] {
+            let (code, said) = call(&dir, &[command, "recover.toml"]);
+            assert_eq!(code, 2, "{said}");
+            assert!(
+                said.contains(&format!("measured.{key}: ")) && said.contains(wrong),
+                "{said}"
+            );
+        }
+    }
+}
+
+#[test]
+fn blank_readings_and_runs_without_a_measurement_are_said() {
+    let dir = copied("blank_runs", "frame");
+    let asked = |found: &[&str]| {
+        for command in ["recover", "check"] {
+            let (code, said) = call(&dir, &[command, "recover.toml"]);
+            assert_eq!(code, 0, "{said}");
+            for code in [
+                "readings-missing",
+                "readings-all-alike",
+                "readings-repeated",
+            ] {
+                let is_said = said.contains(&format!("warning [{code}]"));
+                assert_eq!(is_said, found.contains(&code), "{command} {code}: {said}");
+            }
+        }
+    };
+    asked(&[]);
+    let whole = std::fs::read_to_string(dir.join("strain.csv")).unwrap();
+    let change = |change: &dyn Fn(usize, usize, &str) -> String| {
+        std::fs::write(dir.join("strain.csv"), fields(&whole, change)).unwrap();
+    };
+    let blank = |i: usize, c: usize| i == 2 && c == 3;
+    change(&|i, c, f| if blank(i, c) { "" } else { f }.to_owned());
+    asked(&["readings-missing"]);
+    let (_, said) = call(&dir, &["recover", "recover.toml"]);
+    assert!(said.contains("[readings-missing] P03 in R02"), "{said}");
+    change(&|i, c, f| if i == 2 && c > 0 { "0" } else { f }.to_owned());
+    asked(&["readings-all-alike"]);
+    let first: Vec<&str> = whole.lines().nth(1).unwrap().split(',').collect();
+    change(&|i, c, f| if i == 2 && c > 0 { first[c] } else { f }.to_owned());
+    let (_, said) = call(&dir, &["recover", "recover.toml"]);
+    assert!(said.contains("[readings-repeated] R01 and R02"), "{said}");
+    // A gauge that the job leaves out is not missing.
+    change(&|i, c, f| if i > 0 && c == 3 { "" } else { f }.to_owned());
+    edit(&dir, "recover.toml", |t| {
+        format!("{t}\n[[correction]]\ngauge = \"P03\"\nignore = true\n")
+    });
+    asked(&[]);
+}
+
+#[test]
+fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_measurement() {
+    let dir = copied("still_record", "fleet");
+    let file = dir.join("A_2026-05-01.csv");
+    let whole = std::fs::read_to_string(&file).unwrap();
+    let said = |text: &str| {
+        std::fs::write(&file, text).unwrap();
+        let (code, said) = call(&dir, &["recover", "fleet.toml"]);
+        assert_eq!(code, 0, "{said}");
+        said
+    };
+    assert!(!said(&whole).contains("record-stands-still"));
+    // From t = 14.95 s to 17.40 s, 20 samples a second: what a logger fills in, and what one that hangs repeats.
+    let stuck = |i: usize| (300..350).contains(&i);
+    let zeros = fields(&whole, |i, c, f| {
+        if stuck(i) && c > 0 { "0" } else { f }.to_owned()
+    });
+    let lines: Vec<&str> = whole.lines().collect();
+    let last: Vec<&str> = lines[300].split(',').collect();
+    let repeated = fields(&whole, |i, c, f| {
+        if stuck(i) && c > 0 { last[c] } else { f }.to_owned()
+    });
+    for text in [zeros, repeated] {
+        let said = said(&text);
+        assert!(
+            said.contains("warning [record-stands-still]")
+                && said.contains("from t = 14.950000 s to t = 17.400000 s"),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn noise_that_nobody_states_is_said_to_be_assumed() {
+    let dir = copied("no_noise", "frame");
+    let (_, said) = call(&dir, &["recover", "recover.toml"]);
+    assert!(!said.contains("noise-assumed"), "{said}");
+    edit(&dir, "recover.toml", |t| {
+        t.replace("noise_microstrain = 0.5\n", "")
+    });
+    for command in ["recover", "check"] {
+        let (code, said) = call(&dir, &[command, "recover.toml"]);
+        assert!(code == 0 && said.contains("[noise-assumed]"), "{said}");
+    }
+}
+
+#[test]
+fn a_runs_file_of_other_runs_is_refused_by_payload_and_places_that_are_assumed_are_said() {
+    let dir = copied("other_runs", "frame");
+    let runs = std::fs::read_to_string(dir.join("runs.csv")).unwrap();
+    let payload = ["payload", "payload.toml"];
+    std::fs::write(dir.join("runs.csv"), runs.replace("\nR", "\nQ")).unwrap();
+    let (code, said) = call(&dir, &payload);
+    assert!(
+        code == 2 && said.contains("runs.csv:1: run: no row for any run of the strain file"),
+        "{said}"
+    );
+    edit(&dir, "payload.toml", |t| {
+        t.replace("position = \"free\"", "position = \"known\"")
+    });
+    std::fs::write(dir.join("runs.csv"), &runs).unwrap();
+    let (_, said) = call(&dir, &payload);
+    assert!(!said.contains("payload-place-assumed"), "{said}");
+    let unplaced = fields(&runs, |i, c, f| {
+        if i == 3 && (c == 2 || c == 3) { "" } else { f }.to_owned()
+    });
+    std::fs::write(dir.join("runs.csv"), unplaced).unwrap();
+    let (_, said) = call(&dir, &payload);
+    assert!(said.contains("[payload-place-assumed] R03"), "{said}");
+}
+
+/// Linux has a device on which nothing can be written.
+#[test]
+fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
+    let Ok(full) = std::fs::File::options().write(true).open("/dev/full") else {
+        return;
+    };
+    let dir = copied("full_output", "frame");
+    for arguments in [
+        &["check", "recover.toml"][..],
+        &["recover", "recover.toml", "--json"],
+        &["schema"],
+    ] {
+        let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args(arguments)
+            .current_dir(&dir)
+            .stdout(full.try_clone().unwrap())
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&done.stderr);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {said}");
+        assert!(said.contains("standard output can't be written"), "{said}");
+    }
+}
+
+/// Ended by the system of a batch queue while it writes, as by Ctrl-C.
+#[cfg(unix)]
+#[test]
+fn a_command_that_is_told_to_end_leaves_no_half_files() {
+    let dir = copied("told_to_end", "fleet");
+    let whole = std::fs::read_to_string(dir.join("A_2026-05-01.csv")).unwrap();
+    let (header, rows) = whole.split_once('\n').unwrap();
+    let readings: Vec<&str> = rows.lines().map(|l| l.split_once(',').unwrap().1).collect();
+    let out = dir.join("out");
+    let mut ended = false;
+    // As many samples as it takes to be met while it writes.
+    for times in [1000, 4000, 16000] {
+        let samples = (0..readings.len() * times)
+            .map(|i| format!("{:.2},{}\n", 0.05 * i as f64, readings[i % readings.len()]));
+        let record = format!("{header}\n{}", samples.collect::<String>());
+        std::fs::write(dir.join("A_2026-05-01.csv"), record).unwrap();
+        let mut running = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args(["recover", "fleet.toml", "--out", "out", "-q"])
+            .current_dir(&dir)
+            .spawn()
+            .unwrap();
+        let files = || std::fs::read_dir(&out).map_or(0, Iterator::count);
+        while files() == 0 && running.try_wait().unwrap().is_none() {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+        let id = running.id().to_string();
+        let _ = Command::new("kill").args(["-TERM", &id]).status();
+        let status = running.wait().unwrap();
+        if status.code() == Some(130) {
+            assert_eq!(files(), 0, "files are left behind");
+            ended = true;
+            break;
+        }
+        assert_eq!(status.code(), Some(0));
+        std::fs::remove_dir_all(&out).unwrap();
+    }
+    assert!(ended, "it was never met while it wrote");
+}
+
+#[test]
+fn a_long_chain_of_load_cards_is_solved_and_a_circle_of_them_is_named() {
+    const CARDS: usize = 20_000;
+    let dir = copied("load_chain", "frame");
+    let deck = |last: usize| {
+        let mut text = "SOL 101\nCEND\nSPC=1\nLOAD=1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nCROD,1,1,1,2\n\
+                        PROD,1,1,10.\nMAT1,1,200000.,,.3,7.85-9\nSPC1,1,123456,1\nSPC1,1,23456,2\n"
+            .to_owned();
+        for i in 1..CARDS {
+            let next = if i + 1 == CARDS { last } else { i + 1 };
+            text += &format!("LOAD,{i},1.,1.,{next}\n");
+        }
+        text + &format!("FORCE,{CARDS},2,,100.,1.,0.,0.\nENDDATA\n")
+    };
+    std::fs::write(dir.join("chain.bdf"), deck(CARDS)).unwrap();
+    let (code, said) = call(&dir, &["solve", "chain.bdf", "--out", "out"]);
+    assert_eq!(code, 0, "{said}");
+    let text = std::fs::read_to_string(dir.join("out/result.json")).unwrap();
+    let result: serde_json::Value = serde_json::from_str(&text).unwrap();
+    // The force at the end of the chain, against which the support holds.
+    let force = result["reactions"][0]["total"][0].as_f64().unwrap();
+    assert!((force + 100.0).abs() < 1e-6, "{force}");
+    std::fs::write(dir.join("circle.bdf"), deck(5)).unwrap();
+    for command in ["solve", "check"] {
+        let (code, said) = call(&dir, &[command, "circle.bdf", "--out", "out2"]);
+        assert!(code == 2 && said.contains("in a circle"), "{said}");
+    }
+}
+
+#[test]
+fn what_follows_plus_and_minus_in_words_is_half_of_the_interval_in_the_table() {
+    let dir = copied("half_widths", "frame");
+    let (code, said) = call(&dir, &["recover", "recover.toml", "--out", "out"]);
+    assert_eq!(code, 0, "{said}");
+    let table = std::fs::read_to_string(dir.join("out/loads.csv")).unwrap();
+    let mut rows = table.lines();
+    let header: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let mut compared = 0;
+    for row in rows {
+        let row: Vec<&str> = row.split(',').collect();
+        let start = format!("{}: ", row[0]);
+        let line = said.lines().find_map(|l| l.strip_prefix(&start)).unwrap();
+        for load in line.split(", ") {
+            // `N.FZ 1.1030 +- 0.3637 kN`.
+            let words: Vec<&str> = load.split(' ').collect();
+            let column = header.iter().position(|h| *h == words[0]).unwrap();
+            let number = |text: &str| text.parse::<f64>().unwrap();
+            let half = (number(row[column + 2]) - number(row[column + 1])) / 2.0;
+            assert_eq!(words[2], "+-", "{load}");
+            // To the four digits that are said.
+            assert!((number(words[3]) - half).abs() < 1e-4, "{load}: {half}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 9 * 7);
+}
