@@ -889,3 +889,36 @@ fn a_payload_that_no_load_of_the_job_is_can_t_be_taken_for_the_others() {
         "{said}"
     );
 }
+
+#[test]
+fn a_sum_that_its_loads_do_not_make_is_a_fault_of_its_line_and_one_that_was_rounded_is_none() {
+    const JOB: &str = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"front\"\n[[load]]\nname = \"rear\"\n\
+                       [[combination]]\nname = \"total\"\nterms = { front = 1, rear = 1 }\n\
+                       [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n\
+                       [runs]\nfile = \"runs.csv\"\nunits = { force = \"kN\" }\n";
+    const STRAIN: &str = "run,C1,C2\nA,10.1,20.2\nB,20.1,-40.3\nC,40.2,40.1\n";
+    // B: the one axle in another unit than the scale; a slip; both within their sd; rounded to three digits.
+    for (rows, wrong) in [
+        ("A,10,0,,\nB,0,4.4966,20,\nC,20,10,,\n", Some("runs.csv:3")),
+        ("A,10,0,,\nB,0,20,,\nC,20,10,3,\n", Some("runs.csv:4")),
+        ("A,10,0,,\nB,0,20,21,0.5\nC,20,10,,\n", None),
+        ("A,10,0,,\nB,0,20,20.1,\nC,20,10,30,\n", None),
+    ] {
+        let folder = scratch("calibrate-contradicting-sum");
+        let runs = format!("run,front,rear,total,total_sd\n{rows}");
+        let job = write_job(&folder, JOB, &runs, STRAIN);
+        for command in ["calibrate", "check"] {
+            let (code, _, said) = run(command, &job, &folder.join(command));
+            match wrong {
+                Some(place) => {
+                    assert_eq!(code, Some(2), "{command}: {said}");
+                    assert!(
+                        said.contains(place) && said.contains("`total` is"),
+                        "{said}"
+                    );
+                }
+                None => assert_ne!(code, Some(2), "{command}: {said}"),
+            }
+        }
+    }
+}

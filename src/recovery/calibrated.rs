@@ -3,24 +3,15 @@
 //! `eps = S f + e`, `Cov e = noise + Cov(eps | f)` of [`Uncertainty`], which grows with the loads, so that solution and weights alternate.
 
 use super::errors::ErrorModel;
-use super::interval::NORMAL_95;
+use super::interval::student_95;
 use super::solve::{Fit, fit};
 use super::types::{Readings, RunEstimate};
 use crate::estimate::LoadEstimate;
 use crate::linalg::{Matrix, Vector, spd};
 use crate::sensitivity::{Sensitivity, Uncertainty};
-use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Rounds between loads and the covariance that depends on them; they settle in three.
 const ROUNDS: usize = 5;
-
-/// Factor on sigma of a 95 % interval whose sigma was learnt with `dof` degrees of freedom; the normal one where nothing was learnt.
-pub fn student_95_of(dof: f64) -> f64 {
-    if !dof.is_finite() {
-        return NORMAL_95;
-    }
-    StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
-}
 
 /// One run.
 pub fn estimate(
@@ -42,7 +33,7 @@ pub fn estimate(
             names: s.loads.iter().map(|l| l.name.clone()).collect(),
             values: vec![0.0; k],
             covariance: vec![f64::INFINITY; k * k],
-            coverage_factor: student_95_of(known.dof),
+            coverage_factor: student_95(known.dof),
             findings: Vec::new(),
         },
         predicted: vec![f64::NAN; n],

@@ -1,9 +1,10 @@
 //! Static states, or samples of a record: one estimate each, all judged together.
 
 use super::errors::ErrorModel;
+use super::interval::student_95;
 use super::solved::{Solved, root_mean_squares, solve};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
-use super::{by_calibration, calibrated, determined, faults, plausible, verdict};
+use super::{by_calibration, determined, faults, plausible, verdict};
 use crate::finding::Finding;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
@@ -82,7 +83,7 @@ fn recover_calibrated(
         gauge_leverage,
         findings,
         widening: Widening {
-            coverage_factor: calibrated::student_95_of(known.dof),
+            coverage_factor: student_95(known.dof),
             ..Widening::none()
         },
         typical,

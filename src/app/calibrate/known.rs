@@ -12,7 +12,7 @@ use crate::calibrate::KnownLoads;
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::Load;
 use crate::series::record::Column;
-use crate::units::{Quantity, Unit, factor};
+use crate::units::{Quantity, Unit, factor, number};
 
 /// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind: nothing is known of it.
 const UNKNOWN: f64 = 10.0;
@@ -37,6 +37,7 @@ pub(super) struct KnownRuns {
 
 /// A quantity of the runs file: a load or a sum of loads.
 struct Stated {
+    name: String,
     terms: Vec<(usize, f64)>,
     value: usize,
     /// Column of its sd, job units of one unit of that, and SI units.
@@ -106,8 +107,12 @@ pub(super) fn read_known(
         if left_out {
             continue;
         }
-        let Some(known) = loads_of((&table, at), &stated, payloads.as_ref(), loads, &largest)
-        else {
+        let found = loads_of((&table, at), &stated, payloads.as_ref(), loads, &largest);
+        let known = found.unwrap_or_else(|fault| {
+            faults.push(fault);
+            None
+        });
+        let Some(known) = known else {
             if listed {
                 let line = table.rows.get(at).map_or(0, |r| r.0);
                 let wrong = format!("run `{run}` is to teach and its loads are not known");
@@ -331,6 +336,7 @@ fn stated(
             _ => None,
         };
         out.push(Stated {
+            name: name.to_owned(),
             terms,
             value,
             // In the unit of what it is the sd of, unless it states its own.
@@ -378,13 +384,16 @@ fn largest_known(
 }
 
 /// Loads of one run, unknown ones wide, conditioned on the sums that are known; `None` where a wanted load is in nothing that is known.
+///
+/// # Errors
+/// A sum that is not that of its loads.
 fn loads_of(
     (table, row): (&Table, usize),
     stated: &[Stated],
     payloads: Option<&Payloads>,
     loads: &[Load],
     largest: &[f64],
-) -> Option<KnownLoads> {
+) -> Result<Option<KnownLoads>, Fault> {
     let k = loads.len();
     let mut mean = vec![0.0; k];
     let mut covariance = vec![0.0; k * k];
@@ -400,7 +409,7 @@ fn loads_of(
                 covariance[l * k + l] = sd * sd;
                 known[*l] = true;
             }
-            terms => sums.push((terms, value, sd)),
+            _ => sums.push((s, value, sd)),
         }
     }
     if let Some(payloads) = payloads {
@@ -409,43 +418,65 @@ fn loads_of(
     for l in (0..k).filter(|l| !known[*l]) {
         let in_sum = sums
             .iter()
-            .any(|s| s.0.iter().any(|t| t.0 == l && t.1 != 0.0));
+            .any(|s| s.0.terms.iter().any(|t| t.0 == l && t.1 != 0.0));
         if loads[l].wanted && !in_sum {
-            return None;
+            return Ok(None);
         }
         let sd = loads[l].expected.unwrap_or(UNKNOWN * largest[l]);
         covariance[l * k + l] = sd * sd;
     }
     if !known.iter().any(|k| *k) && sums.is_empty() {
-        return None;
+        return Ok(None);
     }
-    for (terms, value, sd) in sums {
-        condition(&mut mean, &mut covariance, terms, value, sd);
+    for (s, value, sd) in sums {
+        let parts = s.terms.iter().map(|(l, f)| (f * mean[*l]).abs());
+        let size = parts.sum::<f64>().max(value.abs());
+        let (left, variance) = condition(&mut mean, &mut covariance, &s.terms, value, sd);
+        if left.abs() > ROUNDED * size + CONTRADICTS * variance.sqrt() {
+            let line = table.rows.get(row).map_or(0, |r| r.0);
+            let [said, made] = [value, value - left].map(|v| number(v / s.unit));
+            return Err(Fault::at(
+                &*table.file,
+                line,
+                &*s.name,
+                format!(
+                    "`{}` is {said}, and the loads of this run make {made}",
+                    s.name
+                ),
+                "correct the one or the other, or state how well they are known in columns `<load>_sd`",
+            ));
+        }
     }
-    Some(KnownLoads { mean, covariance })
+    Ok(Some(KnownLoads { mean, covariance }))
 }
 
-/// Gaussian loads given that a sum of them is `value` to within `sd`.
+/// Share of a sum by which its loads may miss it: numbers of two or three digits are rounded by as much.
+const ROUNDED: f64 = 0.01;
+/// Standard deviations from which a sum contradicts its loads: once in two million sums that are right.
+const CONTRADICTS: f64 = 5.0;
+
+/// Gaussian loads given that a sum of them is `value` to within `sd`; how far it was from what they made before, and the variance of that.
 fn condition(
     mean: &mut [f64],
     covariance: &mut [f64],
     terms: &[(usize, f64)],
     value: f64,
     sd: f64,
-) {
+) -> (f64, f64) {
     let k = mean.len();
     let carried: Vec<f64> = (0..k)
         .map(|l| terms.iter().map(|(m, f)| f * covariance[l * k + m]).sum())
         .collect();
     let variance: f64 = terms.iter().map(|(m, f)| f * carried[*m]).sum::<f64>() + sd * sd;
-    if !(variance > 0.0) {
-        return;
-    }
     let left = value - terms.iter().map(|(m, f)| f * mean[*m]).sum::<f64>();
+    if !(variance > 0.0) {
+        return (left, 0.0);
+    }
     for l in 0..k {
         mean[l] += carried[l] * left / variance;
         for m in 0..k {
             covariance[l * k + m] -= carried[l] * carried[m] / variance;
         }
     }
+    (left, variance)
 }

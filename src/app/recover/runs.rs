@@ -16,7 +16,7 @@ use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
 use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
-use crate::recovery::{NORMAL_95, Readings, Recovery, recover};
+use crate::recovery::{Readings, Recovery, recover};
 use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
 use std::collections::HashMap;
@@ -230,14 +230,14 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
                 .flat_map(|&a| members.iter().map(move |&b| (a, b)))
                 .map(|(a, b)| r.estimate.covariance[a * k + b])
                 .sum();
-            let sigma = var.max(0.0).sqrt();
-            if sum.abs() > 4.0 * sigma && sum.abs() > 0.1 * size {
+            let half = r.estimate.coverage_factor * var.max(0.0).sqrt();
+            if sum.abs() > 2.0 * half && sum.abs() > 0.1 * size {
                 let u = &units[members[0]];
                 worst.push(format!(
                     "{} {component} {:+.3} +- {:.3} {}",
                     r.estimate.run,
                     sum * u.factor,
-                    NORMAL_95 * sigma * u.factor,
+                    half * u.factor,
                     u.name
                 ));
                 largest = largest.max(sum.abs() / size);
