@@ -168,6 +168,14 @@ fn reach(
     (after, noise_factor(frame, candidates, scored))
 }
 
+/// The set of names alone, at least one, that has most evidence.
+fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option<&'a Scored<Fit>> {
+    let is_name = |c: &usize| discrepancy(candidates, *c).is_none();
+    all.iter()
+        .filter(|s| !s.set.is_empty() && s.set.iter().all(is_name))
+        .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
+}
+
 /// What is said of the best set. Names of it that do not stand when the runs are drawn anew, or by which the gap does not fall on runs that
 /// were not fitted, are not named, and neither fit nor gap has them; that the floor is reached with them still speaks for the others.
 pub(super) fn judge(
@@ -210,12 +218,7 @@ pub(super) fn judge(
     let plausible = attempt.iter().all(|e| e.plausible);
     let null = all.iter().find(|s| s.set.is_empty());
     let null_evidence = null.map_or(0.0, |s| s.log_evidence);
-    let hint = all
-        .iter()
-        .filter(|s| {
-            !s.set.is_empty() && s.set.iter().all(|c| discrepancy(candidates, *c).is_none())
-        })
-        .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+    let hint = best_of_names(candidates, all);
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let unmodelled = is_unmodelled(candidates, &best.set);
     let seldom = standing.doubt.clone().filter(|_| standing.is_none());
