@@ -216,8 +216,7 @@ pub(super) fn judge(
     let attempt = named(frame, candidates, best);
     let (gap, channels) = validated(proofs, candidates, best);
     let plausible = attempt.iter().all(|e| e.plausible);
-    let null = all.iter().find(|s| s.set.is_empty());
-    let null_evidence = null.map_or(0.0, |s| s.log_evidence);
+    let null_evidence = (all.iter().find(|s| s.set.is_empty())).map_or(0.0, |s| s.log_evidence);
     let hint = best_of_names(candidates, all);
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let unmodelled = is_unmodelled(candidates, &best.set);
