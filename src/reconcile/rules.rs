@@ -83,7 +83,8 @@ pub struct MotionRules {
     /// Rate at which a job of healthy channels may have one beyond its limit, and a complete model a gap beyond its.
     pub false_rate: f64,
     /// Share of an effect's own power that its form may leave: stretch is integrated from noisy accelerations and nonlinear terms are formed
-    /// from it, to about a fifth of their amplitude at the worst (the lower band edge).
+    /// from it, to about a fifth of their amplitude at the worst (the lower band edge). A second function of the stretch of one spring must
+    /// take as much beside the first, since the two are one law of force.
     pub form: f64,
     /// Share of what other effects of the vehicle take that a further one must take beside them: forms are made from noisy stretch to about
     /// a twentieth of their amplitude within the band, and what a form leaves of itself looks like another one.

@@ -265,6 +265,24 @@ impl Term {
         matches!(self, Self::Stiffness | Self::Damping | Self::Inertance)
     }
 
+    /// Whether the term is a function of the stretch alone that is no straight line.
+    pub fn bends_spring(&self) -> bool {
+        match self {
+            Self::Quadratic
+            | Self::Cubic
+            | Self::Progressive
+            | Self::BumpStop { .. }
+            | Self::DeadZone { .. } => true,
+            Self::Stiffness
+            | Self::Damping
+            | Self::Friction { .. }
+            | Self::Inertance
+            | Self::TwoRate
+            | Self::QuadraticDamping
+            | Self::StiffnessChange { .. } => false,
+        }
+    }
+
     /// Force for a coefficient of one; 0 for inertance, which stretch and rate don't tell.
     pub fn basis(&self, d: f64, v: f64) -> f64 {
         match *self {

@@ -52,5 +52,11 @@ pub fn extended_job(answer: &Reconciled, out: &Path) -> Result<Option<String>, F
     for e in &answer.effects {
         text.push_str(&format!("# {}\n", effect_in_words(e)));
     }
+    for r in answer.rivals.iter().filter(|r| r.indistinguishable) {
+        text.push_str(&format!(
+            "# {} explains the data as well and is not in it: separate the two before loads unlike these are recovered\n",
+            r.id
+        ));
+    }
     Ok(Some(text + &body))
 }

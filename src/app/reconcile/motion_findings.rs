@@ -87,7 +87,8 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                     Severity::Warning,
                     "rival",
                     r.ids.join(" + "),
-                    "Explains these data as well as what was named.",
+                    "Explains these data as well as what was named: where this is what is wrong, the parameters of a model that holds what was \
+                     named are off.",
                     outcome.next_measurement.clone(),
                 )
                 .with_numbers(r.evidence_difference, 3.0),

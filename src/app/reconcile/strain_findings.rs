@@ -93,7 +93,8 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                         Severity::Warning,
                         "rival",
                         r.ids.join(" + "),
-                        "explains these data as well as what was named",
+                        "explains these data as well as what was named: where this is what is wrong, loads unlike those of these runs are \
+                         recovered wrong by a model that holds what was named",
                         outcome.next_measurement.clone(),
                     )
                     .with_numbers(r.evidence_difference, 3.0),

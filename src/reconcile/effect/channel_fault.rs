@@ -43,6 +43,10 @@ pub trait ChannelFault: Send + Sync {
     fn amplitudes(&self, _frame: &StrainFrame, _gauges: &[usize]) -> Option<Amplitudes> {
         None
     }
+    /// The runs it touches, where it touches only some.
+    fn runs(&self) -> Vec<usize> {
+        Vec::new()
+    }
     /// Whether another fault may sit on the same gauge.
     fn kind(&self) -> FaultKind {
         FaultKind::Whole
@@ -145,6 +149,9 @@ impl<F: ChannelFault> StrainEffect for OnGauges<F> {
     }
     fn gauges(&self) -> Vec<usize> {
         self.gauges.clone()
+    }
+    fn runs(&self) -> Vec<usize> {
+        self.fault.runs()
     }
     fn kind(&self) -> FaultKind {
         self.fault.kind()

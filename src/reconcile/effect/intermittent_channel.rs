@@ -57,6 +57,10 @@ impl ChannelFault for IntermittentChannel {
             }
         }
     }
+    fn runs(&self) -> Vec<usize> {
+        let runs = self.open.iter().enumerate();
+        runs.filter(|(_, open)| **open).map(|(r, _)| r).collect()
+    }
     fn extension(&self, names: &[String], _parameters: &[f64]) -> Extension {
         Extension::channel(names, Correction::Ignore)
     }

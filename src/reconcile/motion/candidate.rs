@@ -61,6 +61,14 @@ impl Candidate {
         self.shapes.first().is_some_and(own)
     }
 
+    /// The link whose spring it bends: force over stretch that is no straight line.
+    pub fn bends_spring(&self) -> Option<usize> {
+        match self.shapes.first()? {
+            Change::Terms { link, terms } if terms.iter().all(|t| t.bends_spring()) => Some(*link),
+            _ => None,
+        }
+    }
+
     /// Whether it may be so large that nothing of a record is explained without it, and more may be found beside it.
     pub fn overturns(&self) -> bool {
         matches!(

@@ -13,6 +13,7 @@ use super::limits::{beyond_tolerance, stands_out};
 use super::next::next_measurement;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
+use super::proven::proven;
 use super::scorer::MotionScorer;
 use super::sentences::remains;
 use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
@@ -80,6 +81,7 @@ pub(super) fn judged(
     let empty = all.iter().find(|s| s.set.is_empty()).cloned();
     let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
     let best = nameable(scorer, &all, best);
+    let (best, mut told) = proven(scorer, &all, best);
     let before = Gaps::of(scorer, &null);
     let after = if best.set.is_empty() {
         Gaps::of(scorer, null_under_background)
@@ -91,11 +93,26 @@ pub(super) fn judged(
     let taken = |g: &Option<RecordGap>| g.as_ref().map_or(0.0, |g| g.gap * g.gap);
     let excess = (taken(&before.fitted) - taken(&after.fitted)).max(0.0);
     let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
-    let decided = !best.set.is_empty()
-        && evidence > rules.decisive
-        && stands_out(rules, &best.fit)
-        && after.at_floor(rules, excess)
-        && gap.after < gap.before;
+    let against = [
+        (evidence > rules.decisive, "its evidence is not decisive"),
+        (
+            stands_out(rules, &best.fit),
+            "a size of it does not stand out of its own scatter",
+        ),
+        (
+            after.at_floor(rules, excess),
+            "what it leaves lies above the floor",
+        ),
+        (
+            gap.after < gap.before,
+            "the gap that judges does not fall by it",
+        ),
+    ];
+    let against: Vec<&str> = (against.iter())
+        .filter(|(holds, _)| !holds)
+        .map(|a| a.1)
+        .collect();
+    let decided = !best.set.is_empty() && against.is_empty();
     let hint = all
         .iter()
         .find(|s| !s.set.is_empty())
@@ -109,6 +126,16 @@ pub(super) fn judged(
     } else {
         Verdict::None
     };
+    if verdict == Verdict::Unknown && !best.set.is_empty() {
+        let ids: Vec<&str> = (best.set.iter())
+            .map(|&c| scorer.candidates[c].id.as_str())
+            .collect();
+        told.push(format!(
+            "{} comes nearest and is not named: {}",
+            ids.join(" + "),
+            against.join(", ")
+        ));
+    }
     let attempt: Vec<MotionEffect> = if broken.is_empty() {
         effects_of(scorer, &best.fit)
     } else {
@@ -132,7 +159,15 @@ pub(super) fn judged(
         best_attempt: attempt,
         covariance,
         corrections: stated(frame, &best.fit.parts),
-        remains: remains(rules, verdict, chi, left, judged_by, after.proof.as_ref()),
+        remains: remains(
+            rules,
+            verdict,
+            chi,
+            left,
+            judged_by,
+            after.proof.as_ref(),
+            &told,
+        ),
         next_measurement: next_measurement(scorer, verdict, &best, &all),
         rivals,
         evidence,
@@ -197,6 +232,17 @@ fn nameable(
         s.set.iter().copied().all(|member| {
             let rest: Vec<usize> = s.set.iter().copied().filter(|m| *m != member).collect();
             let beside = rest.iter().any(of_vehicle);
+            // Two functions of the stretch of one spring are one law of force, and what the form of the first leaves looks like the second.
+            let spring = scorer.candidates[member].bends_spring();
+            let one_law = spring.is_some_and(|l| {
+                let of_rest = |m: &usize| scorer.candidates[*m].bends_spring() == Some(l);
+                rest.iter().any(of_rest)
+            });
+            let share = if one_law {
+                frame.rules.form
+            } else {
+                frame.rules.next_form
+            };
             // A channel is held against its tolerance by its size.
             let tolerance = match (of_vehicle(&member), beside) {
                 (true, _) => own.floor.tolerance,
@@ -205,7 +251,7 @@ fn nameable(
             };
             power(&rest).is_none_or(|without| {
                 let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
-                let least = tolerance + frame.rules.next_form * others.max(0.0);
+                let least = tolerance + share * others.max(0.0);
                 without - own.gap * own.gap > least
             })
         })

@@ -36,6 +36,7 @@ mod next;
 pub mod noise;
 pub mod outcome;
 pub mod part;
+mod proven;
 pub mod response;
 pub mod scorer;
 mod sentences;

@@ -5,7 +5,7 @@ use super::sits::gap_sits;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::rules::MotionRules;
 
-/// What remains and where it sits; `chi` and `left` are before, after (and floor).
+/// What remains and where it sits; `chi` and `left` are before, after (and floor), `told` what kept effects from being named.
 pub(super) fn remains(
     rules: &MotionRules,
     verdict: Verdict,
@@ -13,6 +13,7 @@ pub(super) fn remains(
     left: [f64; 3],
     proof: Proof,
     gap: Option<&RecordGap>,
+    told: &[String],
 ) -> String {
     let worst = gap.and_then(|g| gap_sits(g).into_iter().next());
     let place = worst.map_or_else(String::new, |w| format!(" Largest in {}.", w.words()));
@@ -34,8 +35,9 @@ pub(super) fn remains(
             p.words()
         ),
     };
+    let told: String = told.iter().map(|t| format!(" {t}.")).collect();
     format!(
-        "{state} Left on the fitted record: {:.2} % of the measured quantity, noise and tolerances {:.2} %.{place}{judged}",
+        "{state}{told} Left on the fitted record: {:.2} % of the measured quantity, noise and tolerances {:.2} %.{place}{judged}",
         100.0 * left[1],
         100.0 * left[2]
     )

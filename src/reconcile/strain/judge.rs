@@ -8,8 +8,10 @@ use super::gap::rms;
 use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
+use super::no_drift::no_drift;
 use super::own_covariance::{own_evidence, under_own_covariance, with_members};
 use super::prediction::predict;
+use super::proven::proven;
 use super::recovered::loads_before_after;
 use super::remains::{Withheld, remains, sits};
 use super::smooth::{curve, is_smooth};
@@ -166,8 +168,16 @@ fn reach(
     (after, noise_factor(frame, candidates, scored))
 }
 
-/// What is said of the best set. Names of it that do not stand when the runs are drawn anew are not named, and neither fit nor gap has them;
-/// that the floor is reached with them still speaks for the others.
+/// The set of names alone, at least one, that has most evidence.
+fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option<&'a Scored<Fit>> {
+    let is_name = |c: &usize| discrepancy(candidates, *c).is_none();
+    all.iter()
+        .filter(|s| !s.set.is_empty() && s.set.iter().all(is_name))
+        .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
+}
+
+/// What is said of the best set. Names of it that do not stand when the runs are drawn anew, or by which the gap does not fall on runs that
+/// were not fitted, are not named, and neither fit nor gap has them; that the floor is reached with them still speaks for the others.
 pub(super) fn judge(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -186,7 +196,16 @@ pub(super) fn judge(
         ..best.clone()
     };
     let standing = Standing::of(frame, candidates, all, &alike, &rivals);
-    let fewer = standing.fewer(frame, candidates, best);
+    let stands = standing.fewer(frame, candidates, best);
+    let proven = proven(proofs, candidates, stands.as_ref().unwrap_or(best));
+    let unsure: Vec<String> = (standing
+        .doubt
+        .clone()
+        .filter(|_| stands.is_some())
+        .into_iter())
+    .chain(proven.as_ref().map(|p| p.doubt.clone()))
+    .collect();
+    let fewer = proven.map(|p| p.set).or(stands);
     let best = fewer.as_ref().unwrap_or(best);
     let level = fewer.as_ref().map_or(alike.log_evidence, level);
     let explained = Explanation::of(frame, candidates, best);
@@ -197,18 +216,14 @@ pub(super) fn judge(
     let attempt = named(frame, candidates, best);
     let (gap, channels) = validated(proofs, candidates, best);
     let plausible = attempt.iter().all(|e| e.plausible);
-    let null = all.iter().find(|s| s.set.is_empty());
-    let null_evidence = null.map_or(0.0, |s| s.log_evidence);
-    let hint = all
-        .iter()
-        .filter(|s| {
-            !s.set.is_empty() && s.set.iter().all(|c| discrepancy(candidates, *c).is_none())
-        })
-        .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence));
+    let null_evidence = (all.iter().find(|s| s.set.is_empty())).map_or(0.0, |s| s.log_evidence);
+    let hint = best_of_names(candidates, all);
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let unmodelled = is_unmodelled(candidates, &best.set);
     let seldom = standing.doubt.clone().filter(|_| standing.is_none());
-    let doubt = neighbours_that_fail(frame, &attempt).or(seldom);
+    let doubt = neighbours_that_fail(frame, &attempt)
+        .or_else(|| no_drift(frame, candidates, best))
+        .or(seldom);
     let falls = gap.after < gap.before;
     let verdict = match (attempt.is_empty(), reached) {
         (true, true) if hinted => Verdict::BelowDetectability,
@@ -277,10 +292,7 @@ pub(super) fn judge(
         gauges_off_before: worst_first(&before.gauges, frame.rules.part),
         gauges_off: worst_first(&after.gauges, frame.rules.part),
         runs_off: worst_first(&after.runs, frame.rules.part),
-        remains: match standing.doubt.filter(|_| fewer.is_some()) {
-            Some(unsure) => format!("{left}; {unsure}"),
-            None => left,
-        },
+        remains: [vec![left], unsure].concat().join("; "),
         predicted: predict(frame, &explained.members),
         next_measurement: next,
         detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),

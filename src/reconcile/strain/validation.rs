@@ -94,13 +94,23 @@ pub fn validated(
     candidates: &[Candidate],
     scored: &Scored<Fit>,
 ) -> (Gap, Vec<ChannelGap>) {
+    validated_beside(proofs, candidates, scored, &scored.set)
+}
+
+/// The same, on the readings that `beside` is judged on: those of the runs that its effects touch as well.
+pub(super) fn validated_beside(
+    proofs: &Proofs<'_>,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+    beside: &[usize],
+) -> (Gap, Vec<ChannelGap>) {
     let frame = proofs.frame;
     let held_out = frame.observations.held_out.iter().any(|h| *h);
     let [mut plain, mut loads_found] = match proofs.parts.as_slice() {
         [one] if held_out => one.judged(candidates, scored),
         parts => in_turn(parts, candidates, scored),
     };
-    let effects = scored.set.iter().filter_map(|&c| candidates.get(c));
+    let effects = beside.iter().filter_map(|&c| candidates.get(c));
     let mut touched: Vec<usize> = effects.flat_map(|c| c.effect.runs()).collect();
     touched.sort_unstable();
     touched.dedup();
@@ -112,7 +122,7 @@ pub fn validated(
             .copied()
             .unwrap_or(false)
     });
-    if !touched.is_empty() && held_out && !frame.stop.is_asked() {
+    if !touched.is_empty() && !frame.stop.is_asked() {
         for half in [0, 1] {
             let [a, b] = judged_by_halves(frame, candidates, scored, &touched, half);
             plain.extend(a);
