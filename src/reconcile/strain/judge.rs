@@ -198,14 +198,12 @@ pub(super) fn judge(
     let standing = Standing::of(frame, candidates, all, &alike, &rivals);
     let stands = standing.fewer(frame, candidates, best);
     let proven = proven(proofs, candidates, stands.as_ref().unwrap_or(best));
-    let unsure: Vec<String> = (standing
-        .doubt
-        .clone()
-        .filter(|_| stands.is_some())
-        .into_iter())
-    .chain(proven.as_ref().map(|p| p.doubt.clone()))
-    .collect();
-    let fewer = proven.map(|p| p.set).or(stands);
+    let few = standing.doubt.clone().filter(|_| stands.is_some());
+    let (taken_out, fewer) = match proven {
+        Some(p) => (Some(p.doubt), Some(p.set)),
+        None => (None, stands),
+    };
+    let unsure: Vec<String> = few.into_iter().chain(taken_out.clone()).collect();
     let best = fewer.as_ref().unwrap_or(best);
     let level = fewer.as_ref().map_or(alike.log_evidence, level);
     let explained = Explanation::of(frame, candidates, best);
@@ -223,6 +221,8 @@ pub(super) fn judge(
     let seldom = standing.doubt.clone().filter(|_| standing.is_none());
     let doubt = neighbours_that_fail(frame, &attempt)
         .or_else(|| no_drift(frame, candidates, best))
+        // What explains the fitted runs that much better and runs to come no better is a form that is in no name.
+        .or(taken_out.filter(|_| alike.log_evidence - level > WORTH_NAMING))
         .or(seldom);
     let falls = gap.after < gap.before;
     let verdict = match (attempt.is_empty(), reached) {
