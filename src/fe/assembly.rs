@@ -2,14 +2,11 @@
 
 use super::constraint::{Reduction, State};
 use super::element::ElementMatrix;
-use super::error::{FeError, Refusal};
+use super::error::FeError;
 use super::prepared::Prepared;
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Symbolic};
 use crate::model::{ElementRef, GridIx, Mat3};
 use rayon::prelude::*;
-
-/// Elements formed at a time: bounds the memory of their matrices.
-const BATCH: usize = 8192;
 
 /// Numbering of the unknowns: groups are the grids with a free dof that an element touches.
 #[derive(Clone, Debug, Default)]
@@ -147,57 +144,17 @@ pub(crate) fn assemble(
     let symbolic = Symbolic::analyse(&graph, &sizes).map_err(|_| FeError::TooLarge {
         unknowns: sizes.iter().map(|s| usize::from(*s)).sum(),
     })?;
-    let mut stiffness = BlockMatrix::zeros(&symbolic, &graph);
-    let mut refused: Vec<Refusal> = Vec::new();
-    for (batch, groups) in elements.chunks(BATCH).zip(groups.chunks(BATCH)) {
-        let terms: Vec<Result<Term<'_>, Refusal>> = batch
-            .par_iter()
-            .zip(groups)
-            .map(|(e, groups)| {
-                Ok(reduced(
-                    prepared,
-                    reduction,
-                    &numbering,
-                    prepared.stiffness(*e)?,
-                    groups,
-                ))
-            })
-            .collect();
-        let (mut good, mut dense) = (
-            Vec::with_capacity(terms.len()),
-            Vec::with_capacity(terms.len()),
-        );
-        for term in terms {
-            match term {
-                Ok(term) => good.push(term),
-                Err(refusal) => refused.push(refusal),
-            }
-        }
-        dense.extend(good.iter().map(|t| DenseTerm {
-            groups: t.groups,
-            offsets: &t.offsets,
-            n: t.n,
-            matrix: &t.matrix,
-        }));
-        stiffness.add(&symbolic, &dense);
-    }
-    if refused.is_empty() {
-        Ok(Assembled {
-            numbering,
-            graph,
-            symbolic,
-            stiffness,
-        })
-    } else {
-        Err(FeError::Refused(refused))
-    }
-}
-
-struct Term<'a> {
-    groups: &'a [u32],
-    offsets: Vec<usize>,
-    n: usize,
-    matrix: Vec<f64>,
+    let stiffness = BlockMatrix::assembled(&symbolic, &graph, &groups, |i| {
+        let k = prepared.stiffness(elements[i])?;
+        Ok(reduced(prepared, reduction, &numbering, k, &groups[i]))
+    })
+    .map_err(FeError::Refused)?;
+    Ok(Assembled {
+        numbering,
+        graph,
+        symbolic,
+        stiffness,
+    })
 }
 
 /// Turns an element's matrix to the displacement frames of its grids.
@@ -224,19 +181,26 @@ pub(super) fn to_displacement_frames(axes: &[Option<Mat3>], k: &mut ElementMatri
 }
 
 /// T' K T of one element over its groups.
-fn reduced<'a>(
+fn reduced(
     prepared: &Prepared<'_>,
     reduction: &Reduction,
     numbering: &Numbering,
     mut k: ElementMatrix,
-    groups: &'a [u32],
-) -> Term<'a> {
+    groups: &[u32],
+) -> DenseTerm {
     to_displacement_frames(&prepared.axes, &mut k);
-    let mut offsets = Vec::with_capacity(groups.len());
+    if let Some(groups) = all_free(reduction, numbering, &k.grids) {
+        return DenseTerm {
+            offsets: (0..=groups.len()).map(|i| 6 * i).collect(),
+            groups,
+            matrix: k.values,
+        };
+    }
+    let mut offsets = vec![0];
     let mut n = 0;
     for &g in groups {
-        offsets.push(n);
         n += numbering.free[g as usize].count_ones() as usize;
+        offsets.push(n);
     }
     let column = |dof: usize| {
         let group = numbering.group[dof / 6]?;
@@ -261,19 +225,6 @@ fn reduced<'a>(
                 .collect(),
         })
         .collect();
-    if n == k.n()
-        && rows
-            .iter()
-            .enumerate()
-            .all(|(i, r)| r.len() == 1 && r[0] == (i, 1.0))
-    {
-        return Term {
-            groups,
-            offsets,
-            n,
-            matrix: k.values,
-        };
-    }
     let size = k.n();
     let mut half = vec![0.0; size * n];
     for (i, values) in k.values.chunks_exact(size).enumerate() {
@@ -291,10 +242,22 @@ fn reduced<'a>(
             }
         }
     }
-    Term {
-        groups,
+    DenseTerm {
+        groups: groups.to_vec(),
         offsets,
-        n,
         matrix,
     }
+}
+
+/// The groups of an element's grids where each grid is there once and all its six dofs are unknowns: its matrix is the term.
+fn all_free(reduction: &Reduction, numbering: &Numbering, grids: &[GridIx]) -> Option<Vec<u32>> {
+    let group = |(i, g): (usize, &GridIx)| {
+        let group = numbering.group[g.us()]?;
+        let states = &reduction.state[6 * g.us()..6 * g.us() + 6];
+        let free = numbering.free[group as usize] == 0b11_1111
+            && states.iter().all(|s| *s == State::Free)
+            && !grids[..i].contains(g);
+        free.then_some(group)
+    };
+    grids.iter().enumerate().map(group).collect()
 }

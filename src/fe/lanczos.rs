@@ -10,7 +10,7 @@ use crate::stop::Stop;
 use rayon::prelude::*;
 
 /// Vectors a block: more than any multiplicity that symmetric structures have.
-const BLOCK: usize = 6;
+const BLOCK: usize = 8;
 /// Grids handled at a time: the vectors of a block over so many stay in the cache.
 const CHUNK: usize = 512;
 /// Vectors at most, for each mode wanted: bounds memory and time.
@@ -233,10 +233,11 @@ fn orthonormal(
     let scale: Vec<f64> = (0..block.len())
         .map(|i| first[(i, i)].max(0.0).sqrt())
         .collect();
-    for _ in 0..2 {
+    // A step of Lanczos ties a block to the last two alone: they are taken out first, then what rounding leaves along all.
+    for first in [basis.len().saturating_sub(2 * BLOCK), 0] {
         if !basis.is_empty() {
-            let along = gram(forces, &block);
-            subtract(&mut block, basis, &along);
+            let along = gram(&forces[first..], &block);
+            subtract(&mut block, &basis[first..], &along);
         }
     }
     let mut factor = DMatrix::identity(block.len(), block.len());

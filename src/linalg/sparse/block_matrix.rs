@@ -4,6 +4,9 @@ use super::graph::BlockGraph;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
+/// Groups of a task.
+const GROUPS: usize = 4096;
+
 /// Lower triangle of a symmetric matrix by block columns; a block is stored by columns, diagonal blocks in full.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
@@ -16,17 +19,15 @@ pub struct BlockMatrix {
     pub(super) values: Vec<f64>,
 }
 
-/// A dense symmetric matrix to be added: groups (caller's numbering), first row of each group, the matrix by rows.
-#[derive(Clone, Copy, Debug)]
-pub struct DenseTerm<'a> {
-    /// Groups, each once.
-    pub groups: &'a [u32],
-    /// First row of each group in `matrix`.
-    pub offsets: &'a [usize],
-    /// Order of the matrix.
-    pub n: usize,
+/// A dense symmetric matrix to be added.
+#[derive(Clone, Debug, Default)]
+pub struct DenseTerm {
+    /// Groups (caller's numbering), each once, in any order.
+    pub groups: Vec<u32>,
+    /// First row of each group in `matrix`, and its order.
+    pub offsets: Vec<usize>,
     /// Entries, row by row.
-    pub matrix: &'a [f64],
+    pub matrix: Vec<f64>,
 }
 
 impl BlockMatrix {
@@ -65,109 +66,89 @@ impl BlockMatrix {
         }
     }
 
-    /// Adds dense terms in parallel; a term's groups must all be joined in the graph.
-    pub fn add(&mut self, symbolic: &Symbolic, terms: &[DenseTerm<'_>]) {
-        let n = self.column.len() - 1;
-        let parts = rayon::current_num_threads().clamp(1, n.max(1));
-        let total = self.values.len();
-        let mut bounds = vec![0];
-        for p in 1..parts {
-            let wanted = total * p / parts;
-            bounds.push(self.column[..n].partition_point(|&b| self.value_start[b] < wanted));
-        }
-        bounds.push(n);
+    /// Block rows of a group's column with their blocks, by columns; both numberings in elimination order.
+    pub(super) fn column_of(&self, g: usize) -> impl Iterator<Item = (u32, &[f64])> {
+        let blocks = self.column[g]..self.column[g + 1];
+        blocks.map(|b| {
+            let values = self.value_start[b]..self.value_start[b + 1];
+            (self.row[b], &self.values[values])
+        })
+    }
+
+    /// Scales rows and columns in place; `scale` in elimination order.
+    pub(super) fn scale(&mut self, symbolic: &Symbolic, scale: &[f64]) {
+        let (column, row, value_start) = (&self.column, &self.row, &self.value_start);
         let mut rest = self.values.as_mut_slice();
-        let mut pieces = Vec::with_capacity(parts);
-        for w in bounds.windows(2) {
-            let (from, to) = (
-                self.value_start[self.column[w[0]]],
-                self.value_start[self.column[w[1]]],
-            );
-            let (piece, tail) = rest.split_at_mut(to - from);
-            pieces.push((w[0]..w[1], from, piece));
+        let mut pieces = Vec::new();
+        let n = symbolic.order.len();
+        for first in (0..n).step_by(GROUPS) {
+            let groups = first..n.min(first + GROUPS);
+            let length = value_start[column[groups.end]] - value_start[column[first]];
+            let (own, tail) = rest.split_at_mut(length);
+            pieces.push((groups, own));
             rest = tail;
         }
-        let (column, row, value_start) = (&self.column, &self.row, &self.value_start);
-        pieces.into_par_iter().for_each(|(range, base, values)| {
-            for term in terms {
-                for (b, &gb) in term.groups.iter().enumerate() {
-                    let pb = symbolic.position[gb as usize];
-                    if !range.contains(&(pb as usize)) {
-                        continue;
-                    }
-                    let mb = symbolic.start[pb as usize + 1] - symbolic.start[pb as usize];
-                    let (from, to) = (column[pb as usize], column[pb as usize + 1]);
-                    for (a, &ga) in term.groups.iter().enumerate() {
-                        let pa = symbolic.position[ga as usize];
-                        if pa < pb {
-                            continue;
-                        }
-                        let Ok(at) = row[from..to].binary_search(&pa) else {
-                            continue;
-                        };
-                        let ma = symbolic.start[pa as usize + 1] - symbolic.start[pa as usize];
-                        let block = &mut values[value_start[from + at] - base..][..ma * mb];
-                        for (j, col) in block.chunks_exact_mut(ma.max(1)).enumerate() {
-                            let source = &term.matrix
-                                [(term.offsets[b] + j) * term.n + term.offsets[a]..][..ma];
-                            for (v, s) in col.iter_mut().zip(source) {
-                                *v += s;
-                            }
-                        }
+        pieces.into_par_iter().for_each(|(groups, mut values)| {
+            for g in groups {
+                for b in column[g]..column[g + 1] {
+                    let rows = &scale[symbolic.of_group(row[b])];
+                    let (block, tail) = values.split_at_mut(value_start[b + 1] - value_start[b]);
+                    values = tail;
+                    let columns = block.chunks_exact_mut(rows.len().max(1));
+                    for (column, own) in columns.zip(&scale[symbolic.of_group(g as u32)]) {
+                        let both = column.iter_mut().zip(rows);
+                        both.for_each(|(v, s)| *v *= s * own);
                     }
                 }
             }
         });
     }
 
-    /// Column starts, rows and values of the lower triangle by unknowns in elimination order, rows and columns scaled.
-    pub(super) fn lower_columns(
+    /// r -= A y, where `r` holds `M` columns row by row, and `y` holds those, from the one numbered `c`, among `k`; elimination order.
+    pub(super) fn subtract_product<const M: usize>(
         &self,
         symbolic: &Symbolic,
-        scale: &[f64],
-    ) -> (Vec<u32>, Vec<u32>, Vec<f64>) {
-        let n_groups = symbolic.order.len();
-        let mut columns = Vec::with_capacity(symbolic.n_unknowns() + 1);
-        let mut total = 0_u32;
-        columns.push(total);
-        for g in 0..n_groups {
-            let m = symbolic.start[g + 1] - symbolic.start[g];
-            let all = self.value_start[self.column[g + 1]] - self.value_start[self.column[g]];
-            for j in 0..m {
-                // The symbolic factor of the same pattern was counted with 32-bit indices before.
-                total += (all / m - j) as u32;
-                columns.push(total);
-            }
-        }
-        let (mut rows, mut values) = (vec![0_u32; total as usize], vec![0.0; total as usize]);
-        let (mut rest_rows, mut rest_values) = (rows.as_mut_slice(), values.as_mut_slice());
-        let mut pieces = Vec::with_capacity(n_groups);
-        for g in 0..n_groups {
-            let (from, to) = (symbolic.start[g], symbolic.start[g + 1]);
-            let length = (columns[to] - columns[from]) as usize;
-            let (r, tail_rows) = rest_rows.split_at_mut(length);
-            let (v, tail_values) = rest_values.split_at_mut(length);
-            pieces.push((g, r, v));
-            (rest_rows, rest_values) = (tail_rows, tail_values);
-        }
-        pieces.into_par_iter().for_each(|(g, rows, values)| {
-            let (from, to) = (symbolic.start[g], symbolic.start[g + 1]);
-            let mut at = 0;
-            for j in 0..to - from {
-                for b in self.column[g]..self.column[g + 1] {
-                    let h = self.row[b] as usize;
-                    let (first, m) = (symbolic.start[h], symbolic.start[h + 1] - symbolic.start[h]);
-                    for i in if h == g { j } else { 0 }..m {
-                        rows[at] = (first + i) as u32;
-                        values[at] = self.values[self.value_start[b] + j * m + i]
-                            * scale[first + i]
-                            * scale[from + j];
-                        at += 1;
+        y: &[f64],
+        (k, c): (usize, usize),
+        r: &mut [[f64; M]],
+    ) {
+        let row = |i: usize| -> [f64; M] { std::array::from_fn(|m| y[i * k + c + m]) };
+        let (mut own, mut sums) = (Vec::<[f64; M]>::new(), Vec::<[f64; M]>::new());
+        for g in 0..symbolic.order.len() {
+            let unknowns = symbolic.of_group(g as u32);
+            own.clear();
+            own.extend(unknowns.clone().map(row));
+            sums.clear();
+            sums.resize(own.len(), [0.0; M]);
+            for (h, block) in self.column_of(g) {
+                let rows = symbolic.of_group(h);
+                let n = rows.len();
+                for (i, at) in rows.enumerate() {
+                    let (yi, mut ri) = (row(at), [0.0; M]);
+                    for (j, (yj, sum)) in own.iter().zip(&mut sums).enumerate() {
+                        let a = block[j * n + i];
+                        (0..M).for_each(|m| ri[m] += a * yj[m]);
+                        if h as usize != g {
+                            (0..M).for_each(|m| sum[m] += a * yi[m]);
+                        }
                     }
+                    (0..M).for_each(|m| r[at][m] -= ri[m]);
                 }
             }
-        });
-        (columns, rows, values)
+            for (at, sum) in unknowns.zip(&sums) {
+                (0..M).for_each(|m| r[at][m] -= sum[m]);
+            }
+        }
+    }
+
+    /// Adds to the diagonal at an unknown, elimination order.
+    pub(super) fn add_to_place(&mut self, symbolic: &Symbolic, unknown: usize, value: f64) {
+        let group = symbolic.start.partition_point(|&s| s <= unknown) - 1;
+        let (m, i) = (
+            symbolic.of_group(group as u32).len(),
+            unknown - symbolic.start[group],
+        );
+        self.values[self.value_start[self.column[group]] + i * m + i] += value;
     }
 
     /// The diagonal in elimination order.

@@ -1,11 +1,11 @@
-//! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be substituted
-//! side by side.
+//! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be factored and
+//! substituted side by side.
 
-use faer::sparse::linalg::cholesky::supernodal::SymbolicSupernodalCholesky;
-use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
+use super::forest::NONE;
+use super::supernodes::Supernodes;
 use std::ops::Range;
 
-/// Branches are divided until none holds more than this share of the factor: enough of them to share out evenly.
+/// Branches are divided until none holds more than this share of the work, or of the unknowns: enough of them to share out evenly.
 const SHARE: f64 = 1.0 / 24.0;
 
 /// Tasks that branches are shared out into.
@@ -16,10 +16,12 @@ const TASKS: usize = 16;
 pub(super) struct Branch {
     /// Its supernodes.
     pub(super) supernodes: Range<usize>,
+    /// Their groups.
+    pub(super) groups: Range<usize>,
     /// Their unknowns, elimination order.
     pub(super) unknowns: Range<usize>,
-    /// Entries of the factor in it.
-    pub(super) weight: usize,
+    /// Multiplications to factor it.
+    pub(super) weight: f64,
 }
 
 /// The tree in two parts.
@@ -29,44 +31,58 @@ pub(super) struct Branches {
     pub(super) list: Vec<Branch>,
     /// Supernodes above them, ascending.
     pub(super) top: Vec<usize>,
-    /// Place of each unknown among those of the top; `OUTSIDE` elsewhere.
+    /// First place of each group among the unknowns of the top; `OUTSIDE` elsewhere.
     pub(super) in_top: Vec<u32>,
     /// Unknowns of the top.
     pub(super) n_top: usize,
 }
 
-const OUTSIDE: u32 = u32::MAX;
+pub(super) const OUTSIDE: u32 = u32::MAX;
 
 impl Branches {
-    pub(super) fn of(cholesky: &SymbolicCholesky<u32>) -> Self {
-        let SymbolicCholeskyRaw::Supernodal(nodes) = cholesky.raw() else {
-            return Self::default();
+    /// `start` is the first unknown of each group.
+    pub(super) fn of(nodes: &Supernodes, start: &[usize]) -> Self {
+        let n = nodes.len();
+        let groups = |s: &Range<usize>| nodes.first[s.start] as usize..nodes.first[s.end] as usize;
+        let unknowns = |s: &Range<usize>| start[groups(s).start]..start[groups(s).end];
+        // Work of each supernode and all below it, and the lowest below it.
+        let (mut below, mut first) = (vec![0.0; n], (0..n).collect::<Vec<usize>>());
+        let mut total = 0.0;
+        for s in 0..n {
+            let work = work(unknowns(&(s..s + 1)).len(), nodes.n_below(s));
+            below[s] += work;
+            total += work;
+            if nodes.parent[s] != NONE {
+                let parent = nodes.parent[s] as usize;
+                below[parent] += below[s];
+                first[parent] = first[parent].min(first[s]);
+            }
+        }
+        let n_unknowns = start.last().copied().unwrap_or(0) as f64;
+        let divided = |s: usize| {
+            let share = unknowns(&(first[s]..s + 1)).len() as f64 / n_unknowns;
+            share > SHARE || below[s] > SHARE * total
         };
-        let tree = Tree::of(nodes);
-        let total: usize = tree.weight_of_roots();
-        let most = (total as f64 * SHARE) as usize;
         let (mut list, mut top) = (Vec::new(), Vec::new());
-        let mut open = tree.roots.clone();
-        while let Some(s) = open.pop() {
-            if tree.below[s] > most || tree.scattered {
+        for s in 0..n {
+            if divided(s) {
                 top.push(s);
-                open.extend(&tree.children[s]);
-            } else {
+            } else if nodes.parent[s] == NONE || divided(nodes.parent[s] as usize) {
+                let supernodes = first[s]..s + 1;
                 list.push(Branch {
-                    supernodes: tree.first[s]..s + 1,
-                    unknowns: tree.columns(nodes, tree.first[s]).start..tree.columns(nodes, s).end,
-                    weight: tree.below[s],
+                    groups: groups(&supernodes),
+                    unknowns: unknowns(&supernodes),
+                    supernodes,
+                    weight: below[s],
                 });
             }
         }
-        list.sort_by_key(|b| b.supernodes.start);
-        top.sort_unstable();
-        let mut in_top = vec![OUTSIDE; nodes.nrows()];
+        let mut in_top = vec![OUTSIDE; start.len() - 1];
         let mut n_top = 0;
         for &s in &top {
-            for place in &mut in_top[tree.columns(nodes, s)] {
-                *place = n_top as u32;
-                n_top += 1;
+            for g in nodes.groups(s) {
+                in_top[g] = n_top as u32;
+                n_top += start[g + 1] - start[g];
             }
         }
         Self {
@@ -80,71 +96,26 @@ impl Branches {
     /// Branches in tasks about as heavy as each other: indices into `list`. As many whatever the number of threads, so that sums over them
     /// round alike.
     pub(super) fn shared_out(&self) -> Vec<Vec<usize>> {
-        let mut order: Vec<usize> = (0..self.list.len()).collect();
-        order.sort_by_key(|&i| std::cmp::Reverse(self.list[i].weight));
-        let mut bins = vec![(0_usize, Vec::new()); TASKS];
-        for i in order {
-            if let Some(least) = bins.iter_mut().min_by_key(|b| b.0) {
+        let mut bins = vec![(0.0_f64, Vec::new()); TASKS];
+        for i in self.heaviest_first() {
+            if let Some(least) = bins.iter_mut().min_by(|a, b| a.0.total_cmp(&b.0)) {
                 least.0 += self.list[i].weight;
                 least.1.push(i);
             }
         }
         bins.into_iter().map(|b| b.1).collect()
     }
+
+    /// Indices into `list`.
+    pub(super) fn heaviest_first(&self) -> Vec<usize> {
+        let mut order: Vec<usize> = (0..self.list.len()).collect();
+        order.sort_by(|&a, &b| self.list[b].weight.total_cmp(&self.list[a].weight));
+        order
+    }
 }
 
-/// The elimination tree of supernodes.
-struct Tree {
-    children: Vec<Vec<usize>>,
-    roots: Vec<usize>,
-    /// The lowest supernode below each.
-    first: Vec<usize>,
-    /// Entries of the factor in each and below it.
-    below: Vec<usize>,
-    /// Some supernode's descendants are not numbered one after the other: no branch is a range.
-    scattered: bool,
-}
-
-impl Tree {
-    fn of(nodes: &SymbolicSupernodalCholesky<u32>) -> Self {
-        let n = nodes.n_supernodes();
-        let mut owner = vec![0_u32; nodes.nrows()];
-        let mut tree = Self {
-            children: vec![Vec::new(); n],
-            roots: Vec::new(),
-            first: (0..n).collect(),
-            below: vec![0; n],
-            scattered: false,
-        };
-        for s in 0..n {
-            owner[tree.columns(nodes, s)].fill(s as u32);
-        }
-        let mut count = vec![1_usize; n];
-        // Children come before their parents.
-        for s in 0..n {
-            let pattern = nodes.supernode(s).pattern();
-            let columns = tree.columns(nodes, s).len();
-            tree.below[s] += columns * (columns + pattern.len());
-            tree.scattered |= count[s] != s + 1 - tree.first[s];
-            match pattern.iter().min() {
-                Some(&row) => {
-                    let parent = owner[row as usize] as usize;
-                    tree.children[parent].push(s);
-                    tree.below[parent] += tree.below[s];
-                    tree.first[parent] = tree.first[parent].min(tree.first[s]);
-                    count[parent] += count[s];
-                }
-                None => tree.roots.push(s),
-            }
-        }
-        tree
-    }
-
-    fn columns(&self, nodes: &SymbolicSupernodalCholesky<u32>, s: usize) -> Range<usize> {
-        nodes.supernode_begin()[s] as usize..nodes.supernode_end()[s] as usize
-    }
-
-    fn weight_of_roots(&self) -> usize {
-        self.roots.iter().map(|&s| self.below[s]).sum()
-    }
+/// Multiplications to eliminate so many unknowns from a matrix with so many rows below them.
+fn work(own: usize, below: usize) -> f64 {
+    let (w, m) = (own as f64, below as f64);
+    w * w * w / 6.0 + w * w * m / 2.0 + w * m * m / 2.0
 }

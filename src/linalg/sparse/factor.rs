@@ -1,20 +1,13 @@
-//! The numeric factor: faer's supernodal Cholesky of the matrix scaled to a unit diagonal.
+//! The numeric factor: multifrontal Cholesky of the matrix scaled to a unit diagonal, branches of the tree side by side.
 
 use super::block_matrix::BlockMatrix;
+use super::branches::Branch;
+use super::eliminate::Tiles;
 use super::error::FactorError;
+use super::forest::NONE;
+use super::front::{Eliminated, Front, MOST_LOST, Spare, Update};
 use super::symbolic::Symbolic;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltParams, LltRegularization};
-use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Auto, Par, Side, Spec};
 use rayon::prelude::*;
-
-/// Pivots of the matrix scaled to a unit diagonal below this are lost to rounding: the unknown is held by nothing.
-const TINY_PIVOT: f64 = 1e-13;
-/// Lost pivots that are looked for, each by one more factorisation.
-const MOST_LOST: usize = 12;
 
 /// L L' of the matrix scaled to a unit diagonal.
 #[derive(Debug)]
@@ -27,48 +20,16 @@ pub struct Factor<'a> {
     pub lost: Vec<usize>,
     /// Smallest pivot that was not lost, of the scaled matrix: how near the structure is to a mechanism.
     pub smallest_pivot: f64,
-    pub(super) matrix: ScaledMatrix,
-}
-
-/// Lower triangle of the scaled matrix by columns, elimination order: what the residual of a solution is formed with.
-#[derive(Debug)]
-pub(super) struct ScaledMatrix {
-    columns: Vec<u32>,
-    rows: Vec<u32>,
-    entries: Vec<f64>,
-}
-
-impl ScaledMatrix {
-    /// r -= A y, where `r` holds `M` columns row by row, and `y` holds those, from the one numbered `c`, among `k`.
-    pub(super) fn subtract_product<const M: usize>(
-        &self,
-        y: &[f64],
-        (k, c): (usize, usize),
-        r: &mut [[f64; M]],
-    ) {
-        let row = |i: usize| -> [f64; M] { std::array::from_fn(|m| y[i * k + c + m]) };
-        for (j, range) in self.columns.windows(2).enumerate() {
-            let range = range[0] as usize..range[1] as usize;
-            let (mut own, yj) = ([0.0; M], row(j));
-            for (&i, &a) in self.rows[range.clone()].iter().zip(&self.entries[range]) {
-                let i = i as usize;
-                let yi = row(i);
-                (0..M).for_each(|m| own[m] += a * yi[m]);
-                if i != j {
-                    (0..M).for_each(|m| r[i][m] -= a * yj[m]);
-                }
-            }
-            (0..M).for_each(|m| r[j][m] -= own[m]);
-        }
-    }
+    /// The scaled matrix, which the residual of a solution is formed with.
+    pub(super) matrix: BlockMatrix,
 }
 
 impl<'a> Factor<'a> {
-    /// The factor of a symmetric positive (semi)definite matrix, which is used up: only its scaled lower triangle is kept.
+    /// The factor of a symmetric positive (semi)definite matrix, which is scaled in place and kept.
     ///
     /// # Errors
     /// An entry that is not a number, or a factor that memory doesn't hold.
-    pub fn new(symbolic: &'a Symbolic, matrix: BlockMatrix) -> Result<Self, FactorError> {
+    pub fn new(symbolic: &'a Symbolic, mut matrix: BlockMatrix) -> Result<Self, FactorError> {
         let diagonal = matrix.diagonal(symbolic);
         if let Some(new) = diagonal.iter().position(|d| !d.is_finite()) {
             return Err(FactorError::NotANumber {
@@ -79,93 +40,202 @@ impl<'a> Factor<'a> {
             .iter()
             .map(|&d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
             .collect();
-        let cholesky = &symbolic.cholesky;
-        let (columns, rows, mut entries) = matrix.lower_columns(symbolic, &scale);
-        drop(matrix);
-        let mut values = zeros(cholesky.len_val())?;
-        let n = symbolic.n_unknowns();
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
-        let (par, parameters) = (
-            Par::rayon(0),
-            Spec::<LltParams, f64>::new(<LltParams as Auto<f64>>::auto()),
-        );
-        let scratch = cholesky.factorize_numeric_llt_scratch::<f64>(par, parameters);
-        let mut memory = MemBuffer::try_new(scratch).map_err(|_| FactorError::TooLarge)?;
-        let (mut lost, mut smallest_pivot) = (Vec::new(), f64::INFINITY);
-        // A lost pivot is held by a spring and the factorisation repeated: only for structures that are refused anyway. (faer's own
-        // regularisation leaves the unregularised diagonal in L.)
-        while lost.len() < MOST_LOST {
-            let done = cholesky
-                .factorize_numeric_llt(
-                    &mut values,
-                    SparseColMatRef::new(pattern, &entries),
-                    Side::Lower,
-                    LltRegularization::default(),
-                    par,
-                    MemStack::new(&mut memory),
-                    parameters,
-                )
-                .map(|_| ());
-            let bad = match done {
-                Ok(_) => {
-                    let pivots = pivots(cholesky.raw(), &values);
-                    smallest_pivot = pivots.iter().fold(f64::INFINITY, |a, p| a.min(*p));
-                    pivots.iter().position(|p| !(*p > TINY_PIVOT))
-                }
-                Err(LltError::NonPositivePivot { index }) => Some(index),
-            };
-            let Some(bad) = bad else { break };
-            let unknown = symbolic.old_unknown(bad);
-            let column = columns[bad] as usize..columns[bad + 1] as usize;
-            let Some(at) = column.into_iter().find(|&i| rows[i] as usize == bad) else {
-                break;
-            };
-            if lost.contains(&unknown) || !entries[at].is_finite() {
-                return Err(FactorError::NotANumber { unknown });
-            }
-            entries[at] += 1.0;
-            lost.push(unknown);
+        matrix.scale(symbolic, &scale);
+        let mut values = zeros(symbolic.nodes.n_values())?;
+        let found = Pass {
+            symbolic,
+            matrix: &matrix,
         }
+        .factor(&mut values)?;
+        let mut lost = found.lost;
+        lost.sort_unstable();
+        // Their springs stand in the factor: the residual is that of the matrix it is the factor of.
+        for &unknown in &lost {
+            matrix.add_to_place(symbolic, unknown, 1.0);
+        }
+        lost.truncate(MOST_LOST);
+        let mut lost: Vec<usize> = lost.iter().map(|u| symbolic.old_unknown(*u)).collect();
         lost.sort_unstable();
         Ok(Self {
             symbolic,
             values,
             scale,
             lost,
-            smallest_pivot,
-            matrix: ScaledMatrix {
-                columns,
-                rows,
-                entries,
-            },
+            smallest_pivot: found.smallest_pivot,
+            matrix,
         })
     }
 }
 
-/// Zeros that every thread writes its share of: the system hands out gigabytes page by page, and faer would ask for them with one thread.
+/// What was noticed on the way.
+struct Found {
+    /// Elimination order.
+    lost: Vec<usize>,
+    smallest_pivot: f64,
+}
+
+impl Found {
+    fn nothing() -> Self {
+        Self {
+            lost: Vec::new(),
+            smallest_pivot: f64::INFINITY,
+        }
+    }
+
+    fn note(&mut self, lost: Vec<usize>, smallest_pivot: f64) {
+        self.lost.extend(lost);
+        self.smallest_pivot = self.smallest_pivot.min(smallest_pivot);
+    }
+}
+
+/// One factorisation.
+struct Pass<'a> {
+    symbolic: &'a Symbolic,
+    matrix: &'a BlockMatrix,
+}
+
+impl Pass<'_> {
+    /// # Errors
+    /// The first pivot, in elimination order of what was reached, that is not a number.
+    fn factor(&self, values: &mut [f64]) -> Result<Found, FactorError> {
+        let branches = &self.symbolic.branches;
+        let (of_branch, of_top) = self.shared_out(values);
+        let mut all = Found::nothing();
+        let mut left: Vec<Option<Update>> = Vec::new();
+        left.resize_with(self.symbolic.nodes.len(), || None);
+        // The heaviest begin first; results are taken in elimination order.
+        let mut work: Vec<(usize, &mut [f64])> = of_branch.into_iter().enumerate().collect();
+        let weight = |i: usize| branches.list[i].weight;
+        work.sort_by(|a, b| weight(b.0).total_cmp(&weight(a.0)));
+        let mut done: Vec<(usize, Result<(Update, Found), FactorError>)> = work
+            .into_par_iter()
+            .with_max_len(1)
+            .map(|(i, values)| (i, self.branch(&branches.list[i], values)))
+            .collect();
+        done.sort_by_key(|d| d.0);
+        for (_, result) in done {
+            let (update, found) = result?;
+            all.note(found.lost, found.smallest_pivot);
+            let node = update.node;
+            left[node] = Some(update);
+        }
+        let mut panels: Vec<Option<&mut [f64]>> = of_top.into_iter().map(Some).collect();
+        for level in self.levels() {
+            let mut tasks = Vec::with_capacity(level.len());
+            for i in level {
+                let children = self.children(branches.top[i], &mut left);
+                tasks.push((
+                    branches.top[i],
+                    children,
+                    panels[i].take().unwrap_or_default(),
+                ));
+            }
+            let done: Vec<Result<Eliminated, FactorError>> = tasks
+                .into_par_iter()
+                .with_max_len(1)
+                .map(|(s, children, panel)| {
+                    let front = Front::new(self.symbolic, self.matrix, s);
+                    front.eliminated(panel, &children, &mut Spare::default(), Tiles::Shared)
+                })
+                .collect();
+            for result in done {
+                let e = result?;
+                all.note(e.lost, e.smallest_pivot);
+                let node = e.update.node;
+                left[node] = Some(e.update);
+            }
+        }
+        Ok(all)
+    }
+
+    /// A branch from its leaves to its root, whose update is left.
+    fn branch(
+        &self,
+        branch: &Branch,
+        mut values: &mut [f64],
+    ) -> Result<(Update, Found), FactorError> {
+        let nodes = &self.symbolic.nodes;
+        let (mut waiting, mut spare, mut found) =
+            (Vec::<Update>::new(), Spare::default(), Found::nothing());
+        for s in branch.supernodes.clone() {
+            let (panel, rest) = values.split_at_mut(nodes.values(s..s + 1).len());
+            values = rest;
+            // In postorder the children of a supernode are the last that wait.
+            let child = |u: &Update| nodes.parent[u.node] as usize == s;
+            let first = waiting.len() - waiting.iter().rev().take_while(|u| child(u)).count();
+            let front = Front::new(self.symbolic, self.matrix, s);
+            let e = front.eliminated(panel, &waiting[first..], &mut spare, Tiles::Own)?;
+            waiting.drain(first..).for_each(|u| spare.take_back(u));
+            waiting.push(e.update);
+            found.note(e.lost, e.smallest_pivot);
+        }
+        let update = waiting.pop().ok_or(FactorError::TooLarge)?;
+        Ok((update, found))
+    }
+
+    /// Updates of the children of a supernode of the top.
+    fn children(&self, s: usize, left: &mut [Option<Update>]) -> Vec<Update> {
+        let branches = &self.symbolic.branches;
+        let roots = branches.list.iter().map(|b| b.supernodes.end - 1);
+        let all = roots.chain(branches.top.iter().copied());
+        let parent = &self.symbolic.nodes.parent;
+        let mut of: Vec<usize> = all
+            .filter(|&c| parent[c] != NONE && parent[c] as usize == s)
+            .collect();
+        of.sort_unstable();
+        of.into_iter().filter_map(|c| left[c].take()).collect()
+    }
+
+    /// Indices of supernodes of the top whose children are done, level by level.
+    fn levels(&self) -> Vec<Vec<usize>> {
+        let branches = &self.symbolic.branches;
+        let parent = &self.symbolic.nodes.parent;
+        let mut level = vec![0_usize; branches.top.len()];
+        let mut levels: Vec<Vec<usize>> = Vec::new();
+        for i in 0..branches.top.len() {
+            if levels.len() <= level[i] {
+                levels.resize(level[i] + 1, Vec::new());
+            }
+            levels[level[i]].push(i);
+            let above = branches
+                .top
+                .binary_search(&(parent[branches.top[i]] as usize));
+            if let Ok(p) = above {
+                level[p] = level[p].max(level[i] + 1);
+            }
+        }
+        levels
+    }
+
+    /// The values of each branch and of each supernode of the top.
+    fn shared_out<'v>(&self, values: &'v mut [f64]) -> (Vec<&'v mut [f64]>, Vec<&'v mut [f64]>) {
+        let (nodes, branches) = (&self.symbolic.nodes, &self.symbolic.branches);
+        let (mut of_branch, mut of_top) = (Vec::new(), Vec::new());
+        let mut rest = values;
+        let (mut s, mut b) = (0, 0);
+        while s < nodes.len() {
+            let branch = branches.list.get(b).filter(|b| b.supernodes.start == s);
+            let end = branch.map_or(s + 1, |b| b.supernodes.end);
+            let (own, tail) = rest.split_at_mut(nodes.values(s..end).len());
+            rest = tail;
+            s = end;
+            if branch.is_some() {
+                of_branch.push(own);
+                b += 1;
+            } else {
+                of_top.push(own);
+            }
+        }
+        (of_branch, of_top)
+    }
+}
+
+/// Zeros, whose pages the system hands out to the threads that first write there.
 fn zeros(n: usize) -> Result<Vec<f64>, FactorError> {
     let mut probe: Vec<f64> = Vec::new();
     probe
         .try_reserve_exact(n)
         .map_err(|_| FactorError::TooLarge)?;
     drop(probe);
-    let mut values = vec![0.0; n];
-    values
-        .par_chunks_mut(1 << 18)
-        .for_each(|chunk| chunk.fill(0.0));
-    Ok(values)
-}
-
-/// Squares of the diagonal of L, elimination order.
-fn pivots(raw: &SymbolicCholeskyRaw<u32>, values: &[f64]) -> Vec<f64> {
-    let SymbolicCholeskyRaw::Supernodal(supernodes) = raw else {
-        return Vec::new();
-    };
-    let factor = SupernodalLltRef::new(supernodes, values);
-    let mut all = Vec::with_capacity(supernodes.nrows());
-    for s in 0..supernodes.n_supernodes() {
-        let node = factor.supernode(s);
-        all.extend((0..node.val().ncols()).map(|j| node.val()[(j, j)].powi(2)));
-    }
-    all
+    Ok(vec![0.0; n])
 }

@@ -1,16 +1,23 @@
 //! Sparse symmetric positive definite systems whose unknowns come in small groups (six to a grid): ordering, factor, solution.
 //!
-//! Orders are found and compared on the graph of groups, which has six times fewer vertices than the matrix has rows; the factor
-//! itself is faer's supernodal Cholesky.
+//! Orders and the shape of the factor are found on the graph of groups, which has six times fewer vertices than the matrix has rows; the
+//! factor itself is multifrontal, its dense matrices eliminated by faer.
 
+mod assemble;
 mod block_matrix;
 mod branches;
+mod eliminate;
 mod error;
 mod factor;
+mod forest;
+mod front;
 mod graph;
+mod narrow;
 mod order;
+mod panel;
 mod solve;
 mod substitution;
+mod supernodes;
 mod symbolic;
 
 pub use block_matrix::{BlockMatrix, DenseTerm};

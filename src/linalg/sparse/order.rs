@@ -1,6 +1,6 @@
 //! Elimination orders that keep the factor small: nested dissection against approximate minimum degree.
 
-use super::graph::{BlockGraph, inverse};
+use super::graph::BlockGraph;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
@@ -76,73 +76,4 @@ fn permutation(order: Vec<u32>, n: usize) -> Option<Vec<u32>> {
                 .is_some_and(|s| !std::mem::replace(s, true))
         });
     fits.then_some(order)
-}
-
-/// An order with its subtrees contiguous, and the size of the factor it gives.
-#[derive(Debug)]
-pub(super) struct EliminationForest {
-    /// New to old group.
-    pub(super) order: Vec<u32>,
-    /// Entries of the factor in unknowns, without merged supernodes.
-    pub(super) nonzeros: usize,
-}
-
-const NONE: u32 = u32::MAX;
-
-impl EliminationForest {
-    /// Elimination tree (Liu 1990) of an order, its postorder, and the entries of its factor.
-    pub(super) fn new(graph: &BlockGraph, order: &[u32], sizes: &[u8]) -> Self {
-        let position = inverse(order);
-        let n = order.len();
-        let (mut parent, mut visited) = (vec![NONE; n], vec![NONE; n]);
-        let size = |j: usize| usize::from(sizes[order[j] as usize]);
-        let mut nonzeros = 0;
-        for (j, &old) in order.iter().enumerate() {
-            visited[j] = j as u32;
-            nonzeros += size(j) * (size(j) + 1) / 2;
-            for &w in graph.neighbours(old as usize) {
-                let mut i = position[w as usize] as usize;
-                while i < j && visited[i] != j as u32 {
-                    if parent[i] == NONE {
-                        parent[i] = j as u32;
-                    }
-                    nonzeros += size(i) * size(j);
-                    visited[i] = j as u32;
-                    i = parent[i] as usize;
-                }
-            }
-        }
-        let order = postorder(&parent)
-            .into_iter()
-            .map(|v| order[v as usize])
-            .collect();
-        Self { order, nonzeros }
-    }
-}
-
-/// Vertices of a forest, children before parents, subtrees contiguous.
-fn postorder(parent: &[u32]) -> Vec<u32> {
-    let n = parent.len();
-    let (mut first, mut next) = (vec![NONE; n], vec![NONE; n]);
-    let mut stack = Vec::new();
-    for v in (0..n).rev() {
-        match parent[v] {
-            NONE => stack.push(v as u32),
-            p => next[v] = std::mem::replace(&mut first[p as usize], v as u32),
-        }
-    }
-    let mut order = Vec::with_capacity(n);
-    while let Some(&v) = stack.last() {
-        match first[v as usize] {
-            NONE => {
-                order.push(v);
-                stack.pop();
-            }
-            child => {
-                first[v as usize] = next[child as usize];
-                stack.push(child);
-            }
-        }
-    }
-    order
 }

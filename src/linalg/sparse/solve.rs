@@ -6,7 +6,7 @@ use super::factor::Factor;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Right-hand sides substituted together: the factor is read once for all of them.
+/// Right-hand sides substituted together: the factor is read once for all of them, and a row of them stays in registers.
 const TOGETHER: usize = 12;
 
 /// Groups that a task brings into elimination order.
@@ -63,9 +63,7 @@ impl Factor<'_> {
         if n == 0 || x.is_empty() {
             return;
         }
-        let columns = x.len() / n;
-        let together = columns.div_ceil(columns.div_ceil(TOGETHER).max(1)).max(1);
-        for part in x.chunks_mut(together * n) {
+        for part in x.chunks_mut(TOGETHER * n) {
             let k = part.len() / n;
             call(part, k);
         }
@@ -148,7 +146,8 @@ impl Factor<'_> {
             sums
         };
         let work = dots(&r);
-        self.matrix.subtract_product(y, (k, c), &mut r);
+        self.matrix
+            .subtract_product(self.symbolic, y, (k, c), &mut r);
         let lost = dots(&r);
         let share = |(l, w): (&f64, &f64)| if w.abs() > 0.0 { (l / w).abs() } else { 0.0 };
         Remainder {

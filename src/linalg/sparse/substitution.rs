@@ -1,65 +1,194 @@
-//! Forward and backward substitution by branches of the elimination tree.
+//! Substitution with many right-hand sides: branches of the elimination tree side by side, then the top.
 //!
-//! Branches are substituted side by side, some to a task; what they take from the unknowns of the top is summed before the top is
-//! solved, with all threads on its large supernodes.
+//! Right-hand sides are kept row by row, all values of an unknown side by side.
 
 use super::branches::{Branch, Branches};
 use super::factor::Factor;
-use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::sparse::linalg::cholesky::SymbolicCholeskyRaw;
-use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SupernodeRef};
-use faer::{Accum, MatMut, MatRef, Par};
+use super::panel::Panel;
+use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// Entries of a supernode above which one substitution is shared by all threads.
-const SHARED: usize = 1 << 18;
+/// Which triangle is solved with.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    Forward,
+    Backward,
+}
 
-/// Working columns of a substitution.
-#[derive(Default)]
-struct Work {
-    /// The unknowns of a supernode, column by column.
-    own: Vec<f64>,
-    /// Those of the rows below it.
-    below: Vec<f64>,
+/// Rows that a substitution reads and writes: those of a branch and those of the top, or of the top alone.
+struct Rows<'a> {
+    branch: &'a mut [f64],
+    top: &'a mut [f64],
+    /// The branch's unknowns.
+    unknowns: std::ops::Range<usize>,
+    /// Columns.
+    k: usize,
+}
+
+impl Rows<'_> {
+    /// The rows from a group's unknowns on.
+    fn from(&mut self, symbolic: &Symbolic, g: u32) -> &mut [f64] {
+        let first = symbolic.start[g as usize];
+        if self.unknowns.contains(&first) {
+            &mut self.branch[(first - self.unknowns.start) * self.k..]
+        } else {
+            &mut self.top[symbolic.branches.in_top[g as usize] as usize * self.k..]
+        }
+    }
 }
 
 impl Factor<'_> {
     /// Replaces `k` right-hand sides of L L' by solutions.
     pub(super) fn substitute(&self, y: &mut [f64], k: usize) {
-        let SymbolicCholeskyRaw::Supernodal(nodes) = self.symbolic.cholesky.raw() else {
-            return;
-        };
-        let factor = SupernodalLltRef::new(nodes, &self.values);
         let branches = &self.symbolic.branches;
-        let mut top = Top::taken(branches, factor, y, k);
+        let mut above = self.taken(y, k);
         let mut bins = slices(branches, y, k);
         let sums: Vec<Vec<f64>> = bins
             .par_iter_mut()
+            .with_max_len(1)
             .map(|bin| {
-                let mut sum = vec![0.0; top.rows.len()];
-                let mut work = Work::default();
-                for (branch, rows) in bin {
-                    forward_branch(branches, branch, factor, (rows, &mut sum), k, &mut work);
-                }
+                let mut sum = vec![0.0; above.len()];
+                self.through(bin, Way::Forward, &mut sum, k);
                 sum
             })
             .collect();
-        top.add(&sums);
+        for sum in &sums {
+            let rows = above.iter_mut();
+            rows.zip(sum).for_each(|(r, s)| *r += s);
+        }
         drop(sums);
-        top.solve();
-        let above = &top.rows;
-        bins.par_iter_mut().for_each(|bin| {
-            let mut work = Work::default();
-            for (branch, rows) in bin {
-                backward_branch(branches, branch, factor, (rows, above), k, &mut work);
-            }
+        self.through_top(&mut above, k);
+        bins.par_iter_mut().with_max_len(1).for_each(|bin| {
+            let mut above = above.clone();
+            self.through(bin, Way::Backward, &mut above, k);
         });
         drop(bins);
-        top.given_back(y);
+        self.give_back(&above, y, k);
+    }
+
+    /// The rows of the top.
+    fn taken(&self, y: &[f64], k: usize) -> Vec<f64> {
+        let branches = &self.symbolic.branches;
+        let mut rows = Vec::with_capacity(branches.n_top * k);
+        for &s in &branches.top {
+            let own = self.symbolic.unknowns(s);
+            rows.extend(&y[own.start * k..own.end * k]);
+        }
+        rows
+    }
+
+    fn give_back(&self, mut above: &[f64], y: &mut [f64], k: usize) {
+        for &s in &self.symbolic.branches.top {
+            let own = self.symbolic.unknowns(s);
+            let (rows, rest) = above.split_at(own.len() * k);
+            y[own.start * k..own.end * k].copy_from_slice(rows);
+            above = rest;
+        }
+    }
+
+    /// Substitutes in branches with all their supernodes.
+    fn through(&self, bin: &mut [(&Branch, &mut [f64])], way: Way, top: &mut [f64], k: usize) {
+        let mut work = Vec::new();
+        for (branch, rows) in bin {
+            let mut rows = Rows {
+                branch: rows,
+                top,
+                unknowns: branch.unknowns.clone(),
+                k,
+            };
+            let nodes = branch.supernodes.clone();
+            match way {
+                Way::Forward => nodes.for_each(|s| self.node(s, way, &mut rows, &mut work)),
+                Way::Backward => nodes
+                    .rev()
+                    .for_each(|s| self.node(s, way, &mut rows, &mut work)),
+            }
+        }
+    }
+
+    fn through_top(&self, above: &mut [f64], k: usize) {
+        let mut work = Vec::new();
+        let mut rows = Rows {
+            branch: &mut [],
+            top: above,
+            unknowns: 0..0,
+            k,
+        };
+        let top = &self.symbolic.branches.top;
+        for s in top {
+            self.node(*s, Way::Forward, &mut rows, &mut work);
+        }
+        for s in top.iter().rev() {
+            self.node(*s, Way::Backward, &mut rows, &mut work);
+        }
+    }
+
+    /// Substitutes in a supernode, as many columns at a time as stay in registers.
+    fn node(&self, s: usize, way: Way, rows: &mut Rows<'_>, work: &mut Vec<f64>) {
+        let mut c = 0;
+        while c < rows.k {
+            match rows.k - c {
+                1..=4 => self.columns::<4>(s, way, rows, c, work),
+                5..=8 => self.columns::<8>(s, way, rows, c, work),
+                _ => self.columns::<12>(s, way, rows, c, work),
+            }
+            c += 12;
+        }
+    }
+
+    /// Substitutes in a supernode for `K` columns from the `c`th, or as many as there are.
+    fn columns<const K: usize>(
+        &self,
+        s: usize,
+        way: Way,
+        rows: &mut Rows<'_>,
+        c: usize,
+        work: &mut Vec<f64>,
+    ) {
+        let (symbolic, nodes) = (self.symbolic, &self.symbolic.nodes);
+        let own = symbolic.unknowns(s).len();
+        let panel = Panel {
+            values: &self.values[nodes.values(s..s + 1)],
+            rows: own + nodes.n_below(s),
+            own,
+        };
+        let (k, n) = (rows.k, K.min(rows.k - c));
+        work.clear();
+        work.resize(panel.rows * K, 0.0);
+        let (work, _) = work.as_chunks_mut::<K>();
+        let (mine, below) = work.split_at_mut(own);
+        let first = nodes.first[s];
+        let from = rows.from(symbolic, first).chunks_exact(k);
+        mine.iter_mut()
+            .zip(from)
+            .for_each(|(to, from)| to[..n].copy_from_slice(&from[c..c + n]));
+        if way == Way::Backward {
+            let mut below = below.iter_mut();
+            for &g in nodes.rows(s) {
+                let size = symbolic.of_group(g).len();
+                let from = rows.from(symbolic, g).chunks_exact(k).take(size);
+                for (from, to) in from.zip(&mut below) {
+                    to[..n].copy_from_slice(&from[c..c + n]);
+                }
+            }
+            panel.backward(work);
+        } else {
+            panel.forward(work);
+            let mut below = work[own..].iter();
+            for &g in nodes.rows(s) {
+                let size = symbolic.of_group(g).len();
+                let to = rows.from(symbolic, g).chunks_exact_mut(k).take(size);
+                for (to, from) in to.zip(&mut below) {
+                    let to = to[c..c + n].iter_mut();
+                    to.zip(from).for_each(|(t, f)| *t += f);
+                }
+            }
+        }
+        let to = rows.from(symbolic, first).chunks_exact_mut(k);
+        work[..own]
+            .iter()
+            .zip(to)
+            .for_each(|(from, to)| to[c..c + n].copy_from_slice(&from[..n]));
     }
 }
 
@@ -90,207 +219,4 @@ fn slices<'a>(
             own
         })
         .collect()
-}
-
-/// Solves with the branch's supernodes upwards; what they take from rows of the top goes into `sum`.
-fn forward_branch(
-    branches: &Branches,
-    branch: &Branch,
-    factor: SupernodalLltRef<'_, u32, f64>,
-    (rows, sum): (&mut [f64], &mut [f64]),
-    k: usize,
-    work: &mut Work,
-) {
-    let (first, end) = (branch.unknowns.start, branch.unknowns.end);
-    for s in branch.supernodes.clone() {
-        let node = factor.supernode(s);
-        let at = (node.start() - first) * k;
-        forward(node, &mut rows[at..], k, work, Par::Seq);
-        let n = node.pattern().len();
-        for (i, &row) in node.pattern().iter().enumerate() {
-            let row = row as usize;
-            let to = if row < end {
-                &mut rows[(row - first) * k..][..k]
-            } else {
-                &mut sum[branches.in_top[row] as usize * k..][..k]
-            };
-            subtract(to, &work.below, i, n);
-        }
-    }
-}
-
-/// Solves with the branch's supernodes downwards, the top's unknowns being known.
-fn backward_branch(
-    branches: &Branches,
-    branch: &Branch,
-    factor: SupernodalLltRef<'_, u32, f64>,
-    (rows, above): (&mut [f64], &[f64]),
-    k: usize,
-    work: &mut Work,
-) {
-    let (first, end) = (branch.unknowns.start, branch.unknowns.end);
-    for s in branch.supernodes.clone().rev() {
-        let node = factor.supernode(s);
-        let n = node.pattern().len();
-        work.below.resize(n * k, 0.0);
-        for (i, &row) in node.pattern().iter().enumerate() {
-            let row = row as usize;
-            let from = if row < end {
-                &rows[(row - first) * k..][..k]
-            } else {
-                &above[branches.in_top[row] as usize * k..][..k]
-            };
-            put(&mut work.below, from, i, n);
-        }
-        let at = (node.start() - first) * k;
-        backward(node, &mut rows[at..], k, work, Par::Seq);
-    }
-}
-
-/// The unknowns above all branches.
-struct Top<'a> {
-    branches: &'a Branches,
-    factor: SupernodalLltRef<'a, u32, f64>,
-    rows: Vec<f64>,
-    k: usize,
-}
-
-impl<'a> Top<'a> {
-    fn taken(
-        branches: &'a Branches,
-        factor: SupernodalLltRef<'a, u32, f64>,
-        y: &[f64],
-        k: usize,
-    ) -> Self {
-        let mut rows = Vec::with_capacity(branches.n_top * k);
-        for &s in &branches.top {
-            let node = factor.supernode(s);
-            rows.extend(&y[node.start() * k..(node.start() + node.val().ncols()) * k]);
-        }
-        Self {
-            branches,
-            factor,
-            rows,
-            k,
-        }
-    }
-
-    fn given_back(&self, y: &mut [f64]) {
-        let mut rest = self.rows.as_slice();
-        for &s in &self.branches.top {
-            let node = self.factor.supernode(s);
-            let (own, tail) = rest.split_at(node.val().ncols() * self.k);
-            y[node.start() * self.k..][..own.len()].copy_from_slice(own);
-            rest = tail;
-        }
-    }
-
-    fn add(&mut self, sums: &[Vec<f64>]) {
-        for sum in sums {
-            let rows = self.rows.iter_mut();
-            rows.zip(sum).for_each(|(r, s)| *r += s);
-        }
-    }
-
-    fn solve(&mut self) {
-        let (k, in_top) = (self.k, &self.branches.in_top);
-        let rows = &mut self.rows;
-        let mut work = Work::default();
-        let par = |node: &SupernodeRef<'_, u32, f64>| {
-            let large = node.val().nrows() * node.val().ncols() > SHARED;
-            if large { Par::rayon(0) } else { Par::Seq }
-        };
-        for &s in &self.branches.top {
-            let node = self.factor.supernode(s);
-            let at = in_top[node.start()] as usize * k;
-            forward(node, &mut rows[at..], k, &mut work, par(&node));
-            let n = node.pattern().len();
-            for (i, &row) in node.pattern().iter().enumerate() {
-                let to = &mut rows[in_top[row as usize] as usize * k..][..k];
-                subtract(to, &work.below, i, n);
-            }
-        }
-        for &s in self.branches.top.iter().rev() {
-            let node = self.factor.supernode(s);
-            let n = node.pattern().len();
-            work.below.resize(n * k, 0.0);
-            for (i, &row) in node.pattern().iter().enumerate() {
-                let from = &rows[in_top[row as usize] as usize * k..][..k];
-                put(&mut work.below, from, i, n);
-            }
-            let at = in_top[node.start()] as usize * k;
-            backward(node, &mut rows[at..], k, &mut work, par(&node));
-        }
-    }
-}
-
-/// `to -= ` row `i` of `n` rows kept column by column.
-fn subtract(to: &mut [f64], columns: &[f64], i: usize, n: usize) {
-    let from = columns[i..].iter().step_by(n);
-    to.iter_mut().zip(from).for_each(|(t, f)| *t -= f);
-}
-
-/// Row `i` of `n` rows kept column by column `= from`.
-fn put(columns: &mut [f64], from: &[f64], i: usize, n: usize) {
-    let to = columns[i..].iter_mut().step_by(n);
-    to.zip(from).for_each(|(t, f)| *t = *f);
-}
-
-/// L11 x = b on the supernode's own rows, the first of `rows`; `below` becomes L21 x.
-fn forward(
-    node: SupernodeRef<'_, u32, f64>,
-    rows: &mut [f64],
-    k: usize,
-    work: &mut Work,
-    par: Par,
-) {
-    let (w, m) = (node.val().ncols(), node.pattern().len());
-    let (top, bottom) = node.val().split_at_row(w);
-    columns_of(&rows[..w * k], w, &mut work.own);
-    let mut own = MatMut::from_column_major_slice_mut(&mut work.own, w, k);
-    solve_lower_triangular_in_place(top, own.rb_mut(), par);
-    work.below.resize(m * k, 0.0);
-    let below = MatMut::from_column_major_slice_mut(&mut work.below, m, k);
-    matmul(below, Accum::Replace, bottom, own.rb(), 1.0, par);
-    rows_of(&work.own, w, &mut rows[..w * k]);
-}
-
-/// L11' x = b - L21' below on the supernode's own rows, the first of `rows`.
-fn backward(
-    node: SupernodeRef<'_, u32, f64>,
-    rows: &mut [f64],
-    k: usize,
-    work: &mut Work,
-    par: Par,
-) {
-    let (w, m) = (node.val().ncols(), node.pattern().len());
-    let (top, bottom) = node.val().split_at_row(w);
-    columns_of(&rows[..w * k], w, &mut work.own);
-    let mut own = MatMut::from_column_major_slice_mut(&mut work.own, w, k);
-    let below = MatRef::from_column_major_slice(&work.below[..m * k], m, k);
-    matmul(
-        own.rb_mut(),
-        Accum::Add,
-        bottom.transpose(),
-        below,
-        -1.0,
-        par,
-    );
-    solve_upper_triangular_in_place(top.transpose(), own.rb_mut(), par);
-    rows_of(&work.own, w, &mut rows[..w * k]);
-}
-
-fn columns_of(rows: &[f64], n: usize, columns: &mut Vec<f64>) {
-    columns.resize(rows.len(), 0.0);
-    for (i, row) in rows.chunks_exact(rows.len() / n.max(1)).enumerate() {
-        put(columns, row, i, n);
-    }
-}
-
-fn rows_of(columns: &[f64], n: usize, rows: &mut [f64]) {
-    let k = rows.len() / n.max(1);
-    for (i, row) in rows.chunks_exact_mut(k).enumerate() {
-        let from = columns[i..].iter().step_by(n);
-        row.iter_mut().zip(from).for_each(|(t, f)| *t = *f);
-    }
 }

@@ -1,15 +1,11 @@
-//! The shape of the factor: elimination order, place of every unknown, faer's symbolic factorisation.
+//! The shape of the factor: elimination order, place of every unknown, supernodes.
 
 use super::branches::Branches;
 use super::error::FactorError;
+use super::forest::EliminationForest;
 use super::graph::{BlockGraph, inverse};
-use super::order::{EliminationForest, OrderingMethod, candidates};
-use faer::Side;
-use faer::sparse::SymbolicSparseColMatRef;
-use faer::sparse::linalg::SupernodalThreshold;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
-};
+use super::order::{OrderingMethod, candidates};
+use super::supernodes::Supernodes;
 
 /// The symbolic factor.
 #[derive(Debug)]
@@ -23,7 +19,7 @@ pub struct Symbolic {
     /// First unknown by old group, and the total.
     pub(super) old_start: Vec<usize>,
     /// Supernodes of the factor, in elimination order.
-    pub(super) cholesky: SymbolicCholesky<u32>,
+    pub(super) nodes: Supernodes,
     pub(super) branches: Branches,
     method: OrderingMethod,
 }
@@ -31,10 +27,8 @@ pub struct Symbolic {
 impl Symbolic {
     /// The smaller factor of the orders compared; `sizes` are the unknowns in each group.
     ///
-    /// Orders are compared on the graph of groups, each postordered; the kept one is expanded to unknowns.
-    ///
     /// # Errors
-    /// A matrix or factor with more entries than 32-bit indices count, or that memory holds.
+    /// More unknowns than 32-bit indices count.
     pub fn analyse(graph: &BlockGraph, sizes: &[u8]) -> Result<Self, FactorError> {
         use rayon::prelude::*;
         let best = candidates(graph)
@@ -42,33 +36,18 @@ impl Symbolic {
             .map(|(method, order)| (method, EliminationForest::new(graph, &order, sizes)))
             .min_by_key(|(_, forest)| forest.nonzeros);
         let (method, forest) = best.ok_or(FactorError::TooLarge)?;
-        let order = forest.order;
+        let (nodes, order) = Supernodes::new(graph, &forest, sizes);
+        drop(forest);
         let start = running(order.iter().map(|&v| sizes[v as usize]));
         let old_start = running(sizes.iter().copied());
-        let position = inverse(&order);
-        let cholesky = {
-            let (columns, rows) = upper_pattern(graph, &order, &position, &start)?;
-            let n = old_start.last().copied().unwrap_or(0);
-            let pattern = SymbolicSparseColMatRef::new_checked(n, n, &columns, None, &rows);
-            let parameters = CholeskySymbolicParams {
-                supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-                ..CholeskySymbolicParams::default()
-            };
-            factorize_symbolic_cholesky(
-                pattern,
-                Side::Upper,
-                SymmetricOrdering::Identity,
-                parameters,
-            )
-            .map_err(|_| FactorError::TooLarge)?
-        };
+        u32::try_from(old_start.last().copied().unwrap_or(0)).map_err(|_| FactorError::TooLarge)?;
         Ok(Self {
-            position,
+            position: inverse(&order),
+            branches: Branches::of(&nodes, &start),
             order,
             start,
             old_start,
-            branches: Branches::of(&cholesky),
-            cholesky,
+            nodes,
             method,
         })
     }
@@ -80,7 +59,11 @@ impl Symbolic {
 
     /// Entries of the factor, explicit zeros of merged supernodes included.
     pub fn factor_nonzeros(&self) -> usize {
-        self.cholesky.len_val()
+        let entries = |s: usize| {
+            let own = self.unknowns(s).len();
+            own * (own + 1) / 2 + own * self.nodes.n_below(s)
+        };
+        (0..self.nodes.len()).map(entries).sum()
     }
 
     /// Number of unknowns.
@@ -91,6 +74,17 @@ impl Symbolic {
     /// First unknown of each group in the caller's numbering, and the total.
     pub fn unknown_start(&self) -> &[usize] {
         &self.old_start
+    }
+
+    /// Unknowns of a supernode's own, elimination order.
+    pub(super) fn unknowns(&self, s: usize) -> std::ops::Range<usize> {
+        let groups = self.nodes.groups(s);
+        self.start[groups.start]..self.start[groups.end]
+    }
+
+    /// Unknowns of a group, elimination order.
+    pub(super) fn of_group(&self, g: u32) -> std::ops::Range<usize> {
+        self.start[g as usize]..self.start[g as usize + 1]
     }
 
     /// The unknown, caller's numbering, at a place of the elimination order.
@@ -109,34 +103,4 @@ fn running(sizes: impl Iterator<Item = u8>) -> Vec<usize> {
         start.push(total);
     }
     start
-}
-
-/// Columns of the upper triangle in elimination order: every unknown of an earlier neighbour, and the group's own down to the diagonal.
-fn upper_pattern(
-    graph: &BlockGraph,
-    order: &[u32],
-    position: &[u32],
-    start: &[usize],
-) -> Result<(Vec<u32>, Vec<u32>), FactorError> {
-    let (mut columns, mut rows) = (vec![0_u32], Vec::new());
-    let mut earlier = Vec::new();
-    for (g, &old) in order.iter().enumerate() {
-        earlier.clear();
-        earlier.extend(
-            graph
-                .neighbours(old as usize)
-                .iter()
-                .map(|&w| position[w as usize] as usize)
-                .filter(|&h| h < g),
-        );
-        earlier.sort_unstable();
-        for unknown in start[g]..start[g + 1] {
-            for &h in &earlier {
-                rows.extend((start[h]..start[h + 1]).map(|r| r as u32));
-            }
-            rows.extend((start[g]..=unknown).map(|r| r as u32));
-            columns.push(u32::try_from(rows.len()).map_err(|_| FactorError::TooLarge)?);
-        }
-    }
-    Ok((columns, rows))
 }

@@ -4,6 +4,7 @@
 //! strains linear in z are e_rr = g_r . u,r + z (g_r . q,r + D,r . u,r) with q = sum h_k theta_k x d_k, and so on. Every one of
 //! them vanishes for u_k = c + w x x_k, theta_k = w, whatever the shape: a x (b x c) products cancel in pairs.
 
+use super::products::Products;
 use super::types::{BadShape, ShellLaw, StrainRows};
 use crate::model::Vec3;
 
@@ -204,7 +205,7 @@ pub(super) fn drilling<const N: usize, const M: usize>(local: &Local, shape: &Sh
     row
 }
 
-/// Adds weight * (strain rows)' law (strain rows) to the stiffness; rows are membrane, curvature, shear, drilling.
+/// Adds weight * (strain rows)' law (strain rows) to a stiffness; rows are membrane, curvature, shear, drilling.
 pub(super) struct Section<'a> {
     pub(super) law: &'a ShellLaw,
     pub(super) t: f64,
@@ -230,7 +231,7 @@ impl Section<'_> {
 
     pub(super) fn add<const M: usize>(
         &self,
-        k: &mut [[f64; M]; M],
+        k: &mut Products,
         weight: f64,
         membrane: &[Row<M>; 3],
         curvature: &[Row<M>; 3],
@@ -241,31 +242,27 @@ impl Section<'_> {
             g.map(|g| g.map(|row| row.map(|v| v * by * weight)))
         };
         if let Some(a) = scaled(&self.law.membrane, t) {
-            add_pair(k, membrane, &a, membrane);
+            k.add(membrane, &a, membrane);
         }
         if let Some(d) = scaled(&self.law.bending, t * t * t / 12.0) {
-            add_pair(k, curvature, &d, curvature);
+            k.add(curvature, &d, curvature);
         }
         if let Some(b) = scaled(&self.law.coupling, t * t) {
-            add_pair(k, membrane, &b, curvature);
-            add_pair(k, curvature, &b, membrane);
+            k.add(membrane, &b, curvature);
+            k.add(curvature, &b, membrane);
         }
-        add_pair(k, &[*drilling], &[[self.drilling() * weight]], &[*drilling]);
+        k.add(&[*drilling], &[[self.drilling() * weight]], &[*drilling]);
     }
 
     pub(super) fn add_shear<const M: usize>(
         &self,
-        k: &mut [[f64; M]; M],
+        k: &mut Products,
         weight: f64,
         shear: &[Row<M>; 2],
     ) {
         if let Some(s) = self.law.shear {
-            add_pair(
-                k,
-                shear,
-                &s.map(|row| row.map(|v| v * self.t * weight)),
-                shear,
-            );
+            let s = s.map(|row| row.map(|v| v * self.t * weight));
+            k.add(shear, &s, shear);
         }
     }
 }
@@ -281,31 +278,6 @@ pub(super) fn add_thermal<const M: usize>(
     for c in 0..3 {
         for i in 0..M {
             f[i] += weight * (membrane[c][i] * force[c] + curvature[c][i] * moment[c]);
-        }
-    }
-}
-
-/// K += a' D b.
-fn add_pair<const R: usize, const M: usize>(
-    k: &mut [[f64; M]; M],
-    a: &[Row<M>; R],
-    law: &[[f64; R]; R],
-    b: &[Row<M>; R],
-) {
-    let mut product = [[0.0; M]; R];
-    for (p, row) in product.iter_mut().zip(law) {
-        for (c, b) in row.iter().zip(b) {
-            for i in 0..M {
-                p[i] += c * b[i];
-            }
-        }
-    }
-    for (a, p) in a.iter().zip(&product) {
-        for i in 0..M {
-            let v = a[i];
-            for j in 0..M {
-                k[i][j] += v * p[j];
-            }
         }
     }
 }

@@ -16,6 +16,7 @@ mod normals;
 mod of_model;
 mod output_frame;
 mod plane_stress;
+mod products;
 mod quad4;
 mod tria3;
 mod types;

@@ -5,6 +5,7 @@ use super::kinematics::{
     membrane, shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
+use super::products::Products;
 use super::types::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows};
 use crate::linalg::Matrix4;
 
@@ -48,7 +49,7 @@ struct Point {
 
 impl Point {
     /// Adds membrane, bending and drilling stiffness, and the load of thermal strain.
-    fn add(&self, input: &ShellInput<'_, 4>, stiffness: &mut [Row<24>; 24], thermal: &mut Row<24>) {
+    fn add(&self, input: &ShellInput<'_, 4>, stiffness: &mut Products, thermal: &mut Row<24>) {
         if let Some(heat) = input.heat {
             let rise = self
                 .shape
@@ -123,7 +124,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
         tie(1.0, 0.0)[1],
     );
 
-    let mut stiffness = [[0.0; 24]; 24];
+    let mut products = Products::new();
     let mut points = Vec::with_capacity(4);
     for (a, b) in CORNERS {
         let (r, s) = (a * GAUSS, b * GAUSS);
@@ -151,7 +152,7 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
             k6rot: input.k6rot,
         };
         if input.parts == Parts::All {
-            section.add_shear(&mut stiffness, local.area, &local.shear(&rows_r, &rows_s));
+            section.add_shear(&mut products, local.area, &local.shear(&rows_r, &rows_s));
         }
         points.push(Point {
             membrane: local.strain(&in_plane(&t, &shape, r, s)),
@@ -171,8 +172,9 @@ pub(crate) fn quad4(input: &ShellInput<'_, 4>) -> Result<ShellMatrices<4, 24>, B
     }
     let mut thermal = [0.0; 24];
     for p in &points {
-        p.add(input, &mut stiffness, &mut thermal);
+        p.add(input, &mut products, &mut thermal);
     }
+    let mut stiffness = products.sum();
     let mut corners = corner_rows(&points);
     let mut centre = centre_rows;
     if input.zoffs != 0.0 {

@@ -5,6 +5,7 @@ use super::kinematics::{
     membrane, shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
+use super::products::Products;
 use super::types::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows};
 use crate::linalg::SMatrix;
 
@@ -90,7 +91,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
         g: covariant(third + TYING, third - 2.0 * TYING),
     };
 
-    let mut big = [[0.0; WITH_BUBBLE]; WITH_BUBBLE];
+    let mut products = Products::new();
     let mut thermal = [0.0; 18];
     for (r, s, w) in POINTS {
         let shape = shape(r, s);
@@ -130,11 +131,11 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             );
         }
         if input.parts == Parts::All {
-            section.add_shear(&mut big, weight, &local.shear(&rows_r, &rows_s));
+            section.add_shear(&mut products, weight, &local.shear(&rows_r, &rows_s));
         }
         if input.parts == Parts::All {
             section.add(
-                &mut big,
+                &mut products,
                 weight,
                 &with_bubble(&local.strain(&in_plane(&t, &shape))),
                 &local.strain(&bend),
@@ -142,7 +143,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
             );
         }
     }
-    let mut stiffness = condense_bubble(&big);
+    let mut stiffness = condense_bubble(&products.sum());
     let mut centre = StrainRows {
         membrane: local.strain(&in_plane(&centre_tangents, &centre_shape)),
         curvature: local.strain(&curvature::<3, 18>(&centre_tangents, &centre_shape, d)),

@@ -1,0 +1,265 @@
+//! The frontal matrix of a supernode: its columns of the matrix with what its children leave, eliminated.
+//!
+//! # Reference
+//! I. S. Duff, J. K. Reid, The multifrontal solution of indefinite sparse symmetric linear equations, ACM Trans. Math. Softw. 9 (1983) 302.
+
+use super::block_matrix::BlockMatrix;
+use super::eliminate::{Tiles, eliminate, take_out};
+use super::error::FactorError;
+use super::symbolic::Symbolic;
+use faer::{Accum, MatMut, MatRef};
+use rayon::prelude::*;
+
+/// Pivots of the matrix scaled to a unit diagonal below this are lost to rounding: the unknown is held by nothing.
+const TINY_PIVOT: f64 = 1e-13;
+/// Lost pivots of a front that are held one by one; then all its unknowns are.
+pub(super) const MOST_LOST: usize = 12;
+
+/// What a supernode leaves to its parent: the lower triangle of a matrix over its rows, by columns.
+#[derive(Debug)]
+pub(super) struct Update {
+    pub(super) node: usize,
+    values: Vec<f64>,
+}
+
+/// Memory of updates that were used up.
+#[derive(Debug, Default)]
+pub(super) struct Spare(Vec<Vec<f64>>);
+
+impl Spare {
+    pub(super) fn take_back(&mut self, update: Update) {
+        self.0.push(update.values);
+    }
+
+    /// `n` values or more of whatever they were.
+    fn hand_out(&mut self, n: usize) -> Vec<f64> {
+        let mut values = self.0.pop().unwrap_or_default();
+        if values.len() < n {
+            values.resize(n, 0.0);
+        }
+        values
+    }
+}
+
+/// A supernode eliminated.
+#[derive(Debug)]
+pub(super) struct Eliminated {
+    pub(super) update: Update,
+    /// Unknowns whose pivot was lost, elimination order.
+    pub(super) lost: Vec<usize>,
+    /// Smallest pivot that was not lost.
+    pub(super) smallest_pivot: f64,
+}
+
+/// A run of unknowns that lie side by side in a child's rows and in its parent's front.
+#[derive(Clone, Copy)]
+struct Run {
+    from: usize,
+    to: usize,
+    n: usize,
+}
+
+/// A supernode's front.
+pub(super) struct Front<'a> {
+    symbolic: &'a Symbolic,
+    matrix: &'a BlockMatrix,
+    node: usize,
+    own: usize,
+    below: usize,
+    /// First place of each group of its rows in the front.
+    places: Vec<usize>,
+}
+
+impl<'a> Front<'a> {
+    pub(super) fn new(symbolic: &'a Symbolic, matrix: &'a BlockMatrix, node: usize) -> Self {
+        let own = symbolic.unknowns(node).len();
+        let mut at = own;
+        let place = |g: &u32| {
+            at += symbolic.of_group(*g).len();
+            at - symbolic.of_group(*g).len()
+        };
+        let places = symbolic.nodes.rows(node).iter().map(place).collect();
+        Self {
+            symbolic,
+            matrix,
+            node,
+            own,
+            below: symbolic.nodes.n_below(node),
+            places,
+        }
+    }
+
+    /// Eliminates the supernode: its columns of the factor into `panel`, which is zero, and what is left for its parent.
+    ///
+    /// A lost pivot is held by a spring, and the front formed anew: only for structures that are refused anyway.
+    ///
+    /// # Errors
+    /// A pivot that is not a number, or stays negative though a spring holds it.
+    pub(super) fn eliminated(
+        &self,
+        panel: &mut [f64],
+        children: &[Update],
+        spare: &mut Spare,
+        tiles: Tiles,
+    ) -> Result<Eliminated, FactorError> {
+        let (own, rows) = (self.own, self.own + self.below);
+        let first = self.symbolic.unknowns(self.node).start;
+        let runs: Vec<Vec<Run>> = children.iter().map(|c| self.runs(c.node)).collect();
+        let mut lost: Vec<usize> = Vec::new();
+        let mut all_held = false;
+        let smallest_pivot = loop {
+            self.put_matrix(panel);
+            for (child, runs) in children.iter().zip(&runs) {
+                self.add_to_panel(panel, child, runs);
+            }
+            for i in 0..own {
+                if all_held || lost.contains(&i) {
+                    panel[i * rows + i] += 1.0;
+                }
+            }
+            let columns = MatMut::from_column_major_slice_mut(&mut *panel, rows, own);
+            let done = eliminate(columns, tiles);
+            let pivot = |i: usize| panel[i * rows + i].powi(2);
+            let bad = match done {
+                Ok(()) => (0..own).find(|&i| !(pivot(i) > TINY_PIVOT)),
+                Err(i) => Some(i),
+            };
+            let Some(bad) = bad else {
+                break (0..own).map(pivot).fold(f64::INFINITY, f64::min);
+            };
+            if all_held || lost.contains(&bad) {
+                return Err(FactorError::NotANumber {
+                    unknown: self.symbolic.old_unknown(first + bad),
+                });
+            }
+            lost.push(bad);
+            all_held = lost.len() > MOST_LOST;
+            panel.fill(0.0);
+        };
+        let mut left = spare.hand_out(self.below * self.below);
+        let square = &mut left[..self.below * self.below];
+        let begin = if children.is_empty() {
+            Accum::Replace
+        } else {
+            self.collect(square, children, &runs, tiles);
+            Accum::Add
+        };
+        if self.below > 0 {
+            let columns = MatRef::from_column_major_slice(&*panel, rows, own);
+            let update = MatMut::from_column_major_slice_mut(square, self.below, self.below);
+            take_out(update, begin, columns.subrows(own, self.below), tiles);
+        }
+        Ok(Eliminated {
+            update: Update {
+                node: self.node,
+                values: left,
+            },
+            lost: lost.into_iter().map(|i| first + i).collect(),
+            smallest_pivot,
+        })
+    }
+
+    /// First place of a group in the front.
+    fn place(&self, group: u32) -> usize {
+        let groups = self.symbolic.nodes.groups(self.node);
+        if (group as usize) < groups.end {
+            return self.symbolic.start[group as usize] - self.symbolic.start[groups.start];
+        }
+        let rows = self.symbolic.nodes.rows(self.node);
+        rows.binary_search(&group).map_or(0, |i| self.places[i])
+    }
+
+    /// The matrix's own columns.
+    fn put_matrix(&self, panel: &mut [f64]) {
+        let rows = self.own + self.below;
+        for g in self.symbolic.nodes.groups(self.node) {
+            let at = self.place(g as u32);
+            for (h, block) in self.matrix.column_of(g) {
+                let (to, n) = (self.place(h), self.symbolic.of_group(h).len());
+                for (j, column) in block.chunks_exact(n.max(1)).enumerate() {
+                    let skip = if h as usize == g { j } else { 0 };
+                    panel[(at + j) * rows + to + skip..][..n - skip]
+                        .copy_from_slice(&column[skip..]);
+                }
+            }
+        }
+    }
+
+    /// Where the rows of a child are in this front; no run crosses from its own rows to those below.
+    fn runs(&self, child: usize) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        let groups = self.symbolic.nodes.groups(self.node);
+        let rows = self.symbolic.nodes.rows(self.node);
+        let (mut from, mut next) = (0, 0);
+        for &g in self.symbolic.nodes.rows(child) {
+            let n = self.symbolic.of_group(g).len();
+            let to = if (g as usize) < groups.end {
+                self.symbolic.start[g as usize] - self.symbolic.start[groups.start]
+            } else {
+                next += rows[next..].partition_point(|r| *r < g);
+                self.places[next]
+            };
+            match runs.last_mut() {
+                Some(run) if run.to + run.n == to && to != self.own => run.n += n,
+                _ => runs.push(Run { from, to, n }),
+            }
+            from += n;
+        }
+        runs
+    }
+
+    /// What a child adds to the supernode's own columns.
+    fn add_to_panel(&self, panel: &mut [f64], child: &Update, runs: &[Run]) {
+        let (rows, order) = (self.own + self.below, order(runs));
+        for (r, run) in runs.iter().enumerate().take_while(|r| r.1.to < self.own) {
+            for i in 0..run.n {
+                let from = &child.values[(run.from + i) * order..][..order];
+                let to = &mut panel[(run.to + i) * rows..][..rows];
+                add_column(to, 0, from, &runs[r..], i);
+            }
+        }
+    }
+
+    /// The sum of what children leave to rows below.
+    fn collect(&self, left: &mut [f64], children: &[Update], runs: &[Vec<Run>], tiles: Tiles) {
+        let n = self.below;
+        // Child and place there, by column.
+        let add = |(column, to): (usize, &mut [f64])| {
+            to[column..].fill(0.0);
+            for (child, runs) in children.iter().zip(runs) {
+                let at = self.own + column;
+                let r = runs.partition_point(|r| r.to + r.n <= at);
+                let Some(run) = runs.get(r).filter(|r| r.to <= at) else {
+                    continue;
+                };
+                let order = order(runs);
+                let i = at - run.to;
+                let from = &child.values[(run.from + i) * order..][..order];
+                add_column(to, self.own, from, &runs[r..], i);
+            }
+        };
+        match tiles {
+            Tiles::Own => left.chunks_exact_mut(n.max(1)).enumerate().for_each(add),
+            Tiles::Shared => {
+                let columns = left.par_chunks_exact_mut(n.max(1));
+                columns.enumerate().for_each(add);
+            }
+        }
+    }
+}
+
+/// Unknowns of a child's rows.
+fn order(runs: &[Run]) -> usize {
+    runs.last().map_or(0, |r| r.from + r.n)
+}
+
+/// Adds a child's column, from the `i`th unknown of the first run down; `to` begins at row `first` of the front.
+fn add_column(to: &mut [f64], first: usize, from: &[f64], runs: &[Run], mut i: usize) {
+    for run in runs {
+        let n = run.n - i;
+        let to = &mut to[run.to + i - first..][..n];
+        let from = &from[run.from + i..][..n];
+        to.iter_mut().zip(from).for_each(|(t, f)| *t += f);
+        i = 0;
+    }
+}
