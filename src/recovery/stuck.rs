@@ -123,8 +123,8 @@ fn is_dead(
     gives == Gives::Nothing || changes(s, &used, &rows, g, errors, noise_factor)
 }
 
-/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) say that the strain at gauge `g` changes by more than noise and the model's error make of the others' readings; where the others don't tell it,
-/// whether any of theirs changes by more than noise.
+/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) say that the strain at gauge `g` changes by more than noise and
+/// the model's error make of the others' readings; where the others don't tell it, whether any of theirs changes by more than noise.
 pub fn changes(
     s: &Sensitivity,
     used: &[usize],

@@ -108,7 +108,7 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
     for (a, b) in damages(&result).iter().zip(damages(&right)) {
         assert!((a / b - 1.0).abs() < 1e-3, "{a} {b}");
     }
-    for (factor, words) in [(1e-3, "1000 times smaller"), (1e3, "1000 times larger")] {
+    for (factor, words) in [(1e-3, " times smaller"), (1e3, " times larger")] {
         let unstated = table(3, |_, y| y.iter_mut().for_each(|v| *v *= factor));
         write(&dir, "A_3.csv", &unstated.replace(" [um/m]", ""));
         let (code, result) = fleet(&dir, "unstated", &files, &[]);
@@ -119,8 +119,13 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
             panic!("{found:?}");
         };
         assert_eq!(subject, "A");
+        assert!(message.contains("(3)"), "{message}");
+        let times = message
+            .split_once(words)
+            .and_then(|(before, _)| before.rsplit(' ').next()?.parse::<f64>().ok());
+        // Days differ in what they drive: nearer to a thousand than to a hundred or ten thousand.
         assert!(
-            message.contains(words) && message.contains("(3)"),
+            times.is_some_and(|t| (316.0..3162.0).contains(&t)),
             "{message}"
         );
     }

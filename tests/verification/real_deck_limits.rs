@@ -82,5 +82,6 @@ pub const RIGID_ENDS: Limits = &[
     ("CHEXA stress", 5e-4, 1.5e-3),
 ];
 
-/// A brick beam on a bush.
-pub const BUSH: Limits = &[("displacement", 1e-7, 3e-7), ("CHEXA stress", 4e-3, 0.01)];
+/// A brick beam on a bush. Bricks of E h = 3.6e9 N/m turn half a metre round a spring of 0.15 N m: a ratio of 6e9, of which the rounding of double
+/// precision (1.1e-16) makes 7e-7 of their motion.
+pub const BUSH: Limits = &[("displacement", 1e-6, 3e-6), ("CHEXA stress", 4e-3, 0.01)];

@@ -5,11 +5,8 @@
 //! them vanishes for u_k = c + w x x_k, theta_k = w, whatever the shape: a x (b x c) products cancel in pairs.
 
 use super::products::Products;
-use super::types::{BadShape, ShellLaw, StrainRows};
+use super::types::{BadShape, Row, ShellLaw, StrainRows};
 use crate::model::Vec3;
-
-/// A linear form on the element's unknowns.
-pub(super) type Row<const M: usize> = [f64; M];
 
 /// Shape functions and their derivatives at a point.
 #[derive(Clone, Copy, Debug)]

@@ -1,6 +1,6 @@
 //! The stiffness of a shell as a sum of products of rows, formed at once: blocks of it stay in registers while all rows go by.
 
-use super::kinematics::Row;
+use super::types::Row;
 
 /// Unknowns of the largest element, its rows' length here.
 const WIDE: usize = 24;

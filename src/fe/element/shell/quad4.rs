@@ -1,12 +1,12 @@
 //! CQUAD4: MITC4 bending and shear, QM6 membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Row, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling,
-    membrane, shear, shift, shift_rows, shift_stiffness,
+    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling, membrane,
+    shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
 use super::products::Products;
-use super::types::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows};
+use super::types::{BadShape, Parts, Row, ShellInput, ShellMatrices, Sides, StrainRows};
 use crate::linalg::Matrix4;
 
 const CORNERS: [(f64, f64); 4] = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];

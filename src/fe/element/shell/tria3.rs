@@ -1,12 +1,12 @@
 //! CTRIA3: MITC3+ bending and shear, constant-strain membrane, drilling stiffness.
 
 use super::kinematics::{
-    Local, Row, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling,
-    membrane, shear, shift, shift_rows, shift_stiffness,
+    Local, Section, Shape, Tangents, add_bending_sides, add_thermal, curvature, drilling, membrane,
+    shear, shift, shift_rows, shift_stiffness,
 };
 use super::output_frame::output_frame;
 use super::products::Products;
-use super::types::{BadShape, Parts, ShellInput, ShellMatrices, Sides, StrainRows};
+use super::types::{BadShape, Parts, Row, ShellInput, ShellMatrices, Sides, StrainRows};
 use crate::linalg::SMatrix;
 
 /// Degree 5 on the triangle (Radon 1948): r, s, weight; weights sum to 1/2.

@@ -2,6 +2,9 @@
 
 use crate::model::Vec3;
 
+/// A linear form on the element's unknowns.
+pub(super) type Row<const M: usize> = [f64; M];
+
 /// Matrices of stress = G strain (engineering shear) in the output frame; scaled by thickness where they are used.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct ShellLaw {
