@@ -156,8 +156,9 @@ fn a_beam_shaken_near_its_first_mode_gives_its_force_once_its_vibration_is_taken
 fn what_lies_beyond_the_band_is_said() {
     let dynamic = format!(
         "[dynamic]\nup_to_hz = {:.4}\ndamping = 1e-5\n",
-        1.1 * first_hz()
+        0.8 * first_hz()
     );
+    // Of the force 3 N of 12 lie at .93 of the first frequency, more than a hundredth of its power.
     let (_, _, _, codes) = recovered(record(), &dynamic);
     assert!(codes.contains(&"content-beyond-band"), "{codes:?}");
 }
