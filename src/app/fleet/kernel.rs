@@ -22,7 +22,7 @@ use crate::recovery::stuck::changes;
 use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
-use crate::series::rainflow::{Counter, Law};
+use crate::series::rainflow::{Counter, Law, Marks};
 use crate::series::record::Record;
 use crate::series::still::{Gives, Still};
 use crate::units::MICROSTRAIN;
@@ -146,6 +146,7 @@ impl Kernel {
             let at = |v: &[f64]| v.get(l).copied().unwrap_or(1.0);
             Counter::new(l, k, at(&noise), at(&self.widths), self.law)
         };
+        let marks = Marks::new(&noise);
         let mut pass = Pass {
             counters: (0..k).map(counter).collect(),
             health: Health::new(&r.s),
@@ -160,7 +161,7 @@ impl Kernel {
         // While some pieces are decoded, the ones before them are counted.
         while !pieces.is_empty() {
             let group: Vec<usize> = pieces.by_ref().take(here.pieces()).collect();
-            let decode = || group.par_iter().map(|p| r.part(record, *p));
+            let decode = || group.par_iter().map(|p| r.part(record, *p, &marks));
             let (next, ()) = rayon::join(
                 || decode().collect::<Result<_, _>>(),
                 || counted(&mut pass.counters, &parts),

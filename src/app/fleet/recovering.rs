@@ -6,7 +6,7 @@ use crate::recovery::Missing;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
-use crate::series::rainflow::Counter;
+use crate::series::rainflow::{Counter, Marks};
 use crate::series::record::Record;
 use crate::series::still::blank;
 use rayon::prelude::*;
@@ -76,6 +76,8 @@ pub(super) struct Recovering {
 pub(super) struct Part {
     /// Loads in report units, row by row.
     pub loads: Vec<f64>,
+    /// What tells its samples apart.
+    pub marks: Vec<u64>,
     pub health: Health,
     pub missing: Missing,
     pub judged: Judged,
@@ -98,15 +100,21 @@ impl Part {
 }
 
 impl Recovering {
-    /// A piece of the record, decoded and recovered.
+    /// A piece of the record, decoded and recovered, its samples marked.
     ///
     /// # Errors
     /// What can't be decoded.
-    pub fn part(&self, record: &Record, piece: usize) -> Result<Part, SeriesError> {
+    pub fn part(
+        &self,
+        record: &Record,
+        piece: usize,
+        marks: &Marks,
+    ) -> Result<Part, SeriesError> {
         let (n, k) = (self.used.len(), self.factors.len());
         let (begin, end) = record.span(piece);
         let mut part = Part {
             loads: Vec::with_capacity((end - begin) * k),
+            marks: Vec::with_capacity(end - begin),
             health: Health::new(&self.s),
             missing: Missing::new(k),
             judged: Judged::new(n, k, record.clock.samples),
@@ -118,13 +126,15 @@ impl Recovering {
             let firsts = (block.first..).step_by(NEAR);
             for (values, first) in block.values.chunks(NEAR * n.max(1)).zip(firsts) {
                 strain.resize(values.len(), f64::NAN);
-                let rows = values.chunks_exact(n);
-                for (out, row) in strain.chunks_exact_mut(n).zip(rows) {
-                    let scale = factors.iter().zip(offsets);
-                    for ((out, v), (a, b)) in out.iter_mut().zip(row).zip(scale) {
-                        *out = v * a + b;
+                pulp::Arch::new().dispatch(|| {
+                    let rows = values.chunks_exact(n);
+                    for (out, row) in strain.chunks_exact_mut(n).zip(rows) {
+                        let scale = factors.iter().zip(offsets);
+                        for ((out, v), (a, b)) in out.iter_mut().zip(row).zip(scale) {
+                            *out = v * a + b;
+                        }
                     }
-                }
+                });
                 blank(&mut strain, n, first, &self.blank);
                 recovered.values.clear();
                 recovered.gaps.clear();
@@ -135,12 +145,15 @@ impl Recovering {
                 for row in loads.chunks_exact_mut(k) {
                     row.iter_mut().zip(&self.factors).for_each(|(v, f)| *v *= f);
                 }
-                for row in strain.chunks_exact_mut(n) {
-                    row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
-                }
+                pulp::Arch::new().dispatch(|| {
+                    for row in strain.chunks_exact_mut(n) {
+                        row.iter_mut().zip(&self.zero).for_each(|(v, z)| *v -= z);
+                    }
+                });
                 part.health.add(&strain, loads);
                 part.judged.add(first, &strain, loads);
                 part.loads.extend_from_slice(loads);
+                marks.put(loads, &mut part.marks);
             }
             ControlFlow::Continue(())
         })?;
@@ -148,11 +161,17 @@ impl Recovering {
     }
 }
 
-/// Counts what pieces that follow each other give.
+/// Counts what pieces that follow each other give: a thread some of the loads, samples in runs that stay in its cache for all of them.
 pub(super) fn counted(counters: &mut [Counter], parts: &[Part]) {
-    counters.par_iter_mut().for_each(|c| {
+    /// Samples of a run.
+    const RUN: usize = 1024;
+    let k = counters.len().max(1);
+    let each = k.div_ceil(rayon::current_num_threads()).max(1);
+    counters.par_chunks_mut(each).for_each(|counters| {
         for part in parts {
-            c.push(&part.loads);
+            for (loads, marks) in part.loads.chunks(RUN * k).zip(part.marks.chunks(RUN)) {
+                counters.iter_mut().for_each(|c| c.push(loads, marks));
+            }
         }
     });
 }

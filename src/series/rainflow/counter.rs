@@ -12,8 +12,6 @@ const BLOCK: usize = 512;
 pub struct Counter {
     load: usize,
     seed: u64,
-    /// A factor for each load, by which the noise of a sample is drawn.
-    keys: Vec<u64>,
     /// Standard deviation of the noise in a sample.
     noise: f64,
     plain: Rainflow<Tag>,
@@ -70,6 +68,7 @@ struct Noisy {
 struct Push<'a> {
     counter: &'a mut Counter,
     rows: &'a [f64],
+    marks: &'a [u64],
 }
 
 impl pulp::WithSimd for Push<'_> {
@@ -78,7 +77,7 @@ impl pulp::WithSimd for Push<'_> {
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) {
         let k = self.counter.carried.len();
-        self.counter.push_rows(self.rows, k);
+        self.counter.push_rows(self.rows, self.marks, k);
     }
 }
 
@@ -87,6 +86,7 @@ struct Room {
     values: [f64; BLOCK],
     white: [f64; BLOCK],
     noisy: [f64; BLOCK],
+    classes: [i32; BLOCK],
     turns: [u32; BLOCK],
 }
 
@@ -96,7 +96,6 @@ impl Counter {
         Self {
             load,
             seed: mixed(load as u64 + 1),
-            keys: (0..n_loads as u64).map(|l| mixed(!l) | 1).collect(),
             noise: if noise.is_finite() { noise } else { 0.0 },
             plain: Rainflow::default(),
             noisy: [Rainflow::default(), Rainflow::default()],
@@ -123,25 +122,27 @@ impl Counter {
         }
     }
 
-    /// Takes the next samples, all loads of each, row by row.
-    pub fn push(&mut self, rows: &[f64]) {
+    /// Takes the next samples, all loads of each, row by row, and the marks of these ([`Marks`]).
+    pub fn push(&mut self, rows: &[f64], marks: &[u64]) {
         let k = self.carried.len();
         if self.load < k {
             pulp::Arch::new().dispatch(Push {
                 counter: self,
                 rows,
+                marks,
             });
         }
         self.next += rows.len() / k.max(1);
     }
 
     #[inline(always)]
-    fn push_rows(&mut self, rows: &[f64], k: usize) {
+    fn push_rows(&mut self, rows: &[f64], marks: &[u64], k: usize) {
         let first = self.next;
         let mut room = Room {
             values: [0.0; BLOCK],
             white: [0.0; BLOCK],
             noisy: [0.0; BLOCK],
+            classes: [0; BLOCK],
             turns: [0; BLOCK],
         };
         let mut listener = Plain {
@@ -163,13 +164,15 @@ impl Counter {
             let latest = self.plain.latest();
             self.missing += values.iter().filter(|v| !v.is_finite()).count();
             widest(&mut self.max, &mut self.min, at, values);
-            rises(&mut self.levels, listener.closed.width, latest, values);
+            let width = listener.closed.width;
+            let (classes, turns) = (&mut room.classes, &mut room.turns);
+            rises(&mut self.levels, width, latest, values, classes, turns);
             self.plain
                 .push_block(at, values, &mut room.turns, &mut listener);
             if self.noise > 0.0 {
-                let per_noise = FINE / self.noise;
-                for (w, row) in room.white.iter_mut().zip(block.chunks_exact(k)) {
-                    *w = white(self.seed ^ mark(row, per_noise, &self.keys));
+                let marks = marks.get(at - first..).unwrap_or_default();
+                for (w, mark) in room.white.iter_mut().zip(marks).take(count) {
+                    *w = white(self.seed ^ mark);
                 }
                 let [one, ..] = NOISE;
                 let levels = NOISE.iter().zip(&mut damage).skip(1);
@@ -316,12 +319,18 @@ impl Slots {
 /// Widens the extremes by samples, the first being number `first`; of equal ones the earlier stays.
 #[inline(always)]
 fn widest(max: &mut Option<Extreme>, min: &mut Option<Extreme>, first: usize, values: &[f64]) {
-    // What is not finite is greater than no largest and less than no smallest.
-    let finite = |v: f64, none: f64| if v.is_finite() { v } else { none };
-    let low = |a: f64, v: &f64| a.min(finite(*v, f64::INFINITY));
-    let high = |a: f64, v: &f64| a.max(finite(*v, f64::NEG_INFINITY));
-    let lowest = values.iter().fold(f64::INFINITY, low);
-    let highest = values.iter().fold(f64::NEG_INFINITY, high);
+    /// Folded side by side, none waiting for the one before.
+    const LANES: usize = 16;
+    let (mut low, mut high) = ([f64::INFINITY; LANES], [f64::NEG_INFINITY; LANES]);
+    // What is not a number is neither less nor greater than anything.
+    for values in values.chunks(LANES) {
+        for ((low, high), v) in low.iter_mut().zip(&mut high).zip(values) {
+            *low = if *v < *low { *v } else { *low };
+            *high = if *v > *high { *v } else { *high };
+        }
+    }
+    let lowest = low.into_iter().fold(f64::INFINITY, f64::min);
+    let highest = high.into_iter().fold(f64::NEG_INFINITY, f64::max);
     let wider = max.is_none_or(|m| highest > m.value) || min.is_none_or(|m| lowest < m.value);
     if wider {
         for (at, &value) in (first..).zip(values).filter(|p| p.1.is_finite()) {
@@ -330,44 +339,49 @@ fn widest(max: &mut Option<Extreme>, min: &mut Option<Extreme>, first: usize, va
     }
 }
 
-/// Counts the rises of samples through borders of classes, that from the latest one before them included.
+/// Counts the rises of samples through borders of classes, that from the latest one before them included. `classes` and `turns` are room for as
+/// many numbers.
 #[inline(always)]
-fn rises(levels: &mut Counts<i32>, width: f64, latest: Option<Point>, values: &[f64]) {
-    // Within a class, its borders left out by more than rounding, nothing is counted and nothing divided.
-    let within = |class: i32| {
-        let [low, high] = [f64::from(class) * width, (f64::from(class) + 1.0) * width];
-        let rounding = 1e-9 * width + 4.0 * f64::EPSILON * low.abs().max(high.abs());
-        [low + rounding, high - rounding]
+fn rises(
+    levels: &mut Counts<i32>,
+    width: f64,
+    latest: Option<Point>,
+    values: &[f64],
+    classes: &mut [i32],
+    turns: &mut [u32],
+) {
+    let mut began = latest.map(|p| class(p.value, width));
+    let mut rise = |from: Option<i32>, to: i32| {
+        if let Some(from) = from.filter(|from| to > *from) {
+            risen(from, to).for_each(|border| levels.add(border));
+        }
     };
-    let mut before = latest.map(|p| class(p.value, width));
-    let [mut low, mut high] = before.map_or([f64::NAN; 2], within);
-    for &value in values {
-        if (value > low) & (value < high) || !value.is_finite() {
-            continue;
+    if !values.iter().all(|v| v.is_finite()) {
+        for &value in values.iter().filter(|v| v.is_finite()) {
+            let here = class(value, width);
+            rise(began, here);
+            began = Some(here);
         }
-        let here = class(value, width);
-        if let Some(before) = before.filter(|b| here > *b) {
-            risen(before, here).for_each(|border| levels.add(border));
-        }
-        if before != Some(here) {
-            before = Some(here);
-            [low, high] = within(here);
-        }
+        return;
     }
-}
-
-/// Parts of the noise of a load in which samples are told apart: what rounding makes of loads moves none into another part, and samples that noise
-/// itself tells apart stand in parts of their own.
-const FINE: f64 = 1024.0;
-
-/// What tells the loads of a sample from those of others, in units of 1 / `per_noise`.
-#[inline(always)]
-fn mark(row: &[f64], per_noise: f64, keys: &[u64]) -> u64 {
-    /// Added, it leaves whole numbers in the last digits.
-    const WHOLE: f64 = 6_755_399_441_055_744.0;
-    let part = |(v, key): (&f64, &u64)| (v * per_noise + WHOLE).to_bits().wrapping_mul(*key);
-    let known = row.iter().zip(keys).filter(|p| p.0.is_finite());
-    known.map(part).fold(0, u64::wrapping_add)
+    for (c, v) in classes.iter_mut().zip(values) {
+        *c = class(*v, width);
+    }
+    // Changes are listed first, without a jump that depends on the samples.
+    let classes = classes.get(..values.len()).unwrap_or_default();
+    let (mut n, mut before) = (0, began.or(classes.first().copied()).unwrap_or(0));
+    for (i, &here) in (0..).zip(classes) {
+        if let Some(slot) = turns.get_mut(n) {
+            *slot = i;
+        }
+        n += usize::from(here != before);
+        before = here;
+    }
+    for &i in turns.iter().take(n) {
+        let i = i as usize;
+        let from = i.checked_sub(1).and_then(|b| classes.get(b).copied());
+        rise(from.or(began), classes.get(i).copied().unwrap_or(0));
+    }
 }
 
 /// A number of mean 0 and variance 1 that belongs to a sample by its loads: the sum of four even ones, much like a normal one up to three standard
@@ -382,7 +396,7 @@ fn white(mark: u64) -> f64 {
 
 /// A number without likeness to its neighbours (splitmix64).
 #[inline(always)]
-fn mixed(x: u64) -> u64 {
+pub(super) fn mixed(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

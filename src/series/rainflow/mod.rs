@@ -4,6 +4,7 @@
 //! - `bias`: what noise adds to damage, from counts with more of it
 //! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
 //! - `counter`: a tally under way, `counts` its cycles and rises by class
+//! - `marks`: what tells samples apart, by which the noise of counts with more of it is drawn
 //! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
 //! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
 //! - [`interval`]: damage with what is known of its errors
@@ -17,6 +18,7 @@ mod counts;
 mod damage;
 pub mod interval;
 pub mod law;
+mod marks;
 pub mod tally;
 
 pub use count::{Cycle, Point, Rainflow, Reversal, half_cycles};
@@ -24,6 +26,7 @@ pub use counter::Counter;
 pub use damage::{Bin, Damage};
 pub use interval::{DamageInterval, DamageParts, Ratio, Shared, damage_interval};
 pub use law::{Knee, Law};
+pub use marks::Marks;
 pub use tally::{Extreme, Tally};
 
 #[cfg(test)]

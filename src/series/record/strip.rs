@@ -24,8 +24,6 @@ pub(super) struct Buffers {
     bools: Vec<bool>,
     i32s: Vec<i32>,
     i64s: Vec<i64>,
-    f32s: Vec<f32>,
-    f64s: Vec<f64>,
 }
 
 /// Decoded rows of one column: reals of 32 bits as they are, other numbers in 64.
@@ -75,12 +73,9 @@ impl Strip {
                 numbers(r, most, rows, &mut b.i64s, levels, out, nan, of)
             }
             ColumnReader::FloatColumnReader(r) => {
-                let (out, nan) = (&mut self.singles, f32::NAN);
-                numbers(r, most, rows, &mut b.f32s, levels, out, nan, |v| *v)
+                reals(r, most, rows, levels, &mut self.singles, f32::NAN)
             }
-            ColumnReader::DoubleColumnReader(r) => {
-                numbers(r, most, rows, &mut b.f64s, levels, out, nan, |v| *v)
-            }
+            ColumnReader::DoubleColumnReader(r) => reals(r, most, rows, levels, out, nan),
             _ => Ok(()),
         }?;
         if self.singles.len().max(self.doubles.len()) == rows {
@@ -94,9 +89,11 @@ impl Strip {
     /// The rows from number `first` on, times `worth` less `off`.
     pub(super) fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
         if let Some(singles) = self.singles.get(first..).filter(|s| !s.is_empty()) {
-            for (slot, v) in out.iter_mut().zip(singles) {
-                *slot = f64::from(*v) * worth - off;
-            }
+            pulp::Arch::new().dispatch(|| {
+                for (slot, v) in out.iter_mut().zip(singles) {
+                    *slot = f64::from(*v) * worth - off;
+                }
+            });
         } else {
             let doubles = self.doubles.get(first..).unwrap_or_default();
             for (slot, v) in out.iter_mut().zip(doubles) {
@@ -137,6 +134,48 @@ fn numbers<T: DataType, O: Copy>(
                     blank
                 }
             }));
+        }
+    }
+    Ok(())
+}
+
+/// [`numbers`] of a column of reals, decoded where they stay.
+fn reals<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    most: i16,
+    rows: usize,
+    levels: &mut Vec<i16>,
+    out: &mut Vec<T::T>,
+    blank: T::T,
+) -> Result<(), SeriesError>
+where
+    T::T: Copy,
+{
+    while out.len() < rows {
+        levels.clear();
+        let first = out.len();
+        let known = if most > 0 { Some(&mut *levels) } else { None };
+        let read = reader.read_records(ROWS.min(rows - first), known, None, out);
+        let (records, _, _) = read.map_err(broken)?;
+        if records == 0 {
+            return Ok(());
+        }
+        // From the last on, each known value moves to its row: never before the place that it stands in.
+        let mut known = out.len();
+        out.resize(first + records, blank);
+        if known == out.len() {
+            continue;
+        }
+        for (i, level) in levels.iter().enumerate().rev() {
+            let here = if *level == most && known > first {
+                known -= 1;
+                out.get(known).copied().unwrap_or(blank)
+            } else {
+                blank
+            };
+            if let Some(slot) = out.get_mut(first + i) {
+                *slot = here;
+            }
         }
     }
     Ok(())

@@ -24,9 +24,15 @@ fn tally(rows: &[f64], k: usize, load: usize, noise: f64) -> Tally {
     let mut counter = Counter::new(load, k, noise, 0.25, Law::straight(5.0));
     // In blocks of uneven size, as records come.
     for block in rows.chunks(k * 37) {
-        counter.push(block);
+        push(&mut counter, block, &vec![noise; k]);
     }
     counter.finish()
+}
+
+fn push(counter: &mut Counter, rows: &[f64], noise: &[f64]) {
+    let mut marks = Vec::new();
+    Marks::new(noise).put(rows, &mut marks);
+    counter.push(rows, &marks);
 }
 
 /// Two loads; the first rounded, so that many reversals are equal, with gaps.
@@ -99,7 +105,11 @@ fn what_is_kept_as_json_comes_back_whole_gaps_and_an_endless_slope_too() {
     };
     let mut counter = Counter::new(0, 2, 0.1, 0.25, law);
     // The second load is missing where the first turns.
-    counter.push(&[0.0, f64::NAN, 3.0, f64::NAN, -1.0, 2.0, 2.0, 1.0]);
+    push(
+        &mut counter,
+        &[0.0, f64::NAN, 3.0, f64::NAN, -1.0, 2.0, 2.0, 1.0],
+        &[0.1; 2],
+    );
     let tally = counter.finish();
     let text = serde_json::to_string(&tally).unwrap();
     let back: Tally = serde_json::from_str(&text).unwrap();
@@ -191,7 +201,7 @@ fn taken(length: f64, periods: f64, share: f64, slope: f64) -> f64 {
     let noisy: Vec<f64> = clean.iter().map(|v| v + sigma * numbers.normal()).collect();
     let damage = |rows: &[f64], noise: f64| {
         let mut counter = Counter::new(0, 1, noise, 0.25, law);
-        counter.push(rows);
+        push(&mut counter, rows, &[noise]);
         damage_interval(&counter.finish(), &[0.0], noise)
     };
     let truth = damage(&clean, 0.0).value;
