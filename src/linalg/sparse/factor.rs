@@ -1,4 +1,4 @@
-//! The numeric factor: multifrontal Cholesky of the matrix scaled to a unit diagonal, branches of the tree side by side.
+//! The numeric factor: multifrontal Cholesky of the matrix scaled to a diagonal near 1, branches of the tree side by side.
 
 use super::block_matrix::BlockMatrix;
 use super::branches::Branch;
@@ -9,7 +9,7 @@ use super::front::{Eliminated, Front, MOST_LOST, Spare, Update};
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// L L' of the matrix scaled to a unit diagonal.
+/// L L' of the matrix scaled to a diagonal between 1/2 and 2.
 #[derive(Debug)]
 pub struct Factor<'a> {
     pub(super) symbolic: &'a Symbolic,
@@ -36,10 +36,7 @@ impl<'a> Factor<'a> {
                 unknown: symbolic.old_unknown(new),
             });
         }
-        let scale: Vec<f64> = diagonal
-            .iter()
-            .map(|&d| if d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
-            .collect();
+        let scale: Vec<f64> = diagonal.iter().map(|d| scale_of(*d)).collect();
         matrix.scale(symbolic, &scale);
         let mut values = zeros(symbolic.nodes.n_values())?;
         let found = Pass {
@@ -238,4 +235,13 @@ fn zeros(n: usize) -> Result<Vec<f64>, FactorError> {
         .map_err(|_| FactorError::TooLarge)?;
     drop(probe);
     Ok(vec![0.0; n])
+}
+
+/// The power of two next to the inverse root of a diagonal entry: scaled with it, no entry is rounded. Stiff parts on soft springs need that: a
+/// rounded stiffness resists their rigid motion.
+fn scale_of(diagonal: f64) -> f64 {
+    match diagonal > 0.0 {
+        true => 2.0_f64.powi((-0.5 * diagonal.log2()).round() as i32),
+        false => 1.0,
+    }
 }

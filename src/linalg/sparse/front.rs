@@ -10,7 +10,7 @@ use super::symbolic::Symbolic;
 use faer::{Accum, MatMut, MatRef};
 use rayon::prelude::*;
 
-/// Pivots of the matrix scaled to a unit diagonal below this are lost to rounding: the unknown is held by nothing.
+/// Pivots of the scaled matrix below this are lost to rounding: the unknown is held by nothing.
 const TINY_PIVOT: f64 = 1e-13;
 /// Lost pivots of a front that are held one by one; then all its unknowns are.
 pub(super) const MOST_LOST: usize = 12;
