@@ -33,6 +33,9 @@ pub struct Finding {
     pub measured: Option<f64>,
     /// The limit it is held against.
     pub limit: Option<f64>,
+    /// Chance that right data make as much of it, where that decided.
+    #[serde(skip)]
+    pub chance: Option<f64>,
     /// What the reader can do.
     pub remedy: String,
 }
@@ -79,8 +82,15 @@ impl Finding {
             message: bounded(message),
             measured: None,
             limit: None,
+            chance: None,
             remedy: bounded(remedy),
         }
+    }
+
+    /// The same with the chance that right data make as much of it.
+    pub fn with_chance(mut self, chance: f64) -> Self {
+        self.chance = Some(chance);
+        self
     }
 
     /// The same with the measured number and its limit.

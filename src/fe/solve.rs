@@ -295,8 +295,8 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
             Severity::Warning,
             "inaccurate-solution",
             format!("subcase {subcase}"),
-            "after a step of iterative refinement the equations are not satisfied to six digits: stiffnesses of very different size meet",
-            "look for springs or bars that are many orders stiffer than what they join, and make them rigid elements",
+            "after a step of iterative refinement the equations are not satisfied to six digits: stiffnesses of very different size meet, or the structure is a long chain of elements",
+            "look for springs or bars that are many orders stiffer than what they join, and make them rigid elements; of a part a hundred times as long as wide, coarsen the mesh along it",
         )
         .with_numbers(epsilon, INACCURATE_ABOVE)
     })

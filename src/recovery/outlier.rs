@@ -113,7 +113,8 @@ pub(super) fn check(
             "check its position, direction, gauge and bridge factor and wiring; state a known error in [[correction]], or leave it out there \
              with `ignore = true`",
         )
-        .with_numbers(ratio, 1.0),
+        .with_numbers(ratio, 1.0)
+        .with_chance(p),
     );
     out.shifts.push(shift);
     out

@@ -133,40 +133,102 @@ pub fn changes(
     errors: ErrorModel,
     noise_factor: f64,
 ) -> bool {
-    let k = s.loads.len();
-    let noise = errors.noise_variance(noise_factor);
-    let own: Vec<f64> = s.values.row(g).iter().copied().collect();
-    let acts: Vec<usize> = (0..k).filter(|l| own[*l] != 0.0).collect();
-    let gain = Gain::new(s, used, errors, noise_factor, &vec![0.0; k]);
-    let gain = gain.filter(|gain| acts.iter().all(|l| gain.is_seen(*l)));
-    let Some(gain) = gain else {
-        let limit = CHANGES * CHANGES * noise;
+    let Some(others) = Others::new(s, used, g, errors, noise_factor) else {
+        let limit = CHANGES * CHANGES * errors.noise_variance(noise_factor);
         let of = |h: &usize| variance(rows.iter().map(|row| row[*h]));
         return used.iter().any(|h| of(h) > limit);
     };
-    let loads: Vec<Vec<f64>> = rows.iter().map(|row| gain.loads(row)).collect();
-    let expected = |f: &Vec<f64>| acts.iter().map(|l| own[*l] * f[*l]).sum::<f64>();
-    let change = variance(loads.iter().map(expected));
-    let sizes: Vec<f64> = (0..k)
-        .map(|l| variance(loads.iter().map(|f| f[l])).sqrt())
+    let loads: Vec<Vec<f64>> = rows.iter().map(|row| others.gain.loads(row)).collect();
+    let change = variance(loads.iter().map(|f| others.strain(f)));
+    let sizes = (0..s.loads.len()).map(|l| variance(loads.iter().map(|f| f[l])).sqrt());
+    change > CHANGES * CHANGES * others.variance(&sizes.collect::<Vec<f64>>())
+}
+
+/// Whether the readings of gauge `g` lie farther from what the gauges `used` expect there, in the mean of the rows, than noise and the model's
+/// error make; `false` where the others don't tell it.
+pub fn contradicts(
+    s: &Sensitivity,
+    used: &[usize],
+    rows: &[&Vec<f64>],
+    g: usize,
+    errors: ErrorModel,
+    noise_factor: f64,
+) -> bool {
+    let Some(others) = Others::new(s, used, g, errors, noise_factor) else {
+        return false;
+    };
+    let n = rows.len().max(1) as f64;
+    let mean = |of: &dyn Fn(&Vec<f64>) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / n;
+    let loads: Vec<f64> = (0..s.loads.len())
+        .map(|l| mean(&|row| others.gain.loads(row)[l]))
         .collect();
-    let unloaded = gain.covariance(&vec![0.0; k], &Widening::none());
-    let of_loads: f64 = acts
-        .iter()
-        .flat_map(|l| acts.iter().map(move |m| (l, m)))
-        .map(|(l, m)| own[*l] * own[*m] * unloaded[l * k + m])
-        .sum();
-    let model: f64 = used
-        .iter()
-        .enumerate()
-        .map(|(i, h)| {
-            let share: f64 = acts.iter().map(|l| own[*l] * gain.gain[(*l, i)]).sum();
-            let row = s.values.row(*h);
-            share * share * errors.shared(row.iter().copied(), &sizes, &sizes)
+    let off = mean(&|row| row[g]) - others.strain(&loads);
+    off * off > CHANGES * CHANGES * others.variance(&loads)
+}
+
+/// What some gauges tell of the strain at another one.
+struct Others<'a> {
+    s: &'a Sensitivity,
+    used: &'a [usize],
+    errors: ErrorModel,
+    noise: f64,
+    /// Its row of S.
+    own: Vec<f64>,
+    gain: Gain,
+    /// Covariance that noise alone gives the loads.
+    of_noise: Vec<f64>,
+}
+
+impl<'a> Others<'a> {
+    /// `None` where they don't tell a load that strains it.
+    fn new(
+        s: &'a Sensitivity,
+        used: &'a [usize],
+        g: usize,
+        errors: ErrorModel,
+        noise_factor: f64,
+    ) -> Option<Self> {
+        let none = vec![0.0; s.loads.len()];
+        let own: Vec<f64> = s.values.row(g).iter().copied().collect();
+        let gain = Gain::new(s, used, errors, noise_factor, &none)?;
+        let mut acts = own.iter().enumerate().filter(|(_, s)| **s != 0.0);
+        acts.all(|(l, _)| gain.is_seen(l)).then(|| Self {
+            s,
+            used,
+            errors,
+            noise: errors.noise_variance(noise_factor),
+            of_noise: gain.covariance(&none, &Widening::none()),
+            own,
+            gain,
         })
-        .sum();
-    let model = model + errors.shared(own.iter().copied(), &sizes, &sizes);
-    change > CHANGES * CHANGES * (noise + of_loads + model)
+    }
+
+    /// Loads that strain it.
+    fn acts(&self) -> impl Iterator<Item = (usize, f64)> {
+        let all = self.own.iter().copied().enumerate();
+        all.filter(|(_, s)| *s != 0.0)
+    }
+
+    /// Its strain at these loads.
+    fn strain(&self, loads: &[f64]) -> f64 {
+        self.acts().map(|(l, s)| s * loads[l]).sum()
+    }
+
+    /// Variance of a reading of it about what they expect, at loads of these sizes: its noise and theirs, and the model's error at all of them.
+    fn variance(&self, sizes: &[f64]) -> f64 {
+        let k = sizes.len();
+        let noise = self.acts().flat_map(|(l, a)| {
+            let with = move |(m, b): (usize, f64)| a * b * self.of_noise[l * k + m];
+            self.acts().map(with)
+        });
+        let model = self.used.iter().enumerate().map(|(i, h)| {
+            let share: f64 = self.acts().map(|(l, s)| s * self.gain.gain[(l, i)]).sum();
+            let row = self.s.values.row(*h);
+            share * share * self.errors.shared(row.iter().copied(), sizes, sizes)
+        });
+        let own = self.errors.shared(self.own.iter().copied(), sizes, sizes);
+        self.noise + noise.sum::<f64>() + model.sum::<f64>() + own
+    }
 }
 
 /// About their mean.

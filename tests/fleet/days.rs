@@ -137,13 +137,13 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     let mut files = Vec::new();
     for day in 1..=5 {
         let mut numbers = Splitmix(day);
-        // It stands: noise alone, and one gauge whose amplifier rounds to whole numbers reads one of them.
+        // It stands: noise alone, and one gauge whose amplifier rounds to whole numbers reads the nearest.
         let text = match day {
             3 => table(3, |_, y| {
                 for v in y.iter_mut() {
                     *v = 0.3 * normal(&mut numbers);
                 }
-                y[2] = 4.0;
+                y[2] = 0.0;
             }),
             _ => table(day as usize, |_, _| ()),
         };
@@ -156,6 +156,19 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
         found.iter().all(|f| !named.contains(&f[0].as_str())),
         "{found:?}"
     );
+    // One that gives a number which the others contradict is dead while it stands, too.
+    let mut numbers = Splitmix(3);
+    let contradicted = table(3, |_, y| {
+        for v in y.iter_mut() {
+            *v = 0.3 * normal(&mut numbers);
+        }
+        y[2] = 40.0;
+    });
+    write(&dir, &files[2], &contradicted);
+    let (_, result) = fleet(&dir, "contradicted", &files, &[]);
+    let found = findings_of(&result, &["warning"]);
+    let dead = found.iter().find(|f| f[0] == "dead_channel");
+    assert_eq!(dead.unwrap_or_else(|| panic!("{found:?}"))[1], "A G2");
     // A gauge that is dead while it drives is named, on the day that it stands as well as not.
     for (day, file) in files.iter().enumerate() {
         if day >= 3 {
@@ -170,7 +183,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
         panic!("{found:?}");
     };
     assert_eq!(subject, "A G2");
-    assert!(message.contains("on 2 of 5 days, the first 4"), "{message}");
+    assert!(message.contains("on 3 of 5 days, the first 3"), "{message}");
 }
 
 #[test]

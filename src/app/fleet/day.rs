@@ -69,6 +69,8 @@ pub struct DayFinding {
     pub measured: Option<f64>,
     /// The limit it is held against.
     pub limit: Option<f64>,
+    /// Chance that a right record makes as much of it, where that decided.
+    pub chance: Option<f64>,
     /// What the reader can do.
     pub remedy: String,
 }
@@ -83,6 +85,7 @@ impl From<Finding> for DayFinding {
             message: f.message,
             measured: f.measured.filter(finite),
             limit: f.limit.filter(finite),
+            chance: f.chance.filter(finite),
             remedy: f.remedy,
         }
     }

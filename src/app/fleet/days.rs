@@ -40,6 +40,8 @@ struct Date {
     two: [u32; 2],
     /// Whether points divide them, or a word says the month: the day comes first.
     is_told: bool,
+    /// Whether two digits stand for the year, as they may for the part of a section or a version.
+    is_short: bool,
 }
 
 impl DayOrder {
@@ -61,6 +63,10 @@ impl DayOrder {
             .iter()
             .find(|d| d.1.is_none() && year_first(d.0).is_none());
         if let Some((other, _)) = other {
+            // `12.11.10` beside `12.11.9` is no date.
+            if of_year_last.iter().all(|(_, d)| d.is_short) {
+                return Ok(Self::Numbers);
+            }
             return Err(Unordered {
                 wrong: format!(
                     "of the days `{first}` and `{other}` nobody knows which came first: the one is a date, the other none"
@@ -243,11 +249,13 @@ fn of_three(a: &Word, b: &Word, c: &Word) -> Option<Found> {
     }
     let points = [b.mark, c.mark] == ["."; 2];
     let divided = b.mark == c.mark && !b.mark.is_empty() || by_word.is_some();
-    let y = year(c.text).or_else(|| Some(2000 + number(c.text, 2..=2).filter(|_| points)?))?;
+    let long = year(c.text);
+    let y = long.or_else(|| Some(2000 + number(c.text, 2..=2).filter(|_| points)?))?;
     let d = Date {
         year: y,
         two: [number(a.text, 1..=2)?, second()?],
         is_told: points || by_word.is_some(),
+        is_short: long.is_none(),
     };
     (divided && fits(&d) != [false, false]).then_some(Found::YearLast(d))
 }
@@ -269,6 +277,7 @@ fn of_one(word: &Word) -> Option<Found> {
         year: year(end)?,
         two: two(begin)?,
         is_told: false,
+        is_short: false,
     };
     (fits(&d) != [false, false]).then_some(Found::YearLast(d))
 }
@@ -329,6 +338,7 @@ mod tests {
             &["20260228", "20260301", "20261001"],
             &["2026-05-01_2", "2026-05-01_10", "2026-05-02_1"],
             &["w22", "w23"],
+            &["12.11.9", "12.11.10"],
             // Day first, as points, words or a day beyond twelve tell.
             &["31.12.2025", "02.01.2026", "01.02.2026"],
             &["30.4.2026 10.15", "30.4.2026 9.15", "1.5.2026"],

@@ -30,6 +30,8 @@ struct Alike<'a> {
     n: usize,
     /// Whether one of them holds strain that is beyond doubt not explained.
     certain: bool,
+    /// The smallest chance that a right record says as much.
+    chance: f64,
     day: &'a str,
     path: &'a str,
     first: &'a DayFinding,
@@ -57,6 +59,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
             let alike = grouped.entry((&f.code, vehicle, subject)).or_insert(Alike {
                 n: 0,
                 certain: false,
+                chance: 1.0,
                 day: &file.day,
                 path: &file.path,
                 first: f,
@@ -68,6 +71,7 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
                 (alike.day, alike.path, alike.first) = (&file.day, &file.path, f);
             }
             alike.n += 1;
+            alike.chance = alike.chance.min(f.chance.unwrap_or(1.0));
             alike.certain |= certain;
         }
     }
@@ -89,7 +93,9 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
 fn is_told(alike: &Alike, of: usize) -> bool {
     let is_of = |list: &[&str]| list.contains(&alike.first.code.as_str());
     if is_of(&BY_CHANCE) && !alike.certain {
-        return alike.n >= of || by_chance(alike.n, of) <= ALARM;
+        // Many that say it, or one that says it louder than chance makes the loudest of all.
+        let loudest = alike.chance * of as f64;
+        return alike.n >= of || by_chance(alike.n, of) <= ALARM || loudest <= ALARM;
     }
     !is_of(&OF_STANDING) || 2 * alike.n > of
 }
@@ -126,6 +132,7 @@ fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Option<Findin
         ),
         measured: f.measured,
         limit: f.limit,
+        chance: f.chance,
         remedy: f.remedy.clone(),
     })
 }
@@ -144,12 +151,14 @@ mod tests {
             message: String::new(),
             measured: None,
             limit: None,
+            chance: None,
             remedy: String::new(),
         };
-        let told = |n, certain, of| {
+        let told = |n, certain, chance, of| {
             let alike = Alike {
                 n,
                 certain,
+                chance,
                 day: "",
                 path: "",
                 first: &first,
@@ -157,10 +166,13 @@ mod tests {
             };
             is_told(&alike, of)
         };
-        assert!(told(1, false, 1));
+        assert!(told(1, false, 1.0, 1));
         // 1.8 are expected of 365.
-        assert!(!told(4, false, 365));
-        assert!(told(10, false, 365));
-        assert!(told(1, true, 365));
+        assert!(!told(4, false, 1.0, 365));
+        assert!(told(10, false, 1.0, 365));
+        assert!(told(1, true, 1.0, 365));
+        // One day on which it is off by ten sigmas, and one by less than four.
+        assert!(told(1, false, 1e-20, 365));
+        assert!(!told(1, false, 1e-4, 365));
     }
 }

@@ -18,7 +18,7 @@ use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::recovery::stuck::changes;
+use crate::recovery::stuck::{changes, contradicts};
 use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
@@ -301,8 +301,8 @@ impl Kernel {
         })
     }
 
-    /// Takes columns that give one value for signals where the others don't say that the strain there changes: the vehicle stands, or is loaded so
-    /// little that a coarse reading stays what it is.
+    /// Takes columns that give one value for signals where the others don't say that the strain there changes, nor that it is another: the vehicle
+    /// stands, or is loaded so little that a coarse reading stays what it is.
     fn wake(&self, found: &[(usize, usize, [f64; 2])], sampled: &[f64], given: &mut [Gives]) {
         let n_gauges = self.sensitivity.gauges.len();
         let by_gauge = found.iter().zip(&*given);
@@ -328,18 +328,13 @@ impl Kernel {
         if used.is_empty() || rows.is_empty() {
             return;
         }
+        let (errors, factor) = (self.errors, self.noise_factor);
         for (gives, (g, ..)) in given.iter_mut().zip(found) {
-            let still = *gives == Gives::OneValue;
-            if still
-                && !changes(
-                    &self.sensitivity,
-                    &used,
-                    &rows,
-                    *g,
-                    self.errors,
-                    self.noise_factor,
-                )
-            {
+            let dead = || {
+                changes(&self.sensitivity, &used, &rows, *g, errors, factor)
+                    || contradicts(&self.sensitivity, &used, &rows, *g, errors, factor)
+            };
+            if *gives == Gives::OneValue && !dead() {
                 *gives = Gives::Signal;
             }
         }
@@ -488,6 +483,7 @@ fn said(severity: Severity, code: &str, subject: &str, message: String) -> DayFi
         message,
         measured: None,
         limit: None,
+        chance: None,
         remedy: "look at the logger".to_owned(),
     }
 }

@@ -85,6 +85,8 @@ pub struct VehicleLoad {
     pub extremes: [Option<SampleOf>; 2],
     /// Damage of each day by itself, in their order.
     pub by_day: Vec<f64>,
+    /// Share of the damage that days whose loads can't be relied on make: what is less without them.
+    pub doubtful_share: f64,
 }
 
 /// A vehicle.
@@ -176,6 +178,14 @@ fn errors(days: &[(&FileHead, &Day, &LoadDay)], first: &LoadDay) -> LoadDay {
     }
 }
 
+/// Share by which damage is less without some days; they may close no cycle by themselves and widen those of others.
+fn share_without(all: f64, without: f64) -> f64 {
+    match all > 0.0 {
+        true => (1.0 - without / all).clamp(0.0, 1.0),
+        false => 0.0,
+    }
+}
+
 /// Where the largest (smallest) value of a load stands: of equal ones, the first.
 fn extreme(days: &[(&FileHead, &Day, &LoadDay)], larger: bool) -> Option<SampleOf> {
     let of = |t: &Tally| if larger { t.max } else { t.min };
@@ -226,11 +236,26 @@ pub(super) fn vehicle(
             .collect();
         let all = damage_of(&tally, &errors(&of_load, load));
         let hours: f64 = of_load.iter().map(|d| d.1.hours_of(d.2)).sum();
+        let relied: Vec<_> = of_load
+            .iter()
+            .filter(|d| !d.1.is_doubtful())
+            .copied()
+            .collect();
+        let without = match relied.len() == of_load.len() {
+            true => all.interval().value,
+            false => {
+                let tallies: Vec<&Tally> = relied.iter().map(|d| &d.2.tally).collect();
+                Tally::joined(&tallies).map_or(0.0, |tally| {
+                    damage_of(&tally, &errors(&relied, load)).interval().value
+                })
+            }
+        };
         let done: Vec<(&Day, f64)> = of_load.iter().map(|d| d.1).zip(by_day.clone()).collect();
         loads.push(VehicleLoad {
             name: load.name.clone(),
             unit: load.unit.clone(),
             hours,
+            doubtful_share: share_without(all.interval().value, without),
             damage: all.interval(),
             to_reference: reference.and_then(|r| r.to(name, &load.name, &all, hours, &done)),
             tally,

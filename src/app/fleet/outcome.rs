@@ -184,7 +184,7 @@ impl VehicleAnswer {
             loads: v
                 .loads
                 .into_iter()
-                .map(|l| VehicleLoadAnswer::of(l, keys, &v.doubtful))
+                .map(|l| VehicleLoadAnswer::of(l, keys))
                 .collect(),
             doubtful_days: v
                 .days
@@ -234,7 +234,7 @@ impl VehicleAnswer {
 }
 
 impl VehicleLoadAnswer {
-    fn of(l: VehicleLoad, keys: &FleetKeys, doubtful: &[bool]) -> Self {
+    fn of(l: VehicleLoad, keys: &FleetKeys) -> Self {
         let DamageInterval {
             value,
             low,
@@ -247,9 +247,6 @@ impl VehicleLoadAnswer {
         } = l.damage;
         let [max_at, min_at] = l.extremes;
         let day = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), |s| s.day.clone());
-        let total: f64 = l.by_day.iter().sum();
-        let days = l.by_day.iter().zip(doubtful).filter(|d| *d.1);
-        let in_doubt: f64 = days.map(|d| d.0).sum();
         let target = keys.target.iter().find(|t| t.load == l.name);
         Self {
             max: l.tally.max.map(|e| e.value),
@@ -271,7 +268,7 @@ impl VehicleLoadAnswer {
             to_reference: l.to_reference,
             to_target: target.map(|t| Ratio { value, low, high }.times(1.0 / t.damage)),
             by_day: l.by_day,
-            doubtful_share: if total > 0.0 { in_doubt / total } else { 0.0 },
+            doubtful_share: l.doubtful_share,
             width: l.tally.width,
             range_pairs: l.tally.range_pairs(),
             from_to: l.tally.cycles,

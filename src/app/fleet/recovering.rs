@@ -104,12 +104,7 @@ impl Recovering {
     ///
     /// # Errors
     /// What can't be decoded.
-    pub fn part(
-        &self,
-        record: &Record,
-        piece: usize,
-        marks: &Marks,
-    ) -> Result<Part, SeriesError> {
+    pub fn part(&self, record: &Record, piece: usize, marks: &Marks) -> Result<Part, SeriesError> {
         let (n, k) = (self.used.len(), self.factors.len());
         let (begin, end) = record.span(piece);
         let mut part = Part {

@@ -19,7 +19,7 @@ use crate::finding::{Finding, Severity, few};
 use crate::recovery::{Readings, Recovery, recover};
 use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Readings of the runs, less their zeros and the strain of loads that are known, and these loads.
 pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, KnownLoads), Faults> {
@@ -76,6 +76,14 @@ pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Known
 fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Vec<Finding> {
     /// Gauges that read the same number, to its last digit, by chance in no run.
     const MANY: usize = 3;
+    /// Numbers of a table at least that differ, for each gauge: with fewer its logger rounds so much that runs are alike by themselves.
+    const FINE: usize = 8;
+    let all = (0..names.len()).flat_map(|i| {
+        let row = table.row(i);
+        gauges.iter().filter_map(move |(c, _)| row.get(*c))
+    });
+    let different: HashSet<u64> = all.map(|v| v.to_bits()).collect();
+    let fine = different.len() >= (FINE * gauges.len()).min(names.len() * gauges.len() / 2);
     let (mut blank, mut n, mut alike) = (Vec::new(), 0_usize, Vec::new());
     let (mut first_with, mut repeated) = (HashMap::new(), Vec::new());
     for (i, name) in names.iter().enumerate() {
@@ -87,7 +95,7 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
             && numbers.iter().all(|v| v == first)
         {
             alike.push(name.as_str());
-        } else if numbers.len() >= MANY && numbers.len() == gauges.len() {
+        } else if fine && numbers.len() >= MANY && numbers.len() == gauges.len() {
             let bits: Vec<u64> = numbers.iter().map(|v| v.to_bits()).collect();
             let first = *first_with.entry(bits).or_insert(name);
             if first != name {

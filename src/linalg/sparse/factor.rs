@@ -101,9 +101,11 @@ impl Pass<'_> {
         let mut left: Vec<Option<Update>> = Vec::new();
         left.resize_with(self.symbolic.nodes.len(), || None);
         // The heaviest begin first; results are taken in elimination order.
-        let mut work: Vec<(usize, &mut [f64])> = of_branch.into_iter().enumerate().collect();
-        let weight = |i: usize| branches.list[i].weight;
-        work.sort_by(|a, b| weight(b.0).total_cmp(&weight(a.0)));
+        let mut of_branch: Vec<Option<&mut [f64]>> = of_branch.into_iter().map(Some).collect();
+        let heaviest = branches.heaviest_first().into_iter();
+        let work: Vec<(usize, &mut [f64])> = heaviest
+            .filter_map(|i| Some((i, of_branch[i].take()?)))
+            .collect();
         let mut done: Vec<(usize, Result<(Update, Found), FactorError>)> = work
             .into_par_iter()
             .with_max_len(1)

@@ -10,8 +10,8 @@ use super::symbolic::Symbolic;
 use faer::{Accum, MatMut, MatRef};
 use rayon::prelude::*;
 
-/// Pivots of the scaled matrix below this are lost to rounding: the unknown is held by nothing. Of a mechanism that moves other unknowns a thousand times
-/// as far rounding leaves so much; a part that is held at all is a thousand times stiffer (Nastran stops at a ratio of 1e7).
+/// Pivots of the scaled matrix below this are lost to rounding: the unknown is held by nothing. Of a mechanism that moves other unknowns a
+/// thousand times as far rounding leaves so much; a part that is held at all is a thousand times stiffer (Nastran stops at a ratio of 1e7).
 const TINY_PIVOT: f64 = 1e-12;
 /// Lost pivots of a front that are held one by one; then all its unknowns are.
 pub(super) const MOST_LOST: usize = 12;

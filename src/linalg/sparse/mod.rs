@@ -1,7 +1,7 @@
 //! Sparse symmetric positive definite systems whose unknowns come in small groups (six to a grid): ordering, factor, solution.
 //!
 //! Orders and the shape of the factor are found on the graph of groups, which has six times fewer vertices than the matrix has rows; the
-//! factor itself is multifrontal, its dense matrices eliminated by faer.
+//! factor itself is multifrontal, its dense matrices multiplied by faer.
 
 mod assemble;
 mod block_matrix;

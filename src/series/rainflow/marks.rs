@@ -23,9 +23,7 @@ struct Put<'a> {
 impl Marks {
     /// Of samples whose loads carry noise of these standard deviations; a load without noise tells none apart.
     pub fn new(noise: &[f64]) -> Self {
-        let per_noise = noise
-            .iter()
-            .map(|n| if *n > 0.0 { FINE / n } else { 0.0 });
+        let per_noise = noise.iter().map(|n| if *n > 0.0 { FINE / n } else { 0.0 });
         Self {
             per_noise: per_noise.collect(),
             keys: (0..noise.len() as u64).map(|l| mixed(!l) | 1).collect(),
