@@ -135,7 +135,8 @@ fn intervals_of_payloads_hold_over_calibrations() {
         let share = |n: usize| n as f64 / f64::from(trials);
         assert!((0.92..=0.98).contains(&share(held)), "{place:?} {held}");
         if place == Place::Free {
-            assert!((0.92..=0.98).contains(&share(held_place)), "{held_place}");
+            // Scatter of a place near the gauges' zero is less than the mean over places that the calibration knows: more hold.
+            assert!(share(held_place) >= 0.92, "{held_place}");
         }
     }
 }
