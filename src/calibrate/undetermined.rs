@@ -120,11 +120,11 @@ const WIDE: f64 = 0.5;
 /// Degrees of freedom of the scatter above which runs are many: Student's factor is less than a third above that of a normal distribution.
 const ENOUGH: f64 = 5.0;
 
-/// Loads that the calibrated S tells worse than half of their size in half of the runs or more, though the runs determine S by count: one run of known
-/// loads beside many whose sum alone is known decides how that sum is shared, by chance.
+/// Loads that the calibrated S tells worse than half of their size in half of the runs or more, though the runs determine S by count: one run of
+/// known loads beside many whose sum alone is known decides how that sum is shared, by chance.
 ///
-/// An error where of some runs a sum alone is known, where nothing is told (not a sum of the loads either, or a load not at all), and where many runs
-/// leave a load known worse than it is large: they do not fit their loads. Of few runs whose loads are all known it is a warning: their scatter is
+/// An error where of some runs a sum alone is known, where a load is not told at all, and where many runs leave a load known worse than it is
+/// large: they do not fit their loads. Of few runs whose loads are all known it is a warning: their scatter is
 /// known badly, and repeats narrow it.
 pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Finding> {
     let errors = ErrorModel {
@@ -171,9 +171,8 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         .collect();
     let worst = wide.iter().map(|w| w.1).max_by(f64::total_cmp)?;
     let shared = used.iter().any(|r| !is_known(r, &state.scales));
-    let sums = told_sums(task, &told);
     let contradicts = worst > 1.0 && state.scatter.dof > ENOUGH;
-    let error = shared || contradicts || sums.is_empty() || !worst.is_finite();
+    let error = shared || contradicts || !worst.is_finite();
     let names: Vec<&str> = (wide.iter())
         .map(|w| task.loads[w.0].name.as_str())
         .collect();
@@ -198,7 +197,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         format!(
             "with this S the gauges tell these loads to no better than the half width of a 95 % interval over the largest load: {}{why}{}",
             each.join("; "),
-            sums
+            told_sums(task, &told)
         ),
         "add runs in which these loads act by themselves, repeats, or gauges where they differ; or use combinations of loads alone",
     );

@@ -1,7 +1,6 @@
 //! Tests of this layer.
 
 mod ballast;
-mod by_calibration;
 mod near_zero;
 mod robust;
 mod weigh;

@@ -1,12 +1,12 @@
 //! A payload by a calibrated S: the intervals hold over calibrations of their own, and weight and place are what `recover` makes of the same strain.
 
-use crate::calibrate::{KnownLoads, KnownRun, Task, calibrate};
-use crate::linalg::Matrix;
-use crate::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
-use crate::recovery::{ErrorModel, Readings, recover};
-use crate::sensitivity::{Load, Sensitivity};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use strainbridge::calibrate::{KnownLoads, KnownRun, Task, calibrate};
+use strainbridge::linalg::Matrix;
+use strainbridge::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
+use strainbridge::recovery::{ErrorModel, Readings, recover};
+use strainbridge::sensitivity::{Load, Sensitivity};
 
 const NOISE: f64 = 0.5e-6;
 /// Scatter of each gauge in a run. (Where the gauges scatter together, a dozen runs of eight gauges know the covariance too badly: intervals of
@@ -128,7 +128,7 @@ fn intervals_of_payloads_hold_over_calibrations() {
             let found = weigh(&model(&s), &[run(strain)], &spec(&s, place));
             let w = &found.runs[0];
             held += usize::from(w.interval[0] <= weight && weight <= w.interval[1]);
-            let half = crate::recovery::student_95(w.dof) * w.shift_covariance[0].sqrt();
+            let half = strainbridge::recovery::student_95(w.dof) * w.shift_covariance[0].sqrt();
             held_place += usize::from((w.shift[0] - x).abs() <= half);
         }
         // 95 +- 3 %: three times the chance of 600 trials, and what Student's factor leaves of a scatter that few runs show.
