@@ -92,6 +92,27 @@ fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals()
     }
 }
 
+/// Loads in kilograms read as kilonewtons, without a model: nothing contradicts them, so that a person has to see how large they are.
+#[test]
+fn the_largest_known_load_is_stated_where_no_model_checks_its_unit() {
+    let folder = scratch("calibrate-unit");
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bridge");
+    for file in ["calibrate.toml", "strain.csv"] {
+        std::fs::copy(from.join(file), folder.join(file)).unwrap();
+    }
+    let runs = std::fs::read_to_string(from.join("runs.csv")).unwrap();
+    std::fs::write(folder.join("runs.csv"), runs.replace("220", "22434")).unwrap();
+    let job = folder.join("calibrate.toml");
+    let (code, result, said) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{said}");
+    let findings = result["findings"].as_array().unwrap();
+    let found = findings
+        .iter()
+        .find(|f| f["code"] == "known-loads-unchecked");
+    let message = found.expect("a finding")["message"].as_str().unwrap();
+    assert!(message.contains("22434 kN"), "{message}");
+}
+
 #[test]
 fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     let folder = scratch("calibrate-onboard");

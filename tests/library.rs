@@ -80,9 +80,18 @@ fn a_layout_comes_as_a_value_with_its_certificate() {
 #[test]
 fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
     let errors = "noise_microstrain = 1.0\nmodel_uncertainty_rel = 0.02\n";
+    let loads: Vec<&str> = JOB
+        .lines()
+        .filter_map(|l| l.strip_prefix("name = "))
+        .collect();
+    let combination = |name: &str, factor: f64| {
+        let [a, b] = [loads[0], loads[1]];
+        format!("[[combination]]\nname = \"{name}\"\nterms = {{ {a} = 1, {b} = {factor} }}\n")
+    };
+    let sums = combination("sum", 1.0) + &combination("difference", -1.0);
     let plan = files().with(
         "plan.toml",
-        format!("{JOB}spacing = 15.0\nangle_tolerance_deg = 2.0\n{errors}"),
+        format!("{JOB}spacing = 15.0\nangle_tolerance_deg = 2.0\n{errors}{sums}"),
     );
     let job = Job::read("plan.toml", &plan).unwrap();
     let placed = place(&job, &Context::new(&plan)).unwrap();
@@ -99,18 +108,23 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
         // Ten of both loads, in microstrain.
         row += &format!(",{}", 1e7 * (s.values[(i, 0)] + s.values[(i, 1)]));
     }
-    job += &format!("[measured]\nstrain = \"strain.csv\"\n{errors}");
+    job += &format!("[measured]\nstrain = \"strain.csv\"\n{errors}{sums}");
     let files = files()
         .with("recover.toml", job)
         .with("strain.csv", format!("{head}\n{row}\n"));
     let job = Job::read("recover.toml", &files).unwrap();
     let answer = recover(&job, &Context::new(&files)).unwrap();
     let got = answer.runs().unwrap();
-    assert_eq!(got.loads.len(), 2);
-    assert_eq!(placed.load_sigma.len(), 2);
-    for (planned, got) in placed.load_sigma.iter().zip(&got.loads) {
+    assert_eq!(got.loads.len(), 4);
+    assert_eq!(placed.load_sigma.len(), 4);
+    let variance = |i: usize| placed.load_sigma[i].sigma.powi(2);
+    let (both, each) = (variance(2) + variance(3), variance(0) + variance(1));
+    // Variances of sum and difference make twice those of their terms.
+    assert!((both - 2.0 * each).abs() < 1e-9 * each, "{both} {each}");
+    let truths = [10.0, 10.0, 20.0, 0.0];
+    for ((planned, got), truth) in placed.load_sigma.iter().zip(&got.loads).zip(truths) {
         let value = got.value;
-        assert!((value - 10.0).abs() < 1e-6, "{value}");
+        assert!((value - truth).abs() < 1e-6, "{value}");
         // Only the chi-square of readings without error could differ, and it widens nothing.
         let ratio = got.sigma / planned.sigma;
         assert!((ratio - 1.0).abs() < 0.01, "{} {ratio}", planned.name);

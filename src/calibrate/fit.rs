@@ -1,8 +1,9 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
+use super::exchanged::Exchanged;
 use super::state::State;
 use super::types::{Calibration, Coverage, LeftOut, ModelError, Task};
-use super::{glued, held_out, runs, shift, stated, undetermined};
+use super::{exchanged, glued, held_out, runs, shift, stated, undetermined};
 use crate::finding::{Finding, Severity};
 
 /// Share of the runs that may be refused: with more, it is not the runs that are wrong.
@@ -18,8 +19,11 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         .iter()
         .flat_map(|r| &r.strain)
         .filter(|v| v.is_finite());
-    if task.gauges.is_empty() || task.loads.is_empty() || readings.count() == 0 {
+    if task.gauges.is_empty() || task.loads.is_empty() || readings.clone().count() == 0 {
         return Err("there is no run with known loads and strain".to_owned());
+    }
+    if readings.clone().all(|v| *v == 0.0) {
+        return Err("the strain of all runs of known load is zero".to_owned());
     }
     let mut fitted = Fitted::of(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);
@@ -34,15 +38,23 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         state,
         left_out,
         refused,
+        exchanged,
     } = fitted;
     let judged = held_out::judge(&left_out, state.scatter.dof);
     let sensitivity = state.sensitivity(task, judged.factor);
     let undetermined = undetermined::check(task, &state);
     let model_error = state.error_evidence.as_ref();
     let model_error = model_error.map(|e| e.most_probable(&wrongly_wired));
-    let mut findings = runs::findings(task, &left_out, &refused);
+    let mut findings: Vec<Finding> = exchanged
+        .iter()
+        .map(|e| exchanged::finding(task, e))
+        .collect();
+    findings.extend(runs::findings(task, &left_out, &refused));
     findings.extend(statements(task, &state, model_error, &judged, &left_out));
     findings.extend(undetermined::findings(task, &undetermined));
+    if undetermined.is_empty() || task.model.is_some() {
+        findings.extend(undetermined::too_wide(task, &state, &sensitivity));
+    }
     // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
     let wrong_loads = stated::check(task, &state.used, &wrongly_wired);
     if wrong_loads.is_empty() {
@@ -59,7 +71,11 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         noise_rel: task.noise / signal.sqrt(),
         left_out,
         coverage: judged,
-        refused: refused.iter().map(|r| r.0).collect(),
+        refused: {
+            let certain = exchanged.iter().filter(|e| e.certain);
+            let labels = certain.flat_map(|e| e.runs);
+            refused.iter().map(|r| r.0).chain(labels).collect()
+        },
         undetermined,
         findings,
     })
@@ -71,6 +87,8 @@ struct Fitted {
     left_out: Vec<LeftOut>,
     /// The others, with their numbers.
     refused: Vec<(usize, LeftOut)>,
+    /// Two with each other's label: not used where that is certain.
+    exchanged: Vec<Exchanged>,
 }
 
 impl Fitted {
@@ -79,9 +97,26 @@ impl Fitted {
         let mut used: Vec<usize> = (0..task.runs.len()).collect();
         let most = (MOST_REFUSED * used.len() as f64).floor() as usize;
         let mut refused: Vec<(usize, LeftOut)> = Vec::new();
+        let mut exchanged: Vec<Exchanged> = Vec::new();
         loop {
             let state = State::of(task, &used, wrongly_wired)
-                .ok_or("the readings or the known loads hold numbers that are no numbers")?;
+                .ok_or("S can't be solved for: the runs tell some gauge next to nothing (is it blank in the runs of known loads?), or hold numbers that are none")?;
+            let known = exchanged.last().is_none_or(|e| e.certain);
+            let pair = exchanged::find(task, &state).filter(|_| known);
+            if let Some(pair) = pair {
+                let gone = refused.len() + 2 * exchanged.len() + 2;
+                let takes = pair.certain && gone <= most.max(2);
+                if takes {
+                    used.retain(|r| !pair.runs.contains(r));
+                }
+                exchanged.push(Exchanged {
+                    certain: takes,
+                    ..pair
+                });
+                if takes {
+                    continue;
+                }
+            }
             let left_out = held_out::leave_out(task, &state);
             match held_out::contradicting(&left_out).filter(|_| refused.len() < most) {
                 Some(run) => {
@@ -94,6 +129,7 @@ impl Fitted {
                         state,
                         left_out,
                         refused,
+                        exchanged,
                     });
                 }
             }

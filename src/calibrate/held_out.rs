@@ -4,7 +4,7 @@ use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
 use super::state::{State, left, sensitivity_of};
-use super::types::{Coverage, KnownLoads, KnownRun, LeftOut, Task};
+use super::types::{Coverage, KnownLoads, LeftOut, Task};
 use super::unknown::{SPANNED, UNKNOWN, wide_directions};
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, estimate};
@@ -15,9 +15,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 const WIDEN: f64 = 0.05;
 /// Chance, over all runs together, under which a run contradicts the others beyond doubt and is not used. Scatter of repeats has longer tails
 /// than a Gaussian (a truck off its lane), so that a thousandth is not enough.
-const REFUSE: f64 = 1e-6;
+pub(super) const REFUSE: f64 = 1e-6;
 /// Chance, over all runs together, under which a run is named and does not widen the intervals of the others.
-const SUSPECT: f64 = 1e-3;
+pub(super) const SUSPECT: f64 = 1e-3;
 /// Chance of a 95 % region.
 const HELD: f64 = 0.95;
 
@@ -25,14 +25,22 @@ const HELD: f64 = 0.95;
 pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
     (0..state.used.len())
         .into_par_iter()
-        .filter_map(|i| one(task, state, i))
+        .filter_map(|i| against(task, state, i, &[], &task.runs[state.used[i]].loads))
         .collect()
 }
 
-fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
+/// Used run `i` recovered by what the others but those `beside` taught, and held against `loads`; `None` where they don't tell its loads.
+pub(super) fn against(
+    task: &Task,
+    state: &State,
+    i: usize,
+    beside: &[usize],
+    loads: &KnownLoads,
+) -> Option<LeftOut> {
     let number = *state.used.get(i)?;
     let run = task.runs.get(number)?;
-    if task.model.is_none() && !others_span(state, &[i]) {
+    let gone: Vec<usize> = std::iter::once(i).chain(beside.iter().copied()).collect();
+    if task.model.is_none() && !others_span(state, &gone) {
         return None;
     }
     let order = (state.posterior.n * state.posterior.k) as f64;
@@ -51,11 +59,12 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
         .filter(|j| task.runs[state.used[*j]].group == run.group)
         .collect();
     let with_repeats = cheap
+        && beside.is_empty()
         && state.scatter.common > 0.0
         && group.len() > 1
         && (task.model.is_some() || others_span(state, &group));
-    let out = if with_repeats { group } else { vec![i] };
-    let mut posterior = match learnt.is_some() || with_repeats {
+    let out = if with_repeats { group } else { gone };
+    let mut posterior = match learnt.is_some() || out.len() > 1 {
         true => again(state, prior, &out, &state.scatter_used)?,
         false => state.posterior.without(&state.equations[i])?,
     };
@@ -98,16 +107,16 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
     let w = wanted.len();
     let entry = |i: usize| {
         let at = wanted[i / w] * k + wanted[i % w];
-        found.estimate.covariance[at] + run.loads.covariance[at]
+        found.estimate.covariance[at] + loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
-    let told = Told::of(run, &wanted, &state.scales);
+    let told = Told::of(loads, &wanted, &state.scales);
     if told.combinations == 0 {
         return None;
     }
     let apart: Vec<f64> = wanted
         .iter()
-        .map(|&l| found.estimate.values[l] - run.loads.mean[l])
+        .map(|&l| found.estimate.values[l] - loads.mean[l])
         .collect();
     let sum = |terms: &Vec<f64>| -> f64 {
         let terms: Vec<f64> = wanted
@@ -136,7 +145,7 @@ fn one(task: &Task, state: &State, i: usize) -> Option<LeftOut> {
         loads: told.combinations,
         dof,
         misfit: found.chi2 / found.dof.max(1) as f64,
-        known: run.loads.mean.clone(),
+        known: loads.mean.clone(),
         estimate: found.estimate,
     })
 }
@@ -150,11 +159,11 @@ struct Told {
 }
 
 impl Told {
-    fn of(run: &KnownRun, wanted: &[usize], scales: &[f64]) -> Self {
+    fn of(known: &KnownLoads, wanted: &[usize], scales: &[f64]) -> Self {
         let (k, w) = (scales.len(), wanted.len());
-        let entry = |i: usize| run.loads.covariance[wanted[i / w] * k + wanted[i % w]];
+        let entry = |i: usize| known.covariance[wanted[i / w] * k + wanted[i % w]];
         let loads = KnownLoads {
-            mean: wanted.iter().map(|l| run.loads.mean[*l]).collect(),
+            mean: wanted.iter().map(|l| known.mean[*l]).collect(),
             covariance: (0..w * w).map(entry).collect(),
         };
         let scales: Vec<f64> = wanted.iter().map(|l| scales[*l]).collect();
@@ -325,7 +334,7 @@ fn region(loads: usize, dof: f64) -> f64 {
 }
 
 /// Chance that a run lies at least as far off, where `scale` widens everything.
-fn chance(l: &LeftOut, scale: f64) -> f64 {
+pub(super) fn chance(l: &LeftOut, scale: f64) -> f64 {
     crate::recovery::unlike::chance_estimated(l.distance / (scale * scale), l.loads, l.dof)
 }
 

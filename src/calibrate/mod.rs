@@ -2,7 +2,8 @@
 //!
 //! `eps_r = S f_r + e_r`, S unknown with a Gaussian prior: rows of the model with a stated relative error ([`prior`]), or next to nothing.
 //! [`posterior`] solves for all entries together, because the scatter of repeats ([`scatter`]) goes across gauges; [`known`] carries the
-//! errors of the loads themselves; [`held_out`] leaves out run by run and states how far intervals must be widened; [`shift`] says how
+//! errors of the loads themselves; [`held_out`] leaves out run by run and states how far intervals must be widened; [`exchanged`] finds two
+//! runs with each other's label; [`shift`] says how
 //! each gauge moved, [`cause`] what that looks like by the [`evidence`] of its readings, [`glued`] where it sits, [`next`] which load would
 //! tell most, [`undetermined`] what no run has shown, [`unknown`] what runs weighed by a sum leave open.
 
@@ -10,6 +11,7 @@ mod as_glued;
 mod cause;
 mod dependence;
 mod evidence;
+mod exchanged;
 mod fit;
 mod given_others;
 mod glued;

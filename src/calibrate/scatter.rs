@@ -146,23 +146,23 @@ impl Sample {
     fn of(runs: &[Left], n: usize, dof: f64) -> Self {
         let kept: Vec<&Left> = runs.iter().filter(|r| r.q2 > 0.0).collect();
         let (mut explained, mut readings) = (0.0, 0.0_f64);
-        let mut weight = vec![0.0; n * n];
+        let mut read = vec![0.0; n];
         for r in &kept {
             for g in (0..n).filter(|&g| r.residual[g].is_finite()) {
-                for h in (0..n).filter(|&h| r.residual[h].is_finite()) {
-                    weight[g * n + h] += 1.0;
-                }
+                read[g] += 1.0;
                 explained += r.explained[g] / r.q2;
                 readings += 1.0;
             }
         }
         let explained = explained / readings.max(1.0);
         let all = kept.len() as f64;
-        // Of a pair of gauges, by how many of the runs have both.
+        // Of a pair of gauges, by how many runs have the one and the other: by those that have both, it need not be a covariance.
         let scaled = |squares: &[f64], dof: f64| -> Vec<f64> {
-            let share = |w: f64| (w * dof / all).max(FEWEST.min(dof));
-            let pairs = squares.iter().zip(&weight);
-            pairs.map(|(s, w)| s / share(*w)).collect()
+            let share = |g: usize| (read[g] * dof / all).max(FEWEST.min(dof));
+            let pairs = squares.iter().enumerate();
+            pairs
+                .map(|(i, s)| s / (share(i / n) * share(i % n)).sqrt())
+                .collect()
         };
         let dof = dof * all / runs.len().max(1) as f64;
         let Squares { within, between } = Squares::of(&kept, n);

@@ -1,10 +1,14 @@
 //! Combinations of loads that no run has shown: known from the model only, or not at all.
 
+use super::start::is_known;
 use super::state::State;
 use super::types::{KnownRun, Task, Undetermined};
 use super::unknown::Unknown;
-use crate::finding::{Finding, Severity};
+use crate::estimate::LoadEstimate;
+use crate::finding::{Finding, Severity, few};
 use crate::linalg::spd;
+use crate::recovery::{ErrorModel, Readings, estimate};
+use crate::sensitivity::Sensitivity;
 
 /// Share of a load in a combination from which it is named.
 const NAMED: f64 = 0.1;
@@ -109,4 +113,117 @@ pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
         )
     };
     vec![finding.with_numbers(all.len() as f64, 0.0)]
+}
+
+/// Half width of the 95 % interval over the largest load of the kind from which a load counts as not told: as [`crate::recovery::determined`].
+const WIDE: f64 = 0.5;
+/// Degrees of freedom of the scatter above which runs are many: Student's factor is less than a third above that of a normal distribution.
+const ENOUGH: f64 = 5.0;
+
+/// Loads that the calibrated S tells worse than half of their size in half of the runs or more, though the runs determine S by count: one run of
+/// known loads beside many whose sum alone is known decides how that sum is shared, by chance.
+///
+/// An error where of some runs a sum alone is known, where a load is not told at all, and where many runs leave a load known worse than it is
+/// large: they do not fit their loads. Of few runs whose loads are all known it is a warning: their scatter is
+/// known badly, and repeats narrow it.
+pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Finding> {
+    let errors = ErrorModel {
+        noise: task.noise,
+        model_rel: 0.0,
+    };
+    let used: Vec<&KnownRun> = (state.used.iter())
+        .filter_map(|r| task.runs.get(*r))
+        .collect();
+    let recovered = used.iter().map(|run| {
+        let readings = Readings {
+            run: run.run.clone(),
+            strain: run.strain.clone(),
+            noise_factor: run.noise_factor,
+        };
+        estimate(s, &readings, errors)
+    });
+    let k = task.loads.len();
+    let (told, untold): (Vec<_>, Vec<_>) = recovered.partition(|r| r.rank == k);
+    let unsolved = untold.len();
+    let told: Vec<&LoadEstimate> = told.iter().map(|r| &r.estimate).collect();
+    let width = |l: usize| -> f64 {
+        let kind = task.loads[l].quantity;
+        let alike = (0..k).filter(|m| task.loads[*m].wanted && task.loads[*m].quantity == kind);
+        let most = alike
+            .clone()
+            .flat_map(|m| used.iter().map(move |r| r.loads.mean[m].abs()));
+        let most = most.fold(0.0, f64::max);
+        let half = |e: &&LoadEstimate| {
+            let [low, high] = e.interval(l);
+            (high - low) / 2.0
+        };
+        let mut all: Vec<f64> = (told.iter())
+            .map(|e| half(e) / most)
+            .chain(std::iter::repeat_n(f64::INFINITY, unsolved))
+            .collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(0.0)
+    };
+    let wanted = (0..k).filter(|l| task.loads[*l].wanted);
+    let wide: Vec<(usize, f64)> = wanted
+        .map(|l| (l, width(l)))
+        .filter(|w| w.1 > WIDE)
+        .collect();
+    let worst = wide.iter().map(|w| w.1).max_by(f64::total_cmp)?;
+    let shared = used.iter().any(|r| !is_known(r, &state.scales));
+    let contradicts = worst > 1.0 && state.scatter.dof > ENOUGH;
+    let error = shared || contradicts || !worst.is_finite();
+    let names: Vec<&str> = (wide.iter())
+        .map(|w| task.loads[w.0].name.as_str())
+        .collect();
+    let each: Vec<String> = (wide.iter())
+        .map(|(l, w)| match w.is_finite() {
+            true => format!("{} to {:.0} %", task.loads[*l].name, 100.0 * w),
+            false => format!("{} not at all", task.loads[*l].name),
+        })
+        .collect();
+    let why = match shared {
+        true => "; of most runs a sum of loads is known, and few runs say how it is shared",
+        false => "",
+    };
+    let finding = Finding::new(
+        if error {
+            Severity::Error
+        } else {
+            Severity::Warning
+        },
+        "loads-not-determined",
+        few(&names),
+        format!(
+            "with this S the gauges tell these loads to no better than the half width of a 95 % interval over the largest load: {}{why}{}",
+            each.join("; "),
+            told_sums(task, &told)
+        ),
+        "add runs in which these loads act by themselves, repeats, or gauges where they differ; or use combinations of loads alone",
+    );
+    Some(finding.with_numbers(worst, WIDE))
+}
+
+/// The task's sums of loads that are told to better than [`WIDE`] in half of the runs, in words.
+fn told_sums(task: &Task, runs: &[&LoadEstimate]) -> String {
+    let k = task.loads.len();
+    let width = |terms: &[f64]| -> f64 {
+        let one = |e: &&LoadEstimate| {
+            let entry = |i: usize| terms[i / k] * terms[i % k] * e.covariance[(i / k) * k + i % k];
+            let variance: f64 = (0..k * k).map(entry).sum();
+            e.coverage_factor * variance.sqrt() / spd::dot(terms, &e.values).abs()
+        };
+        let mut all: Vec<f64> = runs.iter().map(one).collect();
+        all.sort_by(f64::total_cmp);
+        all.get(all.len() / 2).copied().unwrap_or(f64::INFINITY)
+    };
+    let known: Vec<String> = (task.sums.iter())
+        .map(|terms| (terms, width(terms)))
+        .filter(|(_, w)| *w < WIDE)
+        .map(|(terms, w)| format!("{} to {:.0} %", combination(task, terms), 100.0 * w))
+        .collect();
+    match known.is_empty() {
+        true => String::new(),
+        false => format!(". Known all the same: {}", known.join("; ")),
+    }
 }

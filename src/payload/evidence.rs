@@ -1,6 +1,8 @@
 //! What is known of a payload before it is weighed: how gauges and wheels answer to it, and what they read.
 
 use crate::linalg::Matrix;
+use crate::sensitivity::Uncertainty;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// How gauges and wheels answer, by unit of weight (model units) and weight times shift from the nominal place.
 ///
@@ -18,6 +20,8 @@ pub struct PayloadModel {
     pub floor: Option<Matrix>,
     /// Wheels from the nominal place, in plan; `None` where unknown.
     pub arms: Option<Vec<[f64; 2]>>,
+    /// What runs of known payload leave uncertain of `payload`, its three columns being the loads; `None` where a model or a table gives them.
+    pub calibrated: Option<Uncertainty>,
 }
 
 /// What one run read.
@@ -94,6 +98,8 @@ pub struct WeighedRun {
     pub force: f64,
     /// Its standard deviation.
     pub sigma: f64,
+    /// Degrees of freedom behind it; infinite where it was not estimated.
+    pub dof: f64,
     /// 95 %.
     pub interval: [f64; 2],
     /// Shift from the nominal place: known or found.
@@ -113,9 +119,14 @@ impl WeighedRun {
     pub fn ellipse(&self) -> ([f64; 2], f64) {
         /// 95 % point of chi-square with two degrees of freedom.
         const CHI2_95: f64 = 5.991;
+        let square = match self.dof.is_finite() {
+            true => FisherSnedecor::new(2.0, self.dof.max(1.0))
+                .map_or(CHI2_95, |d| 2.0 * d.inverse_cdf(0.95)),
+            false => CHI2_95,
+        };
         let [a, b, _, d] = self.shift_covariance;
         let (mean, half) = ((a + d) / 2.0, ((a - d) / 2.0).hypot(b));
-        let axes = [mean + half, (mean - half).max(0.0)].map(|v| (CHI2_95 * v).sqrt());
+        let axes = [mean + half, (mean - half).max(0.0)].map(|v| (square * v).sqrt());
         (axes, 0.5 * (2.0 * b).atan2(a - d))
     }
 }

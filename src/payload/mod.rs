@@ -1,6 +1,7 @@
 //! The size and place of one load that is not measured directly: a payload, or the masses that a model lacks.
 
 mod ballast;
+mod by_calibration;
 mod carrier;
 mod evidence;
 mod locate;

@@ -1,5 +1,6 @@
 //! A payload weighed by all there is: single gauges, all gauges together, wheel forces; checked by sign and equilibrium.
 
+use super::by_calibration;
 use super::evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
 use super::locate::{Location, locate, tells};
 use super::one_run::{Balance, Located};
@@ -7,6 +8,7 @@ use super::robust::{
     GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
     verdict_words,
 };
+use crate::finding::Finding;
 use crate::linalg::median::weighted_median;
 use crate::recovery::NORMAL_95;
 
@@ -17,6 +19,8 @@ pub struct Weighing {
     pub runs: Vec<WeighedRun>,
     /// By gauge; empty without strain.
     pub gauges: Vec<GaugeVerdict>,
+    /// Runs whose strain no payload makes by a calibrated S.
+    pub unlike: Vec<Finding>,
 }
 
 /// Gauge factors are good to this: the least scatter between good gauges that is proportional to the load.
@@ -42,7 +46,7 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     let has_strain = runs.iter().any(|r| r.strain.iter().any(|v| v.is_finite()));
     let has_wheels = runs.iter().any(|r| !r.reactions.is_empty());
     if has_strain && !has_wheels && spec.place == Place::Known {
-        return by_strain(model, runs, spec);
+        return calibrated(model, runs, spec, by_strain(model, runs, spec));
     }
     let told: Vec<bool> = runs.iter().map(|r| tells(model, r, spec)).collect();
     if told.contains(&false) && told.contains(&true) {
@@ -57,12 +61,14 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         return Weighing {
             runs: runs.iter().zip(&told).map(of).collect(),
             gauges: found.gauges,
+            unlike: found.unlike,
         };
     }
     let Some(location) = locate(model, runs, spec, Balance::Kept) else {
         return Weighing {
             runs: runs.iter().map(|r| undetermined(r, n)).collect(),
             gauges: Vec::new(),
+            unlike: Vec::new(),
         };
     };
     let apart = (has_strain && has_wheels)
@@ -86,7 +92,65 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     } else {
         Vec::new()
     };
-    Weighing { runs: out, gauges }
+    let found = Weighing {
+        runs: out,
+        gauges,
+        unlike: Vec::new(),
+    };
+    match has_wheels {
+        true => found,
+        false => calibrated(model, runs, spec, found),
+    }
+}
+
+/// The same with what the whole covariance of a calibrated S makes of it, where the payload's columns are its own: weight and place as `recover`
+/// takes them, by the gauges that count. A place that the calibration has no column for stays.
+fn calibrated(
+    model: &PayloadModel,
+    runs: &[PayloadRun],
+    spec: &WeighSpec,
+    mut weighing: Weighing,
+) -> Weighing {
+    let Some(known) = &model.calibrated else {
+        return weighing;
+    };
+    let used: Vec<bool> = match weighing.gauges.is_empty() {
+        true => vec![true; model.gauges.len()],
+        false => weighing.gauges.iter().map(|v| v.used).collect(),
+    };
+    for (w, run) in weighing.runs.iter_mut().zip(runs) {
+        let answered = matches!(w.refused, None | Some(Refusal::OutsideRegion { .. }));
+        let found = by_calibration::found(model, known, run, spec.place, |g| used[g]);
+        let Some(found) = found.filter(|_| answered) else {
+            continue;
+        };
+        weighing.unlike.extend(found.unlike);
+        let mut located = Located::nothing();
+        // As it was, for what has no column.
+        let force = w.force;
+        for k in 1..3 {
+            located.p[k] = force * w.shift[k - 1];
+            located.covariance[4 * k] = force * force * w.shift_covariance[3 * (k - 1)];
+        }
+        let m = found.p.len();
+        for (i, (k, value)) in found.p.iter().enumerate() {
+            located.p[*k] = *value;
+            for (j, (l, _)) in found.p.iter().enumerate() {
+                located.covariance[3 * k + l] = found.covariance[i * m + j];
+            }
+        }
+        let old = (w.estimates.clone(), w.estimate_sigma.clone());
+        *w = weighed(model, run, &located, spec);
+        (w.estimates, w.estimate_sigma) = old;
+        w.dof = found.dof;
+        let free = located.p[0];
+        let half = found.coverage_factor * w.sigma;
+        (w.force, w.interval) = match w.refused {
+            None => cut_at_zero(free, [free - half, free + half]),
+            Some(_) => (free, [free - half, free + half]),
+        };
+    }
+    weighing
 }
 
 fn undetermined(run: &PayloadRun, n: usize) -> WeighedRun {
@@ -94,6 +158,7 @@ fn undetermined(run: &PayloadRun, n: usize) -> WeighedRun {
         run: run.run.clone(),
         force: f64::NAN,
         sigma: f64::NAN,
+        dof: f64::INFINITY,
         interval: [f64::NAN; 2],
         shift: run.shift,
         shift_covariance: [0.0; 4],
@@ -226,6 +291,7 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
         return Weighing {
             runs: out,
             gauges: Vec::new(),
+            unlike: Vec::new(),
         };
     };
     for (i, a) in judged.iter().zip(&answer.runs) {
@@ -249,7 +315,11 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     for (g, v) in gauges.iter_mut().enumerate() {
         say_weak(v, g, &out);
     }
-    Weighing { runs: out, gauges }
+    Weighing {
+        runs: out,
+        gauges,
+        unlike: Vec::new(),
+    }
 }
 
 /// Why a run can't have an answer, whatever the others say: its gauges, weighed by what each can tell, say a weight below zero beyond doubt, or
@@ -338,6 +408,7 @@ fn weighed(
         run: run.run.clone(),
         force,
         sigma,
+        dof: f64::INFINITY,
         interval,
         shift,
         shift_covariance,

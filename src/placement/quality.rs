@@ -11,6 +11,8 @@ pub struct Quality {
     pub leverage: Vec<f64>,
     /// Standard deviation of each load, in shares of the column's scale (`expected`).
     pub sigma: Vec<f64>,
+    /// Covariance of the loads in these shares, `k x k` by rows.
+    pub covariance: Vec<f64>,
     /// `(1 - max h)^(1/k)`: efficiency left, relative to now, after the worst loss of one gauge; 0: none may fail.
     pub worst_loss: f64,
     /// Which gauge that is.
@@ -51,6 +53,7 @@ pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality>
     Some(Quality {
         leverage,
         sigma: (0..k).map(|i| inv[i * k + i].sqrt()).collect(),
+        covariance: inv,
         worst_loss,
         worst,
     })

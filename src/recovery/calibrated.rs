@@ -20,6 +20,16 @@ pub fn estimate(
     errors: ErrorModel,
     known: &Uncertainty,
 ) -> RunEstimate {
+    estimate_with(s, r, (errors, 0.0), known)
+}
+
+/// The same where each reading has an error of its own besides, of `more` times its variance.
+pub(super) fn estimate_with(
+    s: &Sensitivity,
+    r: &Readings,
+    (errors, more): (ErrorModel, f64),
+    known: &Uncertainty,
+) -> RunEstimate {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let used: Vec<usize> = (0..n)
         .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
@@ -45,7 +55,8 @@ pub fn estimate(
         rank: 0,
     };
     let noise = (errors.noise * errors.noise * r.noise_factor).max(f64::MIN_POSITIVE);
-    let Some(solved) = solve(&a, &y, noise, &priors, &s.scales(), &known.of_gauges(&used)) else {
+    let known_of_used = known.of_gauges(&used);
+    let Some(solved) = solve(&a, &y, (noise, more), &priors, &s.scales(), &known_of_used) else {
         return out;
     };
     let f = solved.fit.f;
@@ -81,7 +92,7 @@ struct Solved {
 fn solve(
     a: &Matrix,
     y: &[f64],
-    noise: f64,
+    (noise, more): (f64, f64),
     priors: &[Option<f64>],
     scales: &[f64],
     known: &Uncertainty,
@@ -91,7 +102,9 @@ fn solve(
     let mut out = None;
     for _ in 0..ROUNDS {
         let mut covariance = known.strain_covariance(n, &f);
-        (0..n).for_each(|g| covariance[g * n + g] += noise);
+        for v in covariance.iter_mut().step_by(n + 1) {
+            *v = (*v + noise) * (1.0 + more);
+        }
         let (fit, chi2) = fit_correlated(a, y, &covariance, priors, scales)?;
         f.clone_from(&fit.f);
         out = Some(Solved {

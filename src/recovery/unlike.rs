@@ -1,6 +1,6 @@
 //! Runs whose strain is none that the calibrated loads make, judged against what repeats scatter by.
 
-use super::calibrated::estimate;
+use super::calibrated::estimate_with;
 use super::errors::ErrorModel;
 use super::types::{Readings, RunEstimate};
 use super::verdict::chance;
@@ -82,10 +82,15 @@ fn above_stated(gauges: &[String], unlike: &[&RunEstimate], of: usize) -> Option
     )
 }
 
-/// Halvings of the interval in which the added error is sought: more than any reading has digits.
-const HALVINGS: usize = 30;
+/// Steps in which the added error is looked for, times the variance of the readings; from the last of them it is no longer sought.
+const STEP: f64 = 16.0;
+const MOST: f64 = 1e30;
+/// Halvings of the last step: to six digits.
+const HALVINGS: usize = 20;
 
-/// The estimate with as much error added to every reading as explains what is left: an unknown pattern, alike for all gauges.
+/// The estimate with as much error of its own added to every reading as explains what is left: an unknown pattern over the gauges, larger where
+/// noise, scatter and the uncertainty of S are larger. Added alike for all gauges the loud ones would decide, those beside a wheel, which scatter most; as
+/// a factor on the whole covariance what is left would decide through the patterns that repeats hardly scatter by.
 ///
 /// # Reference
 /// R. DerSimonian and N. Laird, Control. Clin. Trials 7 (1986) 177: excess scatter as a variance added, not as a factor.
@@ -95,20 +100,20 @@ pub fn estimate_loosely(
     errors: ErrorModel,
     known: &Uncertainty,
 ) -> RunEstimate {
-    let with = |noise: f64| estimate(s, readings, ErrorModel { noise, ..errors }, known);
-    let largest = readings
-        .strain
-        .iter()
-        .filter(|v| v.is_finite())
-        .fold(errors.noise, |a, v| a.max(v.abs()));
-    let (mut low, mut high) = (errors.noise, largest);
+    let with = |more: f64| estimate_with(s, readings, (errors, more), known);
+    let explained = |more: f64| {
+        let run = with(more);
+        run.chi2 <= run.dof as f64
+    };
+    let (mut low, mut high) = (0.0, 1.0);
+    while !explained(high) && high < MOST {
+        (low, high) = (high, STEP * high);
+    }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        let run = with(middle);
-        if run.chi2 > run.dof as f64 {
-            low = middle;
-        } else {
-            high = middle;
+        match explained(middle) {
+            true => high = middle,
+            false => low = middle,
         }
     }
     with(high)

@@ -155,6 +155,21 @@ impl Uncertainty {
         }
     }
 
+    /// Of one load that is a sum of these, `f` of each: the column `S f`.
+    pub fn along(&self, f: &[f64]) -> Self {
+        let n = (self.scatter.len() as f64).sqrt().round() as usize;
+        let of_entries = Self {
+            scatter: Vec::new(),
+            ..self.clone()
+        };
+        Self {
+            covariance: of_entries.strain_covariance(n, f),
+            scatter: self.scatter.clone(),
+            mean_square: vec![self.mean_square_of(f)],
+            ..*self
+        }
+    }
+
     /// Sum of the variances of the entries of gauge `g` of S with `k` loads.
     pub fn power(&self, g: usize, k: usize) -> f64 {
         let n = (self.scatter.len() as f64).sqrt().round() as usize;

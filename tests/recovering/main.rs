@@ -8,6 +8,7 @@ mod drawn;
 mod dynamic;
 mod files;
 mod misled;
+mod payload;
 mod supported;
 
 use serde_json::Value;

@@ -70,6 +70,7 @@ fn model(gauges: &[Gauge]) -> PayloadModel {
             PARTS[k].1 * direct.values[(g, PARTS[k].0)]
         }),
         floor: Some(floor(truck)),
+        calibrated: None,
         arms: Some(
             truck
                 .standing

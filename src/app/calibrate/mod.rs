@@ -77,6 +77,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             ))
         })?;
     work.findings.extend(found.findings.iter().cloned());
+    work.findings.extend(said::unchecked(&task, &listed));
     let units = &listed.units[..task.loads.len()];
     let next = work.stage("next run", |_| said::next_run(&task, &found, units));
     let dependence = known

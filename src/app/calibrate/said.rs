@@ -6,6 +6,7 @@ use crate::app::strain::LoadUnits;
 use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, known_of, next_runs};
 use crate::finding::{Finding, Severity};
 use crate::recovery::student_95;
+use crate::units::number;
 use std::collections::BTreeMap;
 
 /// Chance under which a dependence is worth a word.
@@ -32,6 +33,48 @@ impl DependenceSummary {
             .with_numbers(self.chance, SIGNIFICANT)
         })
     }
+}
+
+/// The largest known load of each unit, where there is no model that its strain could be held against.
+pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
+    if task.model.is_some() {
+        return None;
+    }
+    let own = (0..task.loads.len()).map(|l| vec![(l, 1.0)]);
+    let rows: Vec<Vec<(usize, f64)>> = own.chain(listed.sums.iter().cloned()).collect();
+    let mut largest: BTreeMap<&str, (f64, String)> = BTreeMap::new();
+    for (i, terms) in rows.iter().enumerate() {
+        let unit = &listed.units[i];
+        for r in 0..task.runs.len() {
+            let size = known_of(task, r, terms).map_or(0.0, |v| (v * unit.factor).abs());
+            if size > largest.get(unit.name.as_str()).map_or(0.0, |l| l.0) {
+                let said = format!(
+                    "{} {} (`{}` in run `{}`)",
+                    number(size),
+                    unit.name,
+                    listed.names[i],
+                    task.runs[r].run
+                );
+                largest.insert(&unit.name, (size, said));
+            }
+        }
+    }
+    let most = largest.values().map(|l| l.0).fold(0.0, f64::max);
+    let each: Vec<String> = largest.into_values().map(|l| l.1).collect();
+    let message = format!(
+        "no model says how much strain the known loads make: nothing checks their unit. The largest is {}",
+        each.join("; ")
+    );
+    (!each.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "known-loads-unchecked",
+            "runs",
+            message,
+            "look whether that is the load that was applied, and the unit it is read in ([runs] units)",
+        )
+        .with_numbers(most, 0.0)
+    })
 }
 
 /// The best next run.

@@ -201,6 +201,7 @@ pub(super) fn findings(
     spec: &WeighSpec,
     weighing: &Weighing,
 ) {
+    work.findings.extend(weighing.unlike.iter().cloned());
     for (r, run) in weighing.runs.iter().zip(runs) {
         if let Some(refusal) = &r.refused {
             work.findings.push(refused(task, &r.run, refusal));

@@ -17,7 +17,7 @@ use crate::gauge::reading;
 use crate::linalg::Matrix;
 use crate::model::{GridIx, Model, Vec3};
 use crate::payload::PayloadModel;
-use crate::sensitivity::{Sensitivity, check_separability};
+use crate::sensitivity::{Sensitivity, Uncertainty, check_separability};
 use crate::units::MICROSTRAIN;
 
 /// The model of the payload with what the report draws.
@@ -143,14 +143,20 @@ impl Place {
     }
 }
 
+/// The job's own loads at the payload's grid, by part.
+fn own_columns(job: &Job, place: Place) -> [Option<usize>; 3] {
+    let [a, b, c] = place.axes();
+    [a, 3 + b, 3 + c].map(|component| {
+        job.loads.iter().position(|l| {
+            matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid: 0 } if grid == place.id && d == Component::ALL[component])
+        })
+    })
+}
+
 /// Strain of the payload's parts by gauge: the job's own column where it has one, else the solution `others` made for it.
 fn direct(job: &Job, p: &Prepared, place: Place, others: &[CaseResult]) -> Matrix {
-    let [a, b, c] = place.axes();
     let mut out = Matrix::zeros(p.gauges.len(), 3);
-    for (k, component) in [a, 3 + b, 3 + c].into_iter().enumerate() {
-        let own = job.loads.iter().position(|l| {
-            matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid: 0 } if grid == place.id && d == Component::ALL[component])
-        });
+    for (k, own) in own_columns(job, place).into_iter().enumerate() {
         for (g, gauge) in p.gauges.iter().enumerate() {
             let v = match own {
                 Some(l) => p.sensitivity.values[(g, l)],
@@ -164,9 +170,30 @@ fn direct(job: &Job, p: &Prepared, place: Place, others: &[CaseResult]) -> Matri
 
 /// Strain per report force, and per report force and length of shift.
 fn in_report_units(task: &Task, columns: &Matrix) -> Matrix {
-    let shift = 1.0 / (task.force * task.length);
-    let per = [1.0 / task.force, shift, shift];
+    let per = report_units(task);
     Matrix::from_fn(columns.nrows(), 3, |g, k| columns[(g, k)] * per[k])
+}
+
+/// Job units of weight, and of weight times shift, in one of the report's.
+fn report_units(task: &Task) -> [f64; 3] {
+    let shift = 1.0 / (task.force * task.length);
+    [1.0 / task.force, shift, shift]
+}
+
+/// What a calibrated S leaves uncertain of the columns of `p`: `columns` holds for each the load of S that it is, with its sign.
+fn calibrated(
+    task: &Task,
+    s: &Sensitivity,
+    columns: [Option<(usize, f64)>; 3],
+) -> Option<Uncertainty> {
+    let known = s
+        .uncertainty
+        .as_ref()
+        .filter(|_| has_covariance(task.job))?;
+    let per = report_units(task);
+    // A column that there is not has no strain, and none that is uncertain.
+    let one = |k: usize| columns[k].map_or((0, 0.0), |(l, sign)| (l, sign * per[k]));
+    Some(known.of_loads(&[one(0), one(1), one(2)]))
 }
 
 /// From the deck of a structure on supports: they carry the payload, strain alone weighs it.
@@ -212,7 +239,15 @@ fn held(
         "write support = \"free\" where wheels carry it",
     ));
     let columns = direct(job, prepared, place, &solution.cases);
+    let own = own_columns(job, place);
+    let mut calibrated_columns = [None; 3];
+    for (k, l) in own.iter().enumerate() {
+        calibrated_columns[SHIFT_OF[k]] = l.map(|l| (l, SIGNS[k]));
+    }
+    // With a column of the model among them the covariance is not that of all.
+    let all_own = own.iter().all(Option::is_some);
     Ok(PayloadModel {
+        calibrated: calibrated(task, &prepared.sensitivity, calibrated_columns).filter(|_| all_own),
         gauges: prepared.sensitivity.gauges.clone(),
         wheels: Matrix::zeros(columns.nrows(), 0),
         payload: in_report_units(task, &columns),
@@ -299,6 +334,7 @@ fn standing(
         payload,
         floor: Some(floor),
         arms: Some(arms),
+        calibrated: None,
     })
 }
 
@@ -328,12 +364,14 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
     let n = s.gauges.len();
     let mut payload = Matrix::zeros(n, 3);
     let mut on_wheels = true;
+    let mut known = None;
     if use_strain {
         let own = calibrated_columns(task, s);
         match (&tables.signatures.payload, own) {
             (Some(file), _) => payload = signature(work, task, tables, file, s)?,
             (None, Some(own)) => {
-                payload = in_report_units(task, &own);
+                payload = in_report_units(task, &columns_of(s, own));
+                known = calibrated(task, s, own);
                 // Runs of known payload taught all that it does to the structure, wheels included.
                 on_wheels = !vertical.is_empty();
             }
@@ -365,6 +403,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
         },
         floor: (!on_wheels).then(|| Matrix::zeros(0, 3)),
         arms: None,
+        calibrated: known,
     };
     Ok(Parts {
         model,
@@ -372,22 +411,25 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
     })
 }
 
-/// Columns of `p = (F, F dx, F dy)`, strain per job unit, of a calibrated S that has loads of the payload; `None` without its weight.
-fn calibrated_columns(task: &Task, s: &Sensitivity) -> Option<Matrix> {
+/// Loads of a calibrated S, with their signs, that are `p = (F, F dx, F dy)`; `None` without the weight.
+fn calibrated_columns(task: &Task, s: &Sensitivity) -> Option<[Option<(usize, f64)>; 3]> {
     let job = task.job;
     let part = |l: usize| part_of(job, &s.loads[l].name).filter(|_| has_covariance(job));
-    let mut out = Matrix::zeros(s.gauges.len(), 3);
-    let mut weighs = false;
+    let mut out = [None; 3];
     for l in 0..s.loads.len() {
         let Some(parts) = part(l) else { continue };
-        weighs |= parts[0] != 0.0;
         for (k, sign) in parts.into_iter().enumerate().filter(|p| p.1 != 0.0) {
-            for g in 0..s.gauges.len() {
-                out[(g, k)] = sign * s.values[(g, l)];
-            }
+            out[k] = Some((l, sign));
         }
     }
-    weighs.then_some(out)
+    out[0].map(|_| out)
+}
+
+/// Their columns, strain per job unit.
+fn columns_of(s: &Sensitivity, loads: [Option<(usize, f64)>; 3]) -> Matrix {
+    Matrix::from_fn(s.gauges.len(), 3, |g, k| {
+        loads[k].map_or(0.0, |(l, sign)| sign * s.values[(g, l)])
+    })
 }
 
 /// Strain per report force, and per report force and length of shift, of the table of the payload's signature.

@@ -1,12 +1,12 @@
 //! How many gauges: what each number of them gives, and what the next one buys.
 
 use super::choose::{Refused, choose_once};
-use super::judge::chosen_as_recovered;
+use super::judge::{chosen_as_recovered, in_job_order, sigma_of, terms_listed};
 use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;
 use super::task::Task;
 use crate::app::outcome::finite;
-use crate::app::strain::LoadUnits;
+use crate::app::recover::Listed;
 use crate::finding::{Finding, Severity};
 use crate::linalg::{Matrix, dense};
 use crate::placement::quality::judge_rows;
@@ -17,7 +17,7 @@ pub(super) fn curve(
     task: &Task,
     kinds: &[Kind],
     spec: &Spec,
-    units: &[LoadUnits],
+    listed: &Listed,
 ) -> (Vec<CurvePoint>, Vec<usize>) {
     let mut counts = task.job.placement.curve.clone();
     counts.sort_unstable();
@@ -48,29 +48,27 @@ pub(super) fn curve(
             left_out.push(gauges);
             continue;
         };
-        let mut sigma = vec![0.0; k];
-        for (c, &l) in task.order.iter().enumerate() {
-            sigma[l] = q.sigma[c];
-        }
+        let q = in_job_order(q, &task.order);
         let recovered = chosen_as_recovered(task, &spec, &chosen.channels);
-        let mut sigma = recovered.unwrap_or(sigma);
-        for (l, s) in sigma.iter_mut().enumerate() {
-            *s *= task.scales[l] * units[l].factor;
-        }
+        let covariance = recovered.as_ref().unwrap_or(&q.covariance);
+        let rows_of_loads = terms_listed(listed, k).into_iter().zip(&listed.units);
+        let sigma: Vec<f64> = rows_of_loads
+            .map(|(terms, u)| sigma_of(covariance, &task.scales, &terms) * u.factor)
+            .collect();
         let all: Vec<&Vec<f64>> = rows.iter().chain(&task.kept_rows).collect();
         let sds = chosen.channels.iter().map(|c| c.sd);
         let sds: Vec<f64> = sds.chain(vec![1.0; task.kept_rows.len()]).collect();
         let s = Matrix::from_fn(all.len(), k, |r, c| all[r][c] * sds[r]);
-        let load_sigma = (0..k)
+        let load_sigma = (0..sigma.len())
             .map(|l| {
                 let bought = points.last().map(|before| {
                     let steps = (gauges - before.gauges) as f64;
                     (before.load_sigma[l].sigma - sigma[l]) / steps
                 });
                 BoughtSigma {
-                    name: task.job.loads[l].name.clone(),
+                    name: listed.names[l].clone(),
                     sigma: sigma[l],
-                    unit: units[l].name.clone(),
+                    unit: listed.units[l].name.clone(),
                     less_by_a_gauge: bought,
                 }
             })

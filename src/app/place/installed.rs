@@ -5,6 +5,7 @@ use super::outcome::{Installed, InstalledQuality, WorstLoss};
 use super::task::Task;
 use crate::app::fault::Faults;
 use crate::app::outcome::finite;
+use crate::app::recover::listed;
 use crate::app::strain::lay_gauges;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
@@ -83,7 +84,7 @@ pub(super) fn installed(
         upper_bound: bound,
         condition_number: finite(s.condition_number()),
         condition_number_scaled: finite(s.condition_number_scaled()),
-        load_sigma: sigma_rows(job, &s, recovered.as_deref(), &q, scales),
+        load_sigma: sigma_rows(job, &listed(job, &s)?, recovered.as_deref(), &q, scales),
         worst_loss: WorstLoss {
             gauge: s.gauges[q.worst].clone(),
             leverage: q.leverage[q.worst],

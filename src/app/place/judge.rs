@@ -4,14 +4,14 @@ use super::choose::{Channel, Chosen};
 use super::outcome::PlacedGauge;
 use super::task::Task;
 use crate::app::job::Job;
-use crate::app::strain::{LoadSigma, load_units};
+use crate::app::recover::Listed;
+use crate::app::strain::{LoadSigma, LoadUnits};
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
 use crate::placement::quality::Quality;
 use crate::placement::{Loss, Spec};
-use crate::sensitivity::Sensitivity;
 use crate::units::{Quantity, Unit};
 
 /// The standard deviations in job order.
@@ -20,11 +20,24 @@ pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
     for (i, &l) in order.iter().enumerate() {
         q.sigma[l] = ordered[i];
     }
+    q.covariance = covariance_in_job_order(&q.covariance, order);
     q
 }
 
-/// Standard deviations that `recover` states for loads of their expected size `e`, before any widening, in shares of `e` and job order:
-/// `sigma_l^2 = [(P + A' W^-1 A)^-1]_ll + u^2`, with `A` the strain of the gauges under the loads of size `e`, `W` the covariance of their
+/// The same of a covariance.
+fn covariance_in_job_order(covariance: &[f64], order: &[usize]) -> Vec<f64> {
+    let k = order.len();
+    let mut out = vec![0.0; k * k];
+    for (i, &l) in order.iter().enumerate() {
+        for (j, &m) in order.iter().enumerate() {
+            out[l * k + m] = covariance[i * k + j];
+        }
+    }
+    out
+}
+
+/// Covariance that `recover` states for loads of their expected size `e`, before any widening, in shares of `e` and job order, `k x k` by rows:
+/// `(P + A' W^-1 A)^-1 + u^2 I`, with `A` the strain of the gauges under the loads of size `e`, `W` the covariance of their
 /// readings (`noise^2 + u^2 a_g'a_g` for gauge `g` of the model), `u` the model uncertainty, `P` what is known of loads beforehand. Tolerances
 /// of gluing have no part in it. `prior` is `P`; `rows` are those of `W^-1/2 A` in the candidates' order; `u` is 0 where no gauge is the
 /// model's. `None` where the gauges do not tell the loads.
@@ -40,11 +53,24 @@ pub(super) fn as_recovered(
         spd::add_outer(&mut m, row, 1.0);
     }
     let inverse = spd::gram_of_lower(&spd::inverse_lower(&spd::cholesky(&m, k)?, k), k);
-    let mut out = vec![0.0; k];
-    for (c, &l) in task.order.iter().enumerate() {
-        out[l] = (inverse[c * k + c] + u * u).sqrt();
-    }
+    let mut out = covariance_in_job_order(&inverse, &task.order);
+    out.iter_mut().step_by(k + 1).for_each(|v| *v += u * u);
     Some(out)
+}
+
+/// Standard deviation, job units, of a load or of a sum of loads (their numbers and factors): `c' C c`, `covariance` in shares of `scales`.
+pub(super) fn sigma_of(covariance: &[f64], scales: &[f64], terms: &[(usize, f64)]) -> f64 {
+    let k = scales.len();
+    let pairs = terms.iter().flat_map(|a| terms.iter().map(move |b| (a, b)));
+    let each =
+        pairs.map(|((l, c), (m, d))| c * d * scales[*l] * scales[*m] * covariance[l * k + m]);
+    each.sum::<f64>().max(0.0).sqrt()
+}
+
+/// Terms of all that is listed: each load, then each combination.
+pub(super) fn terms_listed(listed: &Listed, k: usize) -> Vec<Vec<(usize, f64)>> {
+    let own = (0..k).map(|l| vec![(l, 1.0)]);
+    own.chain(listed.sums.iter().cloned()).collect()
 }
 
 /// [`as_recovered`] of chosen channels beside the gauges that stay.
@@ -72,10 +98,10 @@ pub(super) fn chosen_as_recovered(
     )
 }
 
-/// Standard deviations of the loads in report units: as recovered, and as glued where that is more.
+/// Standard deviations of the loads, and of the job's combinations of them, in report units: as recovered, and as glued where that is more.
 pub(super) fn sigma_rows(
     job: &Job,
-    s: &Sensitivity,
+    listed: &Listed,
     recovered: Option<&[f64]>,
     q: &Quality,
     scales: &[f64],
@@ -83,21 +109,24 @@ pub(super) fn sigma_rows(
     let p = &job.placement;
     let tolerances =
         p.angle_tolerance_deg > 0.0 || p.position_tolerance > 0.0 || p.gauge_factor_rel > 0.0;
-    let as_glued = |l: usize| q.sigma[l].hypot(p.model_uncertainty_rel);
-    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    load_units(job, &names)
+    let k = scales.len();
+    let mut as_glued = q.covariance.clone();
+    let model = p.model_uncertainty_rel.powi(2);
+    as_glued.iter_mut().step_by(k + 1).for_each(|v| *v += model);
+    let one = |(terms, (u, name)): (Vec<(usize, f64)>, (&LoadUnits, &String))| {
+        let glued = sigma_of(&as_glued, scales, &terms) * u.factor;
+        LoadSigma {
+            name: name.clone(),
+            sigma: recovered.map_or(glued, |r| sigma_of(r, scales, &terms) * u.factor),
+            sigma_as_glued: tolerances.then_some(glued),
+            unit: u.name.clone(),
+        }
+    };
+    let named = listed.units.iter().zip(&listed.names);
+    terms_listed(listed, k)
         .into_iter()
-        .zip(names)
-        .enumerate()
-        .map(|(l, (u, name))| {
-            let share = recovered.map_or_else(|| as_glued(l), |r| r[l]);
-            LoadSigma {
-                name,
-                sigma: share * scales[l] * u.factor,
-                sigma_as_glued: tolerances.then(|| as_glued(l) * scales[l] * u.factor),
-                unit: u.name,
-            }
-        })
+        .zip(named)
+        .map(one)
         .collect()
 }
 

@@ -20,9 +20,10 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::Job;
 use super::outcome::{Outcome, StatedUnits, finite};
+use super::recover::listed;
 use super::strain::{
-    Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, load_units,
-    mesh_errors, read_fields, without_strain,
+    Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, mesh_errors,
+    read_fields, without_strain,
 };
 use super::work::Work;
 use crate::finding::{Finding, Severity};
@@ -83,8 +84,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let mesh_error = mesh_errors(&all, &s, &task.errors);
     work.findings
         .extend(coarse_at_gauges(&all, &mesh_error, fields.mesh_left()));
-    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    let units = load_units(job, &names);
+    let listed = listed(job, &s)?;
+    let units = &listed.units[..k];
     let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
     let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
         Some(kind) => installed::installed(work, &task, &kind.candidates, &spec)?,
@@ -93,15 +94,15 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     work.findings.extend(check_separability(&s));
     judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
     let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
-    let load_sigma = judge::sigma_rows(job, &s, recovered.as_deref(), &quality, &task.scales);
-    let in_job_units = load_sigma.iter().zip(&units);
+    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &quality, &task.scales);
+    let in_job_units = load_sigma.iter().zip(units);
     let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
     work.findings.extend(check_planned(&s, &planned));
     let how_many = if job.placement.curve.is_empty() {
         Vec::new()
     } else {
         let (points, left_out) =
-            work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &units));
+            work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &listed));
         work.go_on()?;
         work.findings.extend(curve::incomplete(&left_out));
         points

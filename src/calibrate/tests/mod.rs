@@ -1,6 +1,7 @@
 mod bridges;
 mod cause;
 mod glued;
+mod labels;
 mod next;
 mod repeats;
 mod scatter;

@@ -113,6 +113,7 @@ fn known_loads_in_another_unit_are_an_error_that_asks_for_the_unit() {
             [1e3, 1e3, 1e6],
             [1.0, 1.0, 1e-3],
             [4.448, 4.448, 4.448],
+            [101.97, 101.97, 101.97],
             [1.0 / 9.81, 1.0, 1.0],
         ] {
             let mut task = task(times, 4);

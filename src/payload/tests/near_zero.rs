@@ -28,6 +28,7 @@ fn plate() -> PayloadModel {
             }
         }),
         floor: Some(Matrix::zeros(0, 3)),
+        calibrated: None,
         arms: None,
     }
 }

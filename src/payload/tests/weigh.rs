@@ -49,6 +49,7 @@ fn truck(lot: &mut Lot, gauges: usize) -> PayloadModel {
         wheels,
         payload,
         floor: Some(floor()),
+        calibrated: None,
         arms: Some(ARMS.to_vec()),
     }
 }

@@ -1,0 +1,171 @@
+//! Two runs whose labels were exchanged: the fit goes between both, so that each hides the other and all the scatter seems to be chance.
+
+use super::held_out::{REFUSE, SUSPECT, against, chance};
+use super::start::is_known;
+use super::state::State;
+use super::types::{LeftOut, Task};
+use crate::finding::{Finding, Severity};
+use crate::linalg::precision::Precision;
+use crate::linalg::spd;
+
+/// How many times less the runs must leave with two labels exchanged for these to be named. Runs of different loads look alike, as is needed
+/// for that, where gauges hardly tell the loads; what the runs leave then hardly falls.
+const FEWER: f64 = 4.0;
+/// Two exchanges that leave as much as each other to this factor are not told apart.
+const AS_GOOD: f64 = 1.5;
+/// Share of what the runs leave that an exchange must explain to be looked at.
+const WORTH_A_LOOK: f64 = 0.1;
+
+/// Two runs whose labels are exchanged.
+pub(super) struct Exchanged {
+    /// By number.
+    pub runs: [usize; 2],
+    /// How many times less the runs leave with these labels exchanged.
+    pub fewer: f64,
+    /// Whether each lies beyond doubt where the other one's label says, by all others.
+    pub certain: bool,
+    /// Two others whose exchange explains as much.
+    pub or: Option<[usize; 2]>,
+}
+
+/// Two used runs, by their place among these, and what is left of all runs once their labels are exchanged.
+struct Pair {
+    at: [usize; 2],
+    left: f64,
+}
+
+/// The exchange that explains most, where it explains enough.
+pub(super) fn find(task: &Task, state: &State) -> Option<Exchanged> {
+    let (before, pairs) = left_by_pair(task, state)?;
+    let best = pairs.iter().min_by(|a, b| a.left.total_cmp(&b.left))?;
+    if before - best.left < WORTH_A_LOOK * before {
+        return None;
+    }
+    let disjoint = |p: &&Pair| !p.at.iter().any(|i| best.at.contains(i));
+    let second = pairs.iter().filter(disjoint);
+    let second = second.min_by(|a, b| a.left.total_cmp(&b.left));
+    let or = second.filter(|p| p.left < AS_GOOD * best.left);
+    let numbers = |p: &Pair| p.at.map(|i| state.used[i]);
+    let fewer = before / best.left.max(f64::MIN_POSITIVE);
+    let certain = or.is_none() && is_certain(task, state, best.at, pairs.len());
+    (certain || fewer > FEWER).then(|| Exchanged {
+        runs: numbers(best),
+        fewer,
+        certain,
+        or: or.filter(|_| fewer > FEWER).map(numbers),
+    })
+}
+
+/// Whether both runs, recovered by the others alone, are far from their own label and not from each other's.
+fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool {
+    let loads = at.map(|i| &task.runs[state.used[i]].loads);
+    let far = |l: &LeftOut| chance(l, 1.0);
+    let mut own = 1.0;
+    for (me, other) in [(0, 1), (1, 0)] {
+        let beside = [at[other]];
+        let stated = against(task, state, at[me], &beside, loads[me]);
+        let turned = against(task, state, at[me], &beside, loads[other]);
+        let (Some(stated), Some(turned)) = (stated, turned) else {
+            return false;
+        };
+        if far(&turned) < SUSPECT {
+            return false;
+        }
+        own *= far(&stated);
+    }
+    own * (tried as f64) < REFUSE
+}
+
+/// Sum of squares that all runs leave by least squares, and the same with each pair of different known loads exchanged:
+///
+/// with `X` the loads by run, `Y` the strain, `G = X'X`, `B = X'Y`, an exchange of rows `i` and `j` of `X` leaves `G` and adds
+/// `(x_i - x_j)(y_j - y_i)'` to `B`; what is left is `|Y|^2 - tr(B' G^-1 B)`.
+fn left_by_pair(task: &Task, state: &State) -> Option<(f64, Vec<Pair>)> {
+    let (n, k) = (state.posterior.n, state.posterior.k);
+    let known: Vec<bool> = (state.used.iter())
+        .map(|r| is_known(&task.runs[*r], &state.scales))
+        .collect();
+    let x: Vec<Vec<f64>> = (state.used.iter().zip(&state.equations).zip(&known))
+        .map(|((r, e), known)| match known {
+            true => {
+                let mean = task.runs[*r].loads.mean.iter();
+                mean.zip(&state.scales).map(|(f, c)| f / c).collect()
+            }
+            false => e.phi.clone(),
+        })
+        .collect();
+    // A reading that is missing is what S makes of the loads: it has no part in it.
+    let y: Vec<Vec<f64>> = (state.used.iter().zip(&x))
+        .map(|(r, x)| {
+            let made = state.posterior.predict(x);
+            let read = task.runs[*r].strain.iter().zip(made);
+            read.map(|(y, p)| if y.is_finite() { *y } else { p })
+                .collect()
+        })
+        .collect();
+    let mut gram = vec![0.0; k * k];
+    let mut both = vec![0.0; k * n];
+    for (x, y) in x.iter().zip(&y) {
+        spd::add_outer(&mut gram, x, 1.0);
+        for (row, x) in both.chunks_exact_mut(n).zip(x) {
+            row.iter_mut().zip(y).for_each(|(b, y)| *b += x * y);
+        }
+    }
+    let values = spd::eigenvalues(&gram, k);
+    if *values.first()? <= super::unknown::SPANNED * values.last()? {
+        return None;
+    }
+    let inverse = Precision::of(&gram, k)?;
+    let column = |g: usize| -> Vec<f64> { (0..k).map(|l| both[l * n + g]).collect() };
+    let explained = |g: usize| spd::dot(&column(g), &inverse.apply(&column(g)));
+    let before = y.iter().map(|y| spd::dot(y, y)).sum::<f64>() - (0..n).map(explained).sum::<f64>();
+    let mut pairs = Vec::new();
+    for i in (0..x.len()).filter(|i| known[*i]) {
+        for j in (0..i).filter(|j| known[*j] && x[*j] != x[i]) {
+            let d: Vec<f64> = x[i].iter().zip(&x[j]).map(|(a, b)| a - b).collect();
+            let e: Vec<f64> = y[j].iter().zip(&y[i]).map(|(a, b)| a - b).collect();
+            let turned = inverse.apply(&d);
+            let along: Vec<f64> = both.chunks_exact(n).map(|row| spd::dot(row, &e)).collect();
+            let more = 2.0 * spd::dot(&turned, &along) + spd::dot(&turned, &d) * spd::dot(&e, &e);
+            pairs.push(Pair {
+                at: [j, i],
+                left: (before - more).max(0.0),
+            });
+        }
+    }
+    Some((before, pairs))
+}
+
+/// In words: both were not used where that is certain; an error where it is not told which of two pairs it is.
+pub(super) fn finding(task: &Task, e: &Exchanged) -> Finding {
+    let names = |runs: [usize; 2]| runs.map(|r| task.runs[r].run.as_str());
+    let [a, b] = names(e.runs);
+    let subject = format!("{a}, {b}");
+    let times = crate::units::number(e.fewer);
+    let what = match e.or.map(names) {
+        Some([c, d]) => format!(
+            "runs `{a}` and `{b}` have each other's label, or `{c}` and `{d}`: exchanged, either way, the runs leave {times} times less (sum of \
+             squares). Which of them it is nothing tells, and S is that of neither"
+        ),
+        None => format!(
+            "runs `{a}` and `{b}` have each other's label: the strain of `{a}` is that of the loads stated for `{b}`, and the other way round; \
+             exchanged, the runs leave {times} times less (sum of squares){}",
+            match e.certain {
+                true => ". Neither was used",
+                false => ". Both were used as they stand, and S is off by that",
+            }
+        ),
+    };
+    let severity = match e.certain {
+        true => Severity::Warning,
+        false => Severity::Error,
+    };
+    Finding::new(
+        severity,
+        "runs-exchanged",
+        subject,
+        what,
+        "correct the labels in the runs file, or leave these runs out with `[calibration] runs`",
+    )
+    .with_numbers(e.fewer, FEWER)
+}

@@ -1,0 +1,84 @@
+//! A payload by a calibrated S that has its columns: as `recover` takes the loads of a run, with the whole covariance of S.
+
+use super::evidence::{PayloadModel, PayloadRun, Place};
+use crate::finding::Finding;
+use crate::linalg::Matrix;
+use crate::recovery::calibrated::estimate;
+use crate::recovery::unlike::{check, estimate_loosely, is_unlike};
+use crate::recovery::{ErrorModel, Readings};
+use crate::sensitivity::{Load, Sensitivity, Uncertainty};
+
+/// One run.
+pub(super) struct Found {
+    /// Of `p = (F, F dx, F dy)`, those that the calibration has columns of: value and number.
+    pub p: Vec<(usize, f64)>,
+    /// Covariance of these, by rows.
+    pub covariance: Vec<f64>,
+    /// Degrees of freedom behind it.
+    pub dof: f64,
+    /// Factor on sigma of a 95 % interval.
+    pub coverage_factor: f64,
+    /// Where no payload makes this strain.
+    pub unlike: Option<Finding>,
+}
+
+/// The payload of a run by the gauges that are `used`; `known`: covariance of the three columns of [`PayloadModel::payload`]. Where the place is
+/// known the one column is `b0 + dx b_dx + dy b_dy`, and its covariance goes with it. `None` where the gauges don't tell it.
+pub(super) fn found(
+    model: &PayloadModel,
+    known: &Uncertainty,
+    run: &PayloadRun,
+    place: Place,
+    used: impl Fn(usize) -> bool,
+) -> Option<Found> {
+    let n = model.gauges.len();
+    let present = |k: &usize| model.payload.column(*k).iter().any(|v| *v != 0.0);
+    let columns: Vec<usize> = match place {
+        Place::Free => (0..3).filter(present).collect(),
+        Place::Known => vec![0],
+    };
+    let p = [1.0, run.shift[0], run.shift[1]];
+    let (values, known) = match place {
+        Place::Free => {
+            let values = Matrix::from_fn(n, columns.len(), |g, k| model.payload[(g, columns[k])]);
+            let same: Vec<(usize, f64)> = columns.iter().map(|k| (*k, 1.0)).collect();
+            (values, known.of_loads(&same))
+        }
+        Place::Known => {
+            let entry = |g: usize, _| (0..3).map(|k| model.payload[(g, k)] * p[k]).sum::<f64>();
+            (Matrix::from_fn(n, 1, entry), known.along(&p))
+        }
+    };
+    let s = Sensitivity {
+        values,
+        gauges: model.gauges.clone(),
+        loads: (columns.iter())
+            .map(|k| Load::named(["F", "F dx", "F dy"][*k]))
+            .collect(),
+        uncertainty: None,
+    };
+    let reads = |(g, e): (usize, &f64)| if used(g) { *e } else { f64::NAN };
+    let readings = Readings {
+        run: run.run.clone(),
+        strain: run.strain.iter().enumerate().map(reads).collect(),
+        noise_factor: 1.0,
+    };
+    // A run's gauges have one noise; where a zero or a gap makes it differ, the largest.
+    let noise = run.sigma.iter().copied().filter(|v| v.is_finite());
+    let errors = ErrorModel {
+        noise: noise.fold(0.0, f64::max),
+        model_rel: 0.0,
+    };
+    let mut run = estimate(&s, &readings, errors, &known);
+    let unlike = check(&s.gauges, std::slice::from_ref(&run), &known).pop();
+    if is_unlike(&run, &known) {
+        run = estimate_loosely(&s, &readings, errors, &known);
+    }
+    (run.rank == columns.len()).then(|| Found {
+        p: columns.into_iter().zip(run.estimate.values).collect(),
+        covariance: run.estimate.covariance,
+        dof: known.dof,
+        coverage_factor: run.estimate.coverage_factor,
+        unlike,
+    })
+}
