@@ -7,8 +7,8 @@ use super::job::Job;
 use super::store::{Key, read_solution, write_solution};
 use super::work::{Work, stopped};
 use crate::fe::{
-    Corners, FeError, LoadCase, Solution, SolveOptions, SolveReport, Solved, Support,
-    SupportChoice, UnitLoad, solution_of, solve_displacements, support_of,
+    Corners, FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport, Solved, Support,
+    SupportChoice, UnitLoad, solution_of, solve_displacements, solve_modes, support_of,
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -116,8 +116,8 @@ pub fn solve_kept(
     options: SolveOptions,
 ) -> Result<(Solution, SolveReport), Faults> {
     let identity = identity(work, read, cases, &format!("modes {}", options.modes));
-    let solved =
-        kept(work, &identity, &read.model, cases, &options).map_err(|e| faults_of(&e, read))?;
+    let solved = displacements_kept(work, &identity, &read.model, cases, &options)
+        .map_err(|e| faults_of(&e, read))?;
     for (step, seconds) in &solved.report.seconds {
         work.note_seconds(&format!("solve: {step}"), *seconds);
     }
@@ -141,25 +141,109 @@ pub fn unit_loads_kept(
     let options = SolveOptions::default();
     let cases = support.unit_cases(model, loads);
     let identity = identity(work, read, &cases, made);
-    kept(work, &identity, model, &cases, &options)
+    displacements_kept(work, &identity, model, &cases, &options)
         .and_then(|solved| solution_of(model, &cases, solved, &options))
         .map(|(solution, _)| solution)
         .map_err(|e| faults_of(&e, read))
 }
 
-/// Displacements from the cache, or solved and put there.
-fn kept(
+/// Elastic modes of the structure of a deck.
+pub struct ElasticModes {
+    /// Ascending, cycles per unit of time.
+    pub hz: Vec<f64>,
+    /// Shapes of unit generalised mass, basic frame: translation and rotation by grid index.
+    pub shapes: Vec<Vec<[f64; 6]>>,
+    /// Strain of the shapes.
+    pub strain: Solution,
+}
+
+/// The lowest `count` elastic modes on an SPC set, with their strain, solved or taken from those kept; fewer where the structure has fewer.
+///
+/// # Errors
+/// What stops the solver, with file and line.
+pub fn modes_kept(
+    work: &mut Work,
+    read: &DeckModel,
+    spc: Option<u32>,
+    count: usize,
+) -> Result<ElasticModes, Faults> {
+    let model = &read.model;
+    let case = |subcase: u32| LoadCase {
+        subcase,
+        label: format!("mode {subcase}"),
+        loads: Vec::new(),
+        spc,
+        mpc: model.mpc,
+        relief: Relief::None,
+    };
+    let identity = identity(work, read, &[case(0)], &format!("shapes of {count} modes"));
+    let options = SolveOptions {
+        stop: work.cx.progress.stop(),
+        ..SolveOptions::default()
+    };
+    let solve = || {
+        let solved = solve_modes(model, spc, model.mpc, count, &options)?;
+        let mut displacements: Vec<Vec<[f64; 6]>> =
+            solved.modes.iter().map(|m| m.shape.clone()).collect();
+        // As many fields as were asked for; those beyond the modes hold nothing.
+        displacements.resize(count, vec![[0.0; 6]; model.grids.len()]);
+        Ok(Solved {
+            displacements,
+            report: SolveReport {
+                grids: model.grids.len(),
+                dofs: solved.dofs,
+                modes: solved.modes.iter().map(|m| m.frequency).collect(),
+                ..SolveReport::default()
+            },
+            findings: solved.findings,
+        })
+    };
+    let of = (model.grids.len(), count);
+    let mut solved = kept(work, &identity, of, "modes", solve).map_err(|e| faults_of(&e, read))?;
+    let unsettled = |f: &Finding| f.code == "modes-not-converged";
+    work.findings
+        .extend(solved.findings.drain(..).filter(unsettled));
+    let hz = std::mem::take(&mut solved.report.modes);
+    solved.displacements.truncate(hz.len());
+    let shapes = solved.displacements.clone();
+    let cases: Vec<LoadCase> = (1..).take(hz.len()).map(case).collect();
+    let (strain, _) = work
+        .stage("strain", |_| solution_of(model, &cases, solved, &options))
+        .map_err(|e| faults_of(&e, read))?;
+    Ok(ElasticModes { hz, shapes, strain })
+}
+
+/// Displacements of load cases from the cache, or solved and put there.
+fn displacements_kept(
     work: &mut Work,
     identity: &str,
     model: &Model,
     cases: &[LoadCase],
     options: &SolveOptions,
 ) -> Result<Solved, FeError> {
+    let options = SolveOptions {
+        stop: work.cx.progress.stop(),
+        ..options.clone()
+    };
+    let of = (model.grids.len(), cases.len());
+    kept(work, identity, of, "solve", || {
+        solve_displacements(model, cases, &options)
+    })
+}
+
+/// A solution of so many grids and fields from the cache, or solved and put there.
+fn kept(
+    work: &mut Work,
+    identity: &str,
+    (grids, fields): (usize, usize),
+    stage: &str,
+    solve: impl FnOnce() -> Result<Solved, FeError>,
+) -> Result<Solved, FeError> {
     let key = Key::of(identity);
     let mut store = work.cx.store.clone();
     let read = store
         .as_deref()
-        .map(|s| read_solution(s, &key, model.grids.len(), cases.len()));
+        .map(|s| read_solution(s, &key, grids, fields));
     let kept = match read {
         Some(Ok(Some(solved))) => {
             work.notes.push(
@@ -176,13 +260,7 @@ fn kept(
     };
     let solved = match kept {
         Some(solved) => solved,
-        None => {
-            let options = SolveOptions {
-                stop: work.cx.progress.stop(),
-                ..options.clone()
-            };
-            work.stage("solve", |_| solve_displacements(model, cases, &options))?
-        }
+        None => work.stage(stage, |_| solve())?,
     };
     let written = store.as_deref().map(|s| write_solution(s, &key, &solved));
     if let Some(Err(why)) = written {

@@ -109,13 +109,17 @@ impl Gain {
         })
     }
 
-    /// The same with a variance of each load beyond what readings at these errors have.
-    pub fn with_variance(&self, of_loads: &[f64]) -> Self {
-        let mut out = self.clone();
-        for (l, v) in of_loads.iter().enumerate().take(self.n_loads()) {
-            out.base[(l, l)] += v;
+    /// The same with a covariance of the readings it uses beyond these errors, `n_used x n_used`, strain^2.
+    pub fn with_noise(&self, of_readings: &Matrix) -> Self {
+        Self {
+            base: &self.base + &self.gain * of_readings * self.gain.transpose(),
+            ..self.clone()
         }
-        out
+    }
+
+    /// What load `l`, or a sum of loads, takes of each used gauge.
+    pub fn weights(&self, l: usize) -> Vec<f64> {
+        self.gain.row(l).iter().copied().collect()
     }
 
     /// The same with a row for each sum of loads (loads and factors), so that sums have intervals of their own.

@@ -1,5 +1,6 @@
 //! Records of any length: one estimate, samples streamed through it in blocks, constant memory.
 
+use super::dynamic::Doubt;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::kernel::Samples;
@@ -31,8 +32,8 @@ pub struct Filter {
     noise_factor: f64,
     typical: Vec<f64>,
     widening: Widening,
-    /// Variance of each load beyond what readings at these errors have; empty for none.
-    doubt: Vec<f64>,
+    /// What readings are off by beyond these errors, sample by sample.
+    doubt: Option<Doubt>,
     /// Sums of loads that are listed beside them.
     sums: Vec<Vec<(usize, f64)>>,
     /// Estimates by the gauges that read.
@@ -65,7 +66,7 @@ impl Filter {
             gain: Vec::new(),
             rows: Vec::new(),
             sums: Vec::new(),
-            doubt: Vec::new(),
+            doubt: None,
             zero,
             s: s.clone(),
             errors,
@@ -78,10 +79,11 @@ impl Filter {
         Some(filter)
     }
 
-    /// Adds a variance of each load beyond what readings at these errors have; before sums of loads are listed.
-    pub fn add_doubt(&mut self, of_loads: &[f64]) {
-        self.whole = Arc::new(self.whole.with_variance(of_loads));
-        self.doubt = of_loads.to_vec();
+    /// Adds what readings are off by beyond these errors; before sums of loads are listed.
+    pub fn add_doubt(&mut self, doubt: Doubt) {
+        let noise = doubt.of_noise(&self.whole.used);
+        self.whole = Arc::new(self.whole.with_noise(&noise));
+        self.doubt = Some(doubt);
         self.others = RwLock::new(HashMap::new());
     }
 
@@ -236,7 +238,11 @@ impl Filter {
             self.noise_factor,
             &self.typical,
         )
-        .map(|g| Arc::new(g.with_variance(&self.doubt).with_sums(&self.sums)));
+        .map(|g| match &self.doubt {
+            Some(doubt) => g.with_noise(&doubt.of_noise(&g.used)),
+            None => g,
+        })
+        .map(|g| Arc::new(g.with_sums(&self.sums)));
         let mut kept = self.others.write().unwrap_or_else(PoisonError::into_inner);
         if kept.len() < KEPT {
             kept.insert(used, new.clone());
@@ -261,19 +267,38 @@ impl Filter {
         ends.windows(2).filter_map(of_stretch).collect()
     }
 
-    /// Standard deviation of each load of a sample with loads `f`, all gauges reading.
+    /// Standard deviation of each load of a sample with loads `f`, all gauges reading; doubt of the readings in the mean over the record.
     pub fn sigma(&self, f: &[f64]) -> Vec<f64> {
-        self.whole.sigma(f, &self.widening)
+        self.sigma_of((&self.whole, None), f)
     }
 
     /// The same for a sample in which only the gauges of `gain` read.
     pub fn sigma_with(&self, gain: &Gain, f: &[f64]) -> Vec<f64> {
+        self.sigma_of((gain, None), f)
+    }
+
+    /// The same for one sample of the record by its number; `gain` is `None` where all gauges read.
+    pub fn sigma_at(&self, sample: usize, gain: Option<&Gain>, f: &[f64]) -> Vec<f64> {
+        self.sigma_of((gain.unwrap_or(&self.whole), Some(sample)), f)
+    }
+
+    fn sigma_of(&self, (gain, sample): (&Gain, Option<usize>), f: &[f64]) -> Vec<f64> {
         // A load that is not known has no error either: its coefficients weigh nothing here.
         let known: Vec<f64> = f
             .iter()
             .map(|v| if v.is_finite() { *v } else { 0.0 })
             .collect();
-        gain.sigma(&known, &self.widening)
+        let mut sigma = gain.sigma(&known, &self.widening);
+        for (l, s) in sigma.iter_mut().enumerate() {
+            *s = s.hypot(self.of_motion(gain, sample, l).sqrt());
+        }
+        sigma
+    }
+
+    /// Variance that motion leaves in load `l`; that which residuals widen is none of it.
+    fn of_motion(&self, gain: &Gain, sample: Option<usize>, l: usize) -> f64 {
+        let doubt = self.doubt.as_ref();
+        doubt.map_or(0.0, |d| d.of_motion(sample, &gain.used, &gain.weights(l)))
     }
 
     /// Half width of the 95 % interval over sigma.
@@ -281,13 +306,22 @@ impl Filter {
         self.widening.coverage_factor
     }
 
-    /// Standard deviation of a change of load `l` between two samples, `change` that of all loads (NaN where one is not known), by the estimate
-    /// that was taken; of all gauges where it is `None`.
-    pub fn sigma_of_change(&self, gain: Option<&Gain>, l: usize, change: &[f64]) -> f64 {
+    /// Standard deviation of a change of load `l` between two samples, numbers `ends`, `change` that of all loads (NaN where one is not known), by
+    /// the estimate that was taken; of all gauges where it is `None`. What motion leaves swings as the load does: at turning points it is as large
+    /// as it gets, root 2 of its mean, once to either side.
+    pub fn sigma_of_change(
+        &self,
+        gain: Option<&Gain>,
+        l: usize,
+        change: &[f64],
+        ends: [usize; 2],
+    ) -> f64 {
         let known = |v: &f64| if v.is_finite() { *v } else { 0.0 };
         let known: Vec<f64> = change.iter().map(known).collect();
         let gain = gain.unwrap_or(&self.whole);
-        gain.sigma_of_change(l, &known, &self.widening)
+        let own = gain.sigma_of_change(l, &known, &self.widening);
+        let [from, to] = ends.map(|i| (2.0 * self.of_motion(gain, Some(i), l)).sqrt());
+        own.hypot(from + to)
     }
 
     /// The estimate from all gauges.

@@ -40,7 +40,7 @@ pub use interval::{NORMAL_95, student_95};
 pub use missing::Missing;
 pub use outlier::ALARM;
 pub use runs::recover;
-pub use samples::{check_gaps, recover_samples};
+pub use samples::{check_gaps, recover_samples, recover_samples_beyond};
 pub use solve::*;
 pub use solved::estimate;
 pub use sums::Sums;

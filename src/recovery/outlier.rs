@@ -1,5 +1,6 @@
 //! A gauge whose error stands out of the others', and what it does to the loads.
 
+use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::interval::{NORMAL_95, student_95};
@@ -43,7 +44,7 @@ pub(super) struct Suspects {
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
-    solved: &Solved,
+    (solved, beyond): (&Solved, &[Beyond]),
     errors: ErrorModel,
     judged: Option<&Judged>,
 ) -> Suspects {
@@ -67,7 +68,7 @@ pub(super) fn check(
         kind: test.kind,
         size: test.size,
     };
-    let (ratio, load) = worst_shift(s, solved, &shift);
+    let (ratio, load) = worst_shift(s, (solved, beyond), &shift);
     let name = s.gauges.get(test.gauge).map_or("", String::as_str);
     // Stated errors, or what is left without this gauge where that is more.
     let wider = suspect.half_width();
@@ -285,16 +286,28 @@ fn put_right(judged: &Judged, first: &GaugeTest) -> Option<Suspect> {
 }
 
 /// The largest shift of a wanted load over the half width of its interval as stated errors make it, and that load.
-fn worst_shift<'a>(s: &'a Sensitivity, solved: &Solved, shift: &Shift) -> (f64, &'a str) {
+fn worst_shift<'a>(
+    s: &'a Sensitivity,
+    (solved, beyond): (&Solved, &[Beyond]),
+    shift: &Shift,
+) -> (f64, &'a str) {
     let mut worst = (0.0, "");
     for (pattern, gain) in &solved.patterns {
         let Some(gain) = gain else { continue };
-        for r in pattern.runs.iter().filter_map(|&i| solved.runs.get(i)) {
+        for &i in &pattern.runs {
+            let Some(r) = solved.runs.get(i) else {
+                continue;
+            };
             let f = &r.estimate.values;
             let Some(by_load) = gain.shift(f, shift) else {
                 continue;
             };
-            let sigma = gain.sigma(f, &Widening::none());
+            let sigma = match beyond.get(i) {
+                Some(b) => gain
+                    .with_noise(&b.of(&gain.used))
+                    .sigma(f, &Widening::none()),
+                None => gain.sigma(f, &Widening::none()),
+            };
             for ((load, d), sd) in s.loads.iter().zip(&by_load).zip(&sigma) {
                 let ratio = d.abs() / (NORMAL_95 * sd);
                 if load.wanted && ratio > worst.0 {

@@ -136,6 +136,29 @@ impl Projection {
         })
     }
 
+    /// The same with a covariance of the readings beyond noise, by gauge of S; `None` where it is none.
+    pub fn beyond(mut self, pattern: &Pattern, of_readings: &Matrix) -> Option<Self> {
+        let m = self.m();
+        let added = self.of_readings(pattern, of_readings);
+        self.noise_covariance
+            .iter_mut()
+            .zip(&added)
+            .for_each(|(c, v)| *c += v);
+        self.noise = spd::cholesky(&self.noise_covariance, m)?;
+        Some(self)
+    }
+
+    /// `T C T'` of a covariance of the readings, by rows.
+    fn of_readings(&self, pattern: &Pattern, of_readings: &Matrix) -> Vec<f64> {
+        let n = pattern.used.len();
+        let used = Matrix::from_fn(n, n, |a, b| of_readings[(pattern.used[a], pattern.used[b])]);
+        (&self.t * used * self.t.transpose())
+            .transpose()
+            .iter()
+            .copied()
+            .collect()
+    }
+
     /// Dimensions.
     pub fn m(&self) -> usize {
         self.t.nrows()
@@ -171,15 +194,21 @@ impl Projection {
         out
     }
 
-    /// Sum of squares of one run's residual `z` over its own covariance at loads `f`.
-    pub fn chi2_of_run(&self, z: &[f64], f: &[f64]) -> f64 {
+    /// Sum of squares of one run's residual `z` over its own covariance at loads `f`; `beyond` is that of its readings beyond noise.
+    pub fn chi2_of_run(
+        &self,
+        pattern: &Pattern,
+        z: &[f64],
+        f: &[f64],
+        beyond: Option<&Matrix>,
+    ) -> f64 {
         let mut x = z.to_vec();
-        if self.errors.model_rel > 0.0 {
+        if self.errors.model_rel > 0.0 || beyond.is_some() {
             let mut covariance = self.shared(f, f);
-            covariance
-                .iter_mut()
-                .zip(&self.noise_covariance)
-                .for_each(|(c, n)| *c += n);
+            let beyond = beyond.map(|b| self.of_readings(pattern, b));
+            for part in std::iter::once(&self.noise_covariance).chain(&beyond) {
+                covariance.iter_mut().zip(part).for_each(|(c, n)| *c += n);
+            }
             let Some(l) = spd::cholesky(&covariance, self.m()) else {
                 return f64::INFINITY;
             };

@@ -1,8 +1,9 @@
 //! Static states, or samples of a record: one estimate each, all judged together.
 
+use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::interval::student_95;
-use super::solved::{Solved, root_mean_squares, solve};
+use super::solved::{Solved, root_mean_squares, solve_beyond};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
 use super::{by_calibration, determined, faults, plausible, verdict};
 use crate::finding::Finding;
@@ -16,13 +17,24 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
+    recover_beyond(s, readings, errors, &[])
+}
+
+/// The same where readings have errors beyond noise, by run, which the judge of the residuals then knows of; none where `beyond` is empty.
+pub(super) fn recover_beyond(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    beyond: &[Beyond],
+) -> Recovery {
     let (readings, mut findings) = plausible::check(&s.gauges, readings, errors);
     if let Some(known) = &s.uncertainty {
         return recover_calibrated(s, &readings, errors, known, findings);
     }
-    let solved = solve(s, &readings, errors);
-    let verdict = verdict::check(s, &readings, &solved, errors);
-    let named = match verdict.misfit {
+    let solved = solve_beyond(s, &readings, errors, beyond);
+    let verdict = verdict::check(s, &readings, &solved, errors, beyond);
+    // Faults are named by how well they explain what noise doesn't: with errors beyond it that names none.
+    let named = match verdict.misfit && beyond.is_empty() {
         true => faults::check(s, &readings, errors),
         false => Vec::new(),
     };

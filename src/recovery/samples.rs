@@ -1,10 +1,11 @@
 //! What samples of a record say together: runs, but for gaps. A gap blanks what it touches and no more.
 
+use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::missing::Missing;
 use super::plausible;
-use super::runs::recover;
+use super::runs::recover_beyond;
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
 use crate::finding::{Finding, Severity, few};
@@ -15,10 +16,23 @@ use crate::sensitivity::Sensitivity;
 /// A sample whose gauges don't tell a load is blank there. Whether a load can be had is asked of the whole record ([`check_gaps`]), not of
 /// the samples that happen to be looked at: `run-not-solvable` stays only where all gauges together don't tell a load, which is no gap.
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
+    recover_samples_beyond(s, samples, errors, Vec::new())
+}
+
+/// The same where readings have errors beyond noise, by sample; none where `beyond` is empty.
+pub fn recover_samples_beyond(
+    s: &Sensitivity,
+    samples: Vec<Readings>,
+    errors: ErrorModel,
+    beyond: Vec<Beyond>,
+) -> Recovery {
     let reads = |r: &Readings| r.strain.iter().any(|v| v.is_finite());
-    let some = samples.iter().any(reads);
+    let taken: Vec<bool> = samples.iter().map(reads).collect();
+    let some = taken.contains(&true);
     let samples: Vec<Readings> = samples.into_iter().filter(|r| !some || reads(r)).collect();
-    let mut recovery = recover(s, &samples, errors);
+    let beyond = beyond.into_iter().zip(taken);
+    let beyond: Vec<Beyond> = beyond.filter(|(_, t)| !some || *t).map(|b| b.0).collect();
+    let mut recovery = recover_beyond(s, &samples, errors, &beyond);
     if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE) && all_tell(s, errors, &recovery) {
         recovery.findings.retain(|f| f.code != NOT_SOLVABLE);
     }

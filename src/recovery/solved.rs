@@ -1,5 +1,6 @@
 //! Loads of runs with intervals as stated errors make them, and the runs by the gauges that read in them.
 
+use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::interval::NORMAL_95;
@@ -50,6 +51,16 @@ pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
 
 /// Loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
 pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Solved {
+    solve_beyond(s, readings, errors, &[])
+}
+
+/// The same where readings have errors beyond noise, by run; none where `beyond` is empty. They are no weights.
+pub(super) fn solve_beyond(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    beyond: &[Beyond],
+) -> Solved {
     let k = s.loads.len();
     let patterns = patterns(s.gauges.len(), readings);
     let mut typical = vec![0.0; k];
@@ -66,9 +77,15 @@ pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) 
         let projection = Projection::new(s, p, errors, &typical, Out::Unstated);
         for &i in &p.runs {
             let run = estimate_of(s, &readings[i], errors, p, gain.as_ref(), &loads[i]);
+            let own = beyond.get(i).map(|b| &b.noise + &b.shared);
             runs[i] = Some(match &projection {
                 Some(projection) => RunEstimate {
-                    chi2: projection.chi2_of_run(&projection.of(p, &readings[i].strain), &loads[i]),
+                    chi2: projection.chi2_of_run(
+                        p,
+                        &projection.of(p, &readings[i].strain),
+                        &loads[i],
+                        own.as_ref(),
+                    ),
                     dof: projection.m(),
                     ..run
                 },

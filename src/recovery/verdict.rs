@@ -1,9 +1,10 @@
 //! What the residual says: do stated noise and model error explain it, and if not, can the loads be trusted?
 
+use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::interval::{NORMAL_95, student_95};
 use super::outlier;
-use super::residuals::{Joint, Judged, Out, Projection};
+use super::residuals::{Joint, Judged, Out, Pattern, Projection};
 use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::finding::{Finding, Severity, few};
@@ -58,12 +59,13 @@ struct Evidence {
     effective: f64,
 }
 
-/// Findings on rank, redundancy and the size of the residuals.
+/// Findings on rank, redundancy and the size of the residuals; `beyond` are errors of the readings beyond noise, by run, empty for none.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
     solved: &Solved,
     errors: ErrorModel,
+    beyond: &[Beyond],
 ) -> Verdict {
     let runs = &solved.runs;
     let mut verdict = Verdict {
@@ -82,9 +84,13 @@ pub(super) fn check(
         ));
         return verdict;
     }
-    let judged = judged(s, readings, solved, errors);
+    let judged = judged(s, readings, (solved, beyond), errors);
     let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
-    let evidence = weigh(s, runs, &joints);
+    let mut evidence = weigh(s, runs, &joints);
+    if !beyond.is_empty() {
+        // Errors that all samples share are taken for larger than they are: residuals can't be too small.
+        evidence.low = 1.0;
+    }
     verdict.misfit = evidence.high < SIGNIFICANT;
     if verdict.misfit && evidence.pooled > 1.0 {
         verdict.widening = widened(evidence.pooled, evidence.effective);
@@ -104,7 +110,7 @@ pub(super) fn check(
     verdict
         .findings
         .extend(size_finding(&evidence, &sizes, errors));
-    let gauges = outlier::check(s, readings, solved, errors, judged.first());
+    let gauges = outlier::check(s, readings, (solved, beyond), errors, judged.first());
     verdict.findings.extend(gauges.findings);
     for w in verdict.by_run.iter_mut().chain([&mut verdict.widening]) {
         w.shifts.clone_from(&gauges.shifts);
@@ -160,13 +166,16 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
 fn judged<'a>(
     s: &Sensitivity,
     readings: &'a [Readings],
-    solved: &'a Solved,
+    (solved, beyond): (&'a Solved, &[Beyond]),
     errors: ErrorModel,
 ) -> Vec<Judged<'a>> {
     let most = solved.patterns.iter().take(PATTERNS);
     most.filter_map(|(pattern, gain)| {
         let gain = gain.as_ref()?;
-        let projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
+        let mut projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
+        if let Some(of_readings) = together(pattern, beyond) {
+            projection = projection.beyond(pattern, &of_readings)?;
+        }
         let strain: Vec<&[f64]> = pattern
             .runs
             .iter()
@@ -187,6 +196,16 @@ fn judged<'a>(
         })
     })
     .collect()
+}
+
+/// A covariance that, taken as new in every run, is no smaller than that of errors which the runs of a pattern share: with `x` over the runs,
+/// `(sum_i x_i d_i)^2 <= sum_i x_i^2 sum_j d_j^2` (Cauchy), so that the sum over the runs stands for each of them. What they share is so judged on
+/// what it can't make. `None` where there is none.
+fn together(pattern: &Pattern, beyond: &[Beyond]) -> Option<Matrix> {
+    let mut runs = pattern.runs.iter().filter_map(|&i| beyond.get(i));
+    let first = runs.next()?;
+    let own = &first.noise + &first.shared;
+    Some(runs.fold(own, |sum, b| sum + &b.shared))
 }
 
 /// All tests together, each held against its share of the chance (Bonferroni).

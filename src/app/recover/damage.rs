@@ -122,7 +122,8 @@ fn damage_of(
         // The worse known end is that of the change.
         let by_end = [cycle.from, cycle.to].map(|point| {
             let gain = head.estimate_at(point.at);
-            head.filter.sigma_of_change(gain, l, &change)
+            let ends = [cycle.from.at, cycle.to.at];
+            head.filter.sigma_of_change(gain, l, &change, ends)
         });
         let sigma = wider * by_end[0].max(by_end[1]) * head.units[l].factor;
         damage.add(&cycle, sigma);

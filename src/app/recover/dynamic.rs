@@ -2,31 +2,37 @@
 
 use super::reading::Record;
 use super::task::Task;
+use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Dynamic;
-use crate::app::solved::{cases_of_job, faults_of};
+use crate::app::solved::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::app::work::Work;
-use crate::fe::{CaseResult, LoadCase, ModalSolution, SolveOptions, modal_loads, solve_modes};
+use crate::fe::{CaseResult, LoadCase, modal_loads};
 use crate::finding::{Finding, Severity};
 use crate::gauge::reading;
-use crate::recovery::dynamic::{AtRest, Dynamics, ElasticMode, Unfit, readings_at_rest};
+use crate::recovery::dynamic::{
+    AtRest, Doubt, Dynamics, ElasticMode, Unfit, readings_at_rest, triangle, window,
+};
 use crate::sensitivity::Sensitivity;
 use serde::Serialize;
 
-/// Modes up to this many times the highest frequency wanted answer otherwise than at rest: what is left of the next one is an eighth of its share.
+/// Modes are solved up to this many times the highest frequency wanted at least, and all that are solved are taken. What the next one answers beyond its
+/// answer at rest is an eighth of that at the highest frequency, and a third of it where the band ends; it is left to the doubt.
 const MODES_UP_TO: f64 = 3.0;
 /// Modes that are looked for at first, and at most.
 const FIRST_MODES: usize = 16;
 const MOST_MODES: usize = 256;
-/// Readings of a record that is held in memory: 0.8 GB, and as much again at rest.
-const MOST_READINGS: usize = 100_000_000;
+/// How many more modes are looked for than lie in the band if they are as dense as those below.
+const MARGIN: f64 = 1.25;
+/// Numbers of a record that are held in memory: 0.8 GB of readings and of what they are off by, and the readings again at rest.
+const MOST_NUMBERS: usize = 100_000_000;
 
 /// What the motion of the structure was taken for.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motion {
     /// Loads are recovered up to here.
     pub up_to_hz: f64,
-    /// Modes that answer otherwise than at rest.
+    /// Modes that were taken; further ones are left to the intervals.
     pub modes_hz: Vec<f64>,
     /// Time at either end of the record, and of every gap, in which no load is known.
     pub blank_s: f64,
@@ -40,8 +46,10 @@ pub(super) struct Rested {
     pub motion: Motion,
     /// Noise variance of a reading, in units of that of a reading as measured.
     pub noise_factor: f64,
-    /// By load of S: variance beyond that.
-    pub load_variance: Vec<f64>,
+    /// What readings are off by beyond that.
+    pub doubt: Doubt,
+    /// Samples by which noise is apart where it is independent.
+    pub apart: usize,
     /// Samples blank for what is at rest alone.
     pub blank: usize,
 }
@@ -69,17 +77,18 @@ pub(super) fn rested(
         ))
     };
     let samples = record.clock().samples;
-    if samples.saturating_mul(s.gauges.len()) > MOST_READINGS {
-        return Err(fault(
-            format!(
-                "the record has {samples} samples of {} gauges, and it is held in memory while the structure's vibration is taken out",
-                s.gauges.len()
-            ),
-            "cut the record into parts of at most 100 million readings",
-        ));
-    }
+    let n = s.gauges.len();
     let dynamics = dynamics(work, task, asked, s)?;
     let (first_s, step_s) = record.first_and_step();
+    let errors = samples / window(&dynamics, 1.0 / step_s) * triangle(n);
+    if samples.saturating_mul(n).saturating_add(errors) > MOST_NUMBERS {
+        return Err(fault(
+            format!(
+                "the record has {samples} samples of {n} gauges, which are held in memory with what they are off by while the structure's vibration is taken out"
+            ),
+            "cut the record into parts: readings, and half of the squared number of gauges in each period of `up_to_hz`, are 100 million numbers at most",
+        ));
+    }
     let readings = record.columns()?;
     work.go_on()?;
     let noise = task.errors.noise_variance(1.0).sqrt();
@@ -89,10 +98,10 @@ pub(super) fn rested(
     let rested = rested.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
     drop(readings);
     let motion = motion_of(&dynamics, &rested, step_s);
-    if rested.blank == samples {
+    if rested.known == 0 && rested.read > 0 {
         return Err(fault(
             format!(
-                "no stretch of the record is longer than {:.4} s, twice what a sample at rest hangs on",
+                "no stretch of the record in which the same gauges read, and tell the loads, is longer than {:.4} s, twice what a sample at rest hangs on",
                 2.0 * motion.blank_s
             ),
             "take a longer record, or a higher `up_to_hz`",
@@ -102,11 +111,17 @@ pub(super) fn rested(
         .push(about(&motion, asked, &task.measured.strain.given));
     Ok(Some(Rested {
         noise_factor: task.noise_factor - 1.0 + rested.noise_share,
-        load_variance: rested.load_variance,
+        doubt: rested.doubt,
+        apart: apart(&dynamics, step_s),
         blank: rested.blank,
         motion,
         record: record.with_readings(rested.readings, (first_s, step_s))?,
     }))
+}
+
+/// Samples by which noise is apart where it is independent: white noise of a band up to `f` is so at `1 / (2 f)`.
+fn apart(dynamics: &Dynamics, step_s: f64) -> usize {
+    (0.5 / (dynamics.up_to_hz * step_s)).ceil().max(1.0) as usize
 }
 
 fn remedy_of(e: &Unfit) -> &'static str {
@@ -114,6 +129,10 @@ fn remedy_of(e: &Unfit) -> &'static str {
         Unfit::Rate { .. } => "state a lower `up_to_hz`, or sample faster",
         Unfit::Untold { .. } => {
             "state a lower `up_to_hz`, add gauges, or give nuisance loads `expected`"
+        }
+        Unfit::Narrow { .. } => "state a higher `up_to_hz`, or give a record of a lower rate",
+        Unfit::Large { .. } => {
+            "recover with fewer gauges, or state a lower `up_to_hz`, which takes fewer modes"
         }
         Unfit::Rings { .. } => {
             "state a lower `up_to_hz`, or add gauges that tell the loads where the others read next to nothing of them"
@@ -142,18 +161,17 @@ fn dynamics(
     let deck = &fields.deck;
     let cases = cases_of_job(job, deck)?;
     let end_hz = MODES_UP_TO * asked.up_to_hz;
-    let solved = modes_up_to(work, deck, &cases, end_hz)?;
-    if solved.modes.last().is_some_and(|m| m.frequency < end_hz) && solved.modes.len() == MOST_MODES
-    {
+    let (solved, further) = modes_up_to(work, deck, &cases, end_hz)?;
+    let last = solved.hz.last().copied();
+    if further && last.is_some_and(|f| f < end_hz) {
         return Err(fault(
             "dynamic.up_to_hz",
             format!("the structure has more than {MOST_MODES} modes below {end_hz:.4} Hz"),
             "state a lower `up_to_hz`",
         ));
     }
-    let n = solved.modes.iter().filter(|m| m.frequency < end_hz).count();
     let work_of =
-        modal_loads(&deck.model, &cases, &solved.modes[..n]).map_err(|e| faults_of(&e, deck))?;
+        modal_loads(&deck.model, &cases, &solved.shapes).map_err(|e| faults_of(&e, deck))?;
     let mut columns = Vec::with_capacity(s.loads.len());
     for load in &s.loads {
         let Some(l) = job.loads.iter().position(|l| l.name == load.name) else {
@@ -178,11 +196,11 @@ fn dynamics(
         };
         s.gauges.iter().map(at).collect()
     };
-    let modes = (0..n)
+    let modes = (0..solved.hz.len())
         .map(|j| {
             let of_load = |l: &usize| work_of[*l][j] / job.loads[*l].applied;
             Ok(ElasticMode {
-                hz: solved.modes[j].frequency,
+                hz: solved.hz[j],
                 strain: strain_of(&solved.strain.cases[j])?,
                 work: columns.iter().map(of_load).collect(),
             })
@@ -190,6 +208,7 @@ fn dynamics(
         .collect::<Result<_, Faults>>()?;
     Ok(Dynamics {
         modes,
+        further_hz: last.filter(|_| further),
         up_to_hz: asked.up_to_hz,
         damping: asked.damping,
         frequency_sd: asked.frequency_uncertainty_rel,
@@ -197,30 +216,24 @@ fn dynamics(
     })
 }
 
-/// The modes of the structure as the cases hold it, beyond `end_hz` where it has as many.
+/// The modes of the structure as the cases hold it, up to `end_hz` and beyond, and whether there may be further ones.
 fn modes_up_to(
     work: &mut Work,
-    deck: &crate::app::deck::DeckModel,
+    deck: &DeckModel,
     cases: &[LoadCase],
     end_hz: f64,
-) -> Result<ModalSolution, Faults> {
+) -> Result<(ElasticModes, bool), Faults> {
     let spc = cases.first().and_then(|c| c.spc);
     let mut count = FIRST_MODES;
     loop {
-        let options = SolveOptions {
-            stop: work.cx.progress.stop(),
-            ..SolveOptions::default()
-        };
-        let solved = work
-            .stage("modes", |_| {
-                solve_modes(&deck.model, spc, deck.model.mpc, count, &options)
-            })
-            .map_err(|e| faults_of(&e, deck))?;
-        let beyond = solved.modes.last().is_none_or(|m| m.frequency >= end_hz);
-        if beyond || solved.modes.len() < count || count == MOST_MODES {
-            return Ok(solved);
+        let solved = modes_kept(work, deck, spc, count)?;
+        let last = solved.hz.last().copied().unwrap_or(f64::INFINITY);
+        let further = solved.hz.len() == count;
+        if last >= end_hz || !further || count == MOST_MODES {
+            return Ok((solved, further));
         }
-        count = (2 * count).min(MOST_MODES);
+        let as_dense = (MARGIN * count as f64 * end_hz / last).ceil() as usize;
+        count = as_dense.min(MOST_MODES);
     }
 }
 
@@ -236,26 +249,34 @@ fn motion_of(dynamics: &Dynamics, rested: &AtRest, step_s: f64) -> Motion {
 
 /// What was done to the record.
 fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
-    let known = motion.change_rel.iter().flatten();
-    let most = known.fold(0.0_f64, |a, b| a.max(*b));
+    let known: Option<Vec<f64>> = motion.change_rel.iter().copied().collect();
+    let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));
+    let as_at_rest = match most {
+        Some(most) => format!(
+            "taken as at rest, a load would be off by up to {:.1} % of its rms about the mean",
+            100.0 * most
+        ),
+        None => "what loads would be off by if taken as at rest is not known".to_owned(),
+    };
     let first = motion.modes_hz.first();
     let first = first.map_or_else(String::new, |f| format!(", the first at {f:.2} Hz"));
-    Finding::new(
+    let finding = Finding::new(
         Severity::Info,
         "vibration-taken-out",
         file,
         format!(
-            "loads up to {} Hz, with {} modes{first}, damping {}: taken as at rest, a load would be off by up to {:.1} % of its rms about the mean; \
-             {:.3} s at either end and beside gaps are blank",
+            "loads up to {} Hz, with {} modes{first}, damping {}: {as_at_rest}; {:.3} s at either end and beside gaps are blank",
             asked.up_to_hz,
             motion.modes_hz.len(),
             asked.damping,
-            100.0 * most,
             motion.blank_s
         ),
         "",
-    )
-    .with_numbers(most, 0.0)
+    );
+    match most {
+        Some(most) => finding.with_numbers(most, 0.0),
+        None => finding,
+    }
 }
 
 /// Says that runs don't vibrate.

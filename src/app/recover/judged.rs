@@ -7,8 +7,9 @@ use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::solved::{first_mode_of, support_of_job};
 use crate::app::work::Work;
+use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;
-use crate::recovery::{Readings, Recovery, clock, recover_samples};
+use crate::recovery::{Readings, Recovery, clock, recover_samples, recover_samples_beyond};
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 
@@ -26,6 +27,23 @@ pub(super) fn judge(task: &Task, s: &Sensitivity, readings: Vec<Readings>) -> Re
     recover_samples(s, readings, task.errors)
 }
 
+/// The same of samples at rest, by number, and what they are off by.
+pub(super) fn judge_at_rest(
+    task: &Task,
+    s: &Sensitivity,
+    readings: Vec<(usize, Readings)>,
+    doubt: &Doubt,
+) -> Recovery {
+    let beyond = |(i, r): &(usize, Readings)| {
+        let reads = |g: &usize| r.strain[*g].is_finite();
+        let used: Vec<usize> = (0..r.strain.len()).filter(reads).collect();
+        doubt.beyond(*i, &used)
+    };
+    let beyond = readings.iter().map(beyond).collect();
+    let readings = readings.into_iter().map(|r| r.1).collect();
+    recover_samples_beyond(s, readings, task.errors, beyond)
+}
+
 /// Readings of samples spread over the record, less `zero`, each with the number of its sample.
 ///
 /// # Errors
@@ -35,15 +53,16 @@ pub(super) fn spread_readings(
     record: &Record,
     zero: &[f64],
 ) -> Result<Vec<(usize, Readings)>, Faults> {
-    spread(task.noise_factor, record, zero)
+    spread((task.noise_factor, 1), record, zero)
 }
 
-/// The same, the noise variance of a reading given, in units of that of a single one.
+/// The same, the noise variance of a reading given, in units of that of a single one, and by how many samples noise has to be apart to be
+/// independent.
 ///
 /// # Errors
 /// As [`spread_readings`].
 pub(super) fn spread(
-    noise_factor: f64,
+    (noise_factor, apart): (f64, usize),
     record: &Record,
     zero: &[f64],
 ) -> Result<Vec<(usize, Readings)>, Faults> {
@@ -64,9 +83,13 @@ pub(super) fn spread(
         let row = |i: usize| values.get(i * n..(i + 1) * n).unwrap_or_default();
         // In a gap there is nothing to judge.
         let reads = |i: &usize| row(*i).iter().any(|v| v.is_finite());
-        let mut measured: Vec<usize> = (0..take).filter(reads).collect();
+        let every = || (0..take).step_by(apart);
+        let mut measured: Vec<usize> = every().filter(reads).collect();
         if measured.is_empty() {
-            measured = (0..take).collect();
+            measured = (0..take).filter(reads).collect();
+        }
+        if measured.is_empty() {
+            measured = every().collect();
         }
         let each = each.min(measured.len());
         for i in (0..each).map(|i| measured[i * measured.len() / each]) {
@@ -102,20 +125,21 @@ pub(super) fn check_times(work: &mut Work, record: &Record) -> Result<(), Faults
     Ok(())
 }
 
-/// Content of its loads against the first elastic mode; `None` where that is not known.
+/// Content of its loads against the first elastic mode, where that was solved for already its frequency; `None` where it is not known.
 ///
 /// # Errors
 /// A piece that can't be read.
 pub(super) fn content(
     work: &mut Work,
     task: &Task,
-    record: &Record,
+    (record, first_mode): (&Record, Option<f64>),
     filter: &Filter,
     names: &[String],
 ) -> Result<Option<Content>, Faults> {
     let fields = task.prepared.fields.as_ref();
     let first_mode = fields.and_then(|f| {
         f.first_mode
+            .or(first_mode)
             .or_else(|| first_mode_of(work, task.job, &f.deck))
     });
     work.go_on()?;
@@ -123,11 +147,20 @@ pub(super) fn content(
         return Ok(None);
     };
     let held = structure(support_of_job(task.job, fields.model())?);
-    let sigma = filter.sigma(&vec![0.0; filter.n_loads()]);
+    let mut sigma = filter.sigma(&vec![0.0; filter.n_loads()]);
+    if task.job.dynamic.is_some() {
+        // The record as measured has its noise outside of the band too.
+        let noise = task.errors.noise_variance(task.noise_factor).sqrt();
+        for (l, s) in sigma.iter_mut().enumerate() {
+            let weights = filter.whole().weights(l);
+            *s = s.max(noise * weights.iter().map(|w| w * w).sum::<f64>().sqrt());
+        }
+    }
     let pieces = sampled_pieces(record, filter)?;
     let (_, step) = record.first_and_step();
     let rate = if step > 0.0 { 1.0 / step } else { 0.0 };
     let content_hz = content_of_loads(&pieces, &sigma, rate);
+    // With [dynamic] the first mode that is not taken lies at three times the band's end or higher: what comes near it lies beyond the band.
     work.findings.extend(match task.job.dynamic {
         Some(dynamic) => check_band(names, &content_hz, dynamic.up_to_hz),
         None => check_content(names, &content_hz, first_elastic_mode_hz, &held),

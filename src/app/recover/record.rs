@@ -4,9 +4,9 @@ use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
-use super::dynamic::{Motion, Rested, rested};
+use super::dynamic::{Motion, rested};
 use super::files;
-use super::judged::{check_times, content, judge, spread};
+use super::judged::{check_times, content, judge, judge_at_rest, spread};
 use super::reading::{Record, block};
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
@@ -19,6 +19,7 @@ use crate::app::outcome::finite;
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
 use crate::finding::Finding;
+use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;
 use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, plausible};
 use crate::sensitivity::Sensitivity;
@@ -57,16 +58,18 @@ pub(super) fn record(
     } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
     check_times(work, &record)?;
     let rested = rested(work, task, &record, &sensitivity)?;
-    let (noise_factor, readings) = match &rested {
+    let (judged, errors, at_rest, motion, blank) = match rested {
         Some(r) => {
-            let readings = spread(r.noise_factor, &r.record, &zero)?;
-            (r.noise_factor, readings.into_iter().map(|r| r.1).collect())
+            let readings = spread((r.noise_factor, r.apart), &r.record, &zero)?;
+            let judged = judge_at_rest(task, &sensitivity, readings, &r.doubt);
+            let errors = (r.noise_factor, Some(r.doubt));
+            (judged, errors, Some(r.record), Some(r.motion), r.blank)
         }
-        None => (task.noise_factor, readings),
+        None => {
+            let judged = judge(task, &sensitivity, readings);
+            (judged, (task.noise_factor, None), None, None, 0)
+        }
     };
-    let judged = judge(task, &sensitivity, readings);
-    let doubt = rested.as_ref().map(|r| &*r.load_variance);
-    let errors = (noise_factor, doubt);
     let filter = filter(
         work,
         (task, errors),
@@ -75,16 +78,10 @@ pub(super) fn record(
         zero,
         &combinations,
     )?;
-    let content = content(work, task, &record, &filter, &names)?;
-    let (record, motion, blank) = match rested {
-        Some(Rested {
-            record,
-            motion,
-            blank,
-            ..
-        }) => (record, Some(motion), blank),
-        None => (record, None, 0),
-    };
+    let first_mode = motion.as_ref().and_then(|m| m.modes_hz.first().copied());
+    // What the band leaves out stands in the record as measured.
+    let content = content(work, task, (&record, first_mode), &filter, &names)?;
+    let record = at_rest.unwrap_or(record);
     let about = record.clock().samples;
     let (first_s, step_s) = record.first_and_step();
     let head = Arc::new(RecordHead {
@@ -171,7 +168,7 @@ pub(super) fn look(
 /// The estimate of every sample, its weights and intervals judged on samples spread over the record.
 fn filter(
     work: &mut Work,
-    (task, (noise_factor, doubt)): (&Task, (f64, Option<&[f64]>)),
+    (task, (noise_factor, doubt)): (&Task, (f64, Option<Doubt>)),
     judged: Recovery,
     s: &Sensitivity,
     zero: Vec<f64>,

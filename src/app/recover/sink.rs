@@ -118,10 +118,7 @@ impl RecordHead {
         &'a self,
         sample: &Sample<'a>,
     ) -> impl Iterator<Item = Option<[f64; 3]>> + 'a {
-        let sigma = match sample.gap {
-            Some(gain) => self.filter.sigma_with(gain, sample.loads),
-            None => self.filter.sigma(sample.loads),
-        };
+        let sigma = self.filter.sigma_at(sample.at, sample.gap, sample.loads);
         let loads = sample.loads.iter().zip(sigma).zip(&self.units);
         loads.map(|((v, s), u)| {
             let half = self.filter.coverage_factor() * s;
@@ -145,6 +142,8 @@ pub struct Block {
 /// A sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
+    /// Its number in the record.
+    pub at: usize,
     /// Time, s.
     pub time: f64,
     /// Loads, job units; NaN where the gauges that read don't tell them.
@@ -162,6 +161,7 @@ impl Block {
         samples.map(move |(i, (time, loads))| {
             let gap = gaps.next_if(|g| g.0 == i);
             Sample {
+                at: self.first + i,
                 time: *time,
                 loads,
                 gap: gap.and_then(|g| g.1.as_deref()),

@@ -1,6 +1,7 @@
 //! A record put at rest, stretch by stretch between its gaps.
 
-use super::doubt::{Doubt, doubt};
+use super::block::Block;
+use super::doubt::Doubt;
 use super::kernel::Kernel;
 use super::plant::Plant;
 use super::types::{Dynamics, Unfit};
@@ -8,28 +9,48 @@ use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Stretches on which the doubt is judged.
-const JUDGED: usize = 8;
 /// Sets of gauges that read: samples of any further set are blank.
 const MOST_SETS: usize = 8;
+/// Numbers that the filters of all sets may hold: 256 MB.
+const MOST_NUMBERS: usize = 32_000_000;
 
 /// Readings at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtRest {
     /// By gauge, every sample; NaN where nothing is known.
     pub readings: Vec<Vec<f64>>,
-    /// Samples at the ends of stretches, and in stretches too short to say anything, of which no gauge is known though some was read.
+    /// Samples of which something was read.
+    pub read: usize,
+    /// Samples of which a reading at rest is known.
+    pub known: usize,
+    /// Samples at the ends of stretches, and in stretches too short to say anything, of which no gauge is known though those that read tell the loads.
     pub blank: usize,
     /// Samples to either side that a sample at rest hangs on, all gauges reading.
     pub reach: usize,
-    /// Variance of a reading at rest over that of a reading.
+    /// Variance of the noise of a reading at rest over that of a reading, mean of the gauges, all reading.
     pub noise_share: f64,
-    /// By load of S: variance beyond that of readings at rest with that noise.
-    pub load_variance: Vec<f64>,
-    /// By load of S: mean square of what loads recovered as if at rest are off by.
+    /// What readings at rest are off by beyond that.
+    pub doubt: Doubt,
+    /// By load of S: mean square of what loads recovered as if at rest are off by; NaN where no sample is known.
     pub motion: Vec<f64>,
-    /// By load of S: mean square, mean left out.
+    /// By load of S: mean square, mean left out; NaN where no sample is known.
     pub load: Vec<f64>,
+}
+
+/// Stretches of a record by the gauges that read in them.
+struct Stretches {
+    /// Gauges that read, all of them first, then by how long they do.
+    sets: Vec<Vec<usize>>,
+    /// Set and samples; those without any reading are left out.
+    list: Vec<(usize, Range<usize>)>,
+}
+
+/// Sums of squares of loads.
+struct Squares {
+    told: f64,
+    motion: Vec<f64>,
+    load: Vec<f64>,
+    sum: Vec<f64>,
 }
 
 /// The readings (strain, by gauge of `s`, every sample at `rate_hz`; NaN where there is none) of a record at rest. `noise` is that of a reading,
@@ -45,101 +66,134 @@ pub fn readings_at_rest(
     rate_hz: f64,
 ) -> Result<AtRest, Unfit> {
     let samples = readings.first().map_or(0, Vec::len);
-    let all: Vec<usize> = (0..readings.len()).collect();
-    let plant = Plant::new(s, &all, dynamics, noise);
-    let kernel = Kernel::new(&plant, rate_hz)?;
-    let stretches = stretches(readings, samples);
-    let judged = judged(&plant, &kernel, readings, &stretches, rate_hz);
-    let (reach, noise_share) = (kernel.reach, kernel.noise_share);
-    let excess = kernel.excess.iter();
-    let load_variance = match judged.error.is_empty() {
-        true => excess.map(|e| e * noise * noise).collect(),
-        false => excess
-            .zip(&judged.error)
-            .map(|(e, d)| e * noise * noise + d)
-            .collect(),
+    let stretches = Stretches::of(readings, samples);
+    let mut left = MOST_NUMBERS;
+    let mut kernel_of = |used: &[usize]| -> Result<Kernel, Unfit> {
+        let kernel = Kernel::new(&Plant::new(s, used, dynamics, noise), rate_hz, left)?;
+        left -= kernel.numbers;
+        Ok(kernel)
     };
-    let mut kernels: BTreeMap<Vec<usize>, Option<Kernel>> = BTreeMap::new();
-    kernels.insert(all, Some(kernel));
+    let mut kernels = Vec::with_capacity(MOST_SETS);
+    for (i, used) in stretches.sets.iter().take(MOST_SETS).enumerate() {
+        let kernel = kernel_of(used);
+        // Gauges that tell too little leave their samples blank, as they do at rest; all together have to tell the loads.
+        kernels.push(if i == 0 { Some(kernel?) } else { kernel.ok() });
+    }
+    let whole = kernels.first().and_then(Option::as_ref);
+    let (reach, noise_share) = whole.map_or((0, 0.0), |k| {
+        (k.reach, k.noise.trace() / readings.len().max(1) as f64)
+    });
+    let mut doubt = Doubt::new(readings.len(), samples, window(dynamics, rate_hz));
+    for (used, kernel) in stretches.sets.iter().zip(&kernels) {
+        let Some(kernel) = kernel else { continue };
+        let variance = noise * noise;
+        doubt.add_noise(used, &(&kernel.noise * variance), noise_share * variance);
+    }
     let mut out = vec![vec![f64::NAN; samples]; readings.len()];
-    let mut known = 0;
-    let mut read = 0;
-    for (used, span) in stretches.into_iter().filter(|s| !s.0.is_empty()) {
+    let mut squares = Squares::new(s.loads.len());
+    let (mut read, mut known, mut could) = (0, 0, 0);
+    for (set, span) in &stretches.list {
         read += span.len();
-        if !kernels.contains_key(&used) {
-            if kernels.len() == MOST_SETS {
-                continue;
-            }
-            let plant = Plant::new(s, &used, dynamics, noise);
-            // Gauges that tell too little leave their samples blank, as they do at rest.
-            kernels.insert(used.clone(), Kernel::new(&plant, rate_hz).ok());
-        }
-        let Some(Some(kernel)) = kernels.get(&used) else {
+        let Some(Some(kernel)) = kernels.get(*set) else {
             continue;
         };
+        could += span.len();
+        let used = &stretches.sets[*set];
         let from: Vec<&[f64]> = used.iter().map(|g| &*readings[*g]).collect();
-        kernel.apply(&from, span, |first, block| {
-            for (g, values) in used.iter().zip(block) {
-                out[*g][first..first + values.len()].copy_from_slice(values);
+        kernel.apply(&from, span, |block| {
+            for (g, values) in used.iter().zip(&block.readings) {
+                out[*g][block.first..block.first + values.len()].copy_from_slice(values);
             }
-            known += block.first().map_or(0, Vec::len);
+            known += block.readings.first().map_or(0, Vec::len);
+            doubt.add(used, block, squares.add(block));
         });
     }
+    doubt.settle();
+    let (motion, load) = squares.means();
     Ok(AtRest {
         readings: out,
-        blank: read - known,
+        read,
+        known,
+        blank: could - known,
         reach,
         noise_share,
-        load_variance,
-        motion: judged.motion,
-        load: judged.load,
+        doubt,
+        motion,
+        load,
     })
 }
 
-/// Stretches in which the same gauges read.
-fn stretches(readings: &[Vec<f64>], samples: usize) -> Vec<(Vec<usize>, Range<usize>)> {
-    let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
-    let mut out = Vec::new();
-    let mut first = 0;
-    for i in 1..=samples {
-        if i < samples && reads(i).eq(reads(first)) {
-            continue;
-        }
-        let used = reads(first).enumerate().filter(|(_, r)| *r).map(|(g, _)| g);
-        out.push((used.collect(), first..i));
-        first = i;
-    }
-    out
+/// Samples over which errors are taken together: a period of the highest frequency wanted.
+pub fn window(dynamics: &Dynamics, rate_hz: f64) -> usize {
+    ((rate_hz / dynamics.up_to_hz) as usize).max(1)
 }
 
-/// The doubt, on stretches in which all gauges read; empty where none is long enough.
-fn judged(
-    plant: &Plant<'_>,
-    kernel: &Kernel,
-    readings: &[Vec<f64>],
-    stretches: &[(Vec<usize>, Range<usize>)],
-    rate_hz: f64,
-) -> Doubt {
-    let whole = |s: &&(Vec<usize>, Range<usize>)| s.0.len() == readings.len();
-    let longest = stretches.iter().filter(whole).map(|s| s.1.len()).max();
-    let longest = longest.unwrap_or(0);
-    if longest < 4 {
-        return Doubt::default();
+impl Stretches {
+    /// Stretches in which the same gauges read.
+    fn of(readings: &[Vec<f64>], samples: usize) -> Self {
+        let reads = |i: usize| readings.iter().map(move |c| c[i].is_finite());
+        let mut numbers: BTreeMap<Vec<bool>, usize> = BTreeMap::new();
+        numbers.insert(vec![true; readings.len()], 0);
+        // The set of all gauges comes first, however seldom they all read.
+        let mut lengths = vec![usize::MAX];
+        let mut list = Vec::new();
+        let mut first = 0;
+        for i in 1..=samples {
+            if i < samples && reads(i).eq(reads(first)) {
+                continue;
+            }
+            if reads(first).any(|r| r) {
+                let next = numbers.len();
+                let set = *numbers.entry(reads(first).collect()).or_insert(next);
+                lengths.resize(lengths.len().max(set + 1), 0);
+                lengths[set] = lengths[set].saturating_add(i - first);
+                list.push((set, first..i));
+            }
+            first = i;
+        }
+        let mut order: Vec<usize> = (0..lengths.len()).collect();
+        order.sort_by_key(|set| std::cmp::Reverse(lengths[*set]));
+        let mut place = vec![0; order.len()];
+        (0..).zip(&order).for_each(|(i, set)| place[*set] = i);
+        let mut sets = vec![Vec::new(); order.len()];
+        for (reads, set) in numbers {
+            sets[place[set]] = (0..reads.len()).filter(|g| reads[*g]).collect();
+        }
+        list.iter_mut().for_each(|(set, _)| *set = place[*set]);
+        Self { sets, list }
     }
-    // The largest power of two that fits, up to the length of the filter's transform.
-    let length = ((longest / 2 + 1).next_power_of_two()).min(kernel.length());
-    let firsts: Vec<usize> = stretches
-        .iter()
-        .filter(whole)
-        .flat_map(|s| (s.1.start..(s.1.end + 1).saturating_sub(length)).step_by(length))
-        .collect();
-    let taken = firsts.len().min(JUDGED);
-    let spread: Vec<Vec<&[f64]>> = (0..taken)
-        .map(|i| firsts[i * firsts.len() / taken])
-        .map(|first| readings.iter().map(|c| &c[first..first + length]).collect())
-        .collect();
-    let at_rest = plant.gain_at_rest();
-    at_rest
-        .and_then(|rest| doubt(plant, &rest, &spread, rate_hz))
-        .unwrap_or_default()
+}
+
+impl Squares {
+    fn new(k: usize) -> Self {
+        Self {
+            told: 0.0,
+            motion: vec![0.0; k],
+            load: vec![0.0; k],
+            sum: vec![0.0; k],
+        }
+    }
+
+    /// Adds those of a block; of how many samples.
+    fn add(&mut self, block: &Block) -> usize {
+        let told = block.loads.first().map_or(0, Vec::len);
+        self.told += told as f64;
+        for (l, (moves, load)) in block.motion.iter().zip(&block.loads).enumerate() {
+            self.motion[l] += moves.iter().map(|v| v * v).sum::<f64>();
+            self.load[l] += load.iter().map(|v| v * v).sum::<f64>();
+            self.sum[l] += load.iter().sum::<f64>();
+        }
+        told
+    }
+
+    /// Mean squares of what loads are off by, and of the loads less their means.
+    fn means(&self) -> (Vec<f64>, Vec<f64>) {
+        let load = self.load.iter().zip(&self.sum);
+        let load = load.map(|(q, s)| (q / self.told - (s / self.told).powi(2)).max(0.0));
+        let known = |v: f64| if self.told > 0.0 { v } else { f64::NAN };
+        (
+            self.motion.iter().map(|q| q / self.told).collect(),
+            load.map(known).collect(),
+        )
+    }
 }

@@ -1,115 +1,159 @@
-//! What frequencies and damping that are not known exactly put into the loads of a record, and what motion makes of them.
+//! What readings at rest are off by, over a record.
 
-use super::plant::Plant;
-use super::types::BAND_END;
-use crate::linalg::complex::ComplexMatrix;
-use crate::linalg::{Complex, Matrix};
-use crate::series::plans::forward;
-use rayon::prelude::*;
-use std::f64::consts::PI;
+use super::block::Block;
+use crate::linalg::Matrix;
 
-/// Mean squares by load of S, over stretches of a record.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Doubt {
-    /// Of the error that one standard deviation of every mode's frequency and of its damping makes.
-    pub error: Vec<f64>,
-    /// Of what loads recovered as if at rest are off by.
-    pub motion: Vec<f64>,
-    /// Of the loads, their means left out.
-    pub load: Vec<f64>,
+/// Covariance of readings at rest beyond that of noise of one variance at every gauge, strain^2.
+///
+/// `N - v 1` of the noise as the filter passes it, by the gauges that read, and of the motion `sum_j e_j e_j'`: what one standard deviation of
+/// each mode's frequency and of its damping, and modes that are not told, put into the readings, a mean square for every window of time. The
+/// errors of one mode stand in all gauges and loads together, and in all samples.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// Gauges.
+    n: usize,
+    /// Samples of a window.
+    window: usize,
+    /// Lower triangle by rows, by window.
+    motion: Vec<f64>,
+    /// Samples behind each window.
+    told: Vec<f64>,
+    /// The same of all windows.
+    mean: Vec<f64>,
+    /// Gauges that read, and their noise, `n_used x n_used`; the gauges that read most often first.
+    noise: Vec<(Vec<usize>, Matrix)>,
 }
 
-/// Of stretches of one length (a power of two), a channel each, sampled at `rate_hz`. `None` where a frequency can't be told.
-pub(super) fn doubt(
-    plant: &Plant<'_>,
-    at_rest: &Matrix,
-    stretches: &[Vec<&[f64]>],
-    rate_hz: f64,
-) -> Option<Doubt> {
-    let length = stretches.first()?.first()?.len();
-    let end_hz = BAND_END * plant.dynamics().up_to_hz;
-    let n_bins = ((end_hz / rate_hz * length as f64) as usize + 1).min(length / 2 + 1);
-    let spectra: Vec<Vec<Vec<Complex<f64>>>> = stretches
-        .par_iter()
-        .map(|channels| channels.iter().map(|c| tapered(c)).collect())
-        .collect();
-    let rest = at_rest.map(|v| Complex::new(v, 0.0));
-    let of_bin = |b: usize| {
-        let hz = b as f64 * rate_hz / length as f64;
-        let readings = spectra.iter().map(|channels| {
-            let n = plant.n_gauges();
-            ComplexMatrix::from_fn(n, 1, |g, _| channels[g][b] * plant.band(hz))
-        });
-        bin(plant, hz, &rest, readings)
-    };
-    let bins: Vec<Doubt> = (1..n_bins)
-        .into_par_iter()
-        .map(of_bin)
-        .collect::<Option<_>>()?;
-    // Both signs of every frequency; the taper leaves three eighths of the power.
-    let scale = 2.0 / (0.375 * (length as f64).powi(2) * stretches.len() as f64);
-    let mean = |part: fn(&Doubt) -> &Vec<f64>| -> Vec<f64> {
-        let of_load = |l: usize| scale * bins.iter().map(|b| part(b)[l]).sum::<f64>();
-        (0..plant.n_loads()).map(of_load).collect()
-    };
-    Some(Doubt {
-        error: mean(|d| &d.error),
-        motion: mean(|d| &d.motion),
-        load: mean(|d| &d.load),
-    })
+/// Covariance of the readings of one sample beyond that of independent noise, by gauge of S, `n x n`, strain^2.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beyond {
+    /// Of noise, anew in every sample.
+    pub noise: Matrix,
+    /// Of errors that all samples share.
+    pub shared: Matrix,
 }
 
-/// The squares at one frequency.
-fn bin(
-    plant: &Plant<'_>,
-    hz: f64,
-    at_rest: &ComplexMatrix,
-    readings: impl Iterator<Item = ComplexMatrix>,
-) -> Option<Doubt> {
-    let k = plant.n_loads();
-    let d = plant.dynamics();
-    let gain = plant.gain(hz)?;
-    let of_motion = &gain * &plant.shapes;
-    let moved_by = plant.moved_by(&gain);
-    let mut out = Doubt {
-        error: vec![0.0; k],
-        motion: vec![0.0; k],
-        load: vec![0.0; k],
-    };
-    let answers: Vec<f64> = (0..plant.n_modes())
-        .map(|j| {
-            let a = plant.answer(j, hz);
-            (a.by_frequency * d.frequency_sd).norm_sqr() + (a.by_damping * d.damping_sd).norm_sqr()
-        })
-        .collect();
-    for y in readings {
-        let loads = &gain * &y;
-        let change = at_rest * &y - &loads;
-        let moved = &moved_by * &y;
-        for l in 0..k {
-            out.load[l] += loads[l].norm_sqr();
-            out.motion[l] += change[l].norm_sqr();
-            let of_mode = answers.iter().enumerate();
-            out.error[l] += of_mode
-                .map(|(j, a)| a * of_motion[(l, j)].norm_sqr() * moved[j].norm_sqr())
-                .sum::<f64>();
+impl Beyond {
+    /// All of it, of the gauges `used`.
+    pub fn of(&self, used: &[usize]) -> Matrix {
+        let n = used.len();
+        let at = |a: usize, b: usize| (used[a], used[b]);
+        Matrix::from_fn(n, n, |a, b| self.noise[at(a, b)] + self.shared[at(a, b)])
+    }
+}
+
+/// Numbers of the lower triangle of `n` rows.
+pub fn triangle(n: usize) -> usize {
+    n * (n + 1) / 2
+}
+
+impl Doubt {
+    /// Nothing yet, of `n` gauges and so many samples.
+    pub(super) fn new(n: usize, samples: usize, window: usize) -> Self {
+        let windows = samples.div_ceil(window.max(1));
+        Self {
+            n,
+            window: window.max(1),
+            motion: vec![0.0; windows * triangle(n)],
+            told: vec![0.0; windows],
+            mean: vec![0.0; triangle(n)],
+            noise: Vec::new(),
         }
     }
-    Some(out)
-}
 
-/// The transform of a channel less its mean under a Hann taper.
-fn tapered(channel: &[f64]) -> Vec<Complex<f64>> {
-    let n = channel.len();
-    let mean = channel.iter().sum::<f64>() / n as f64;
-    let plan = forward(n);
-    let mut input = plan.make_input_vec();
-    for (i, (v, x)) in input.iter_mut().zip(channel).enumerate() {
-        let taper = 0.5 * (1.0 - (2.0 * PI * i as f64 / n as f64).cos());
-        *v = taper * (x - mean);
+    /// Adds the noise of readings of the gauges `used`, less that of noise of the variance `share`.
+    pub(super) fn add_noise(&mut self, used: &[usize], noise: &Matrix, share: f64) {
+        let n = used.len();
+        self.noise
+            .push((used.to_vec(), noise - Matrix::identity(n, n) * share));
     }
-    let mut out = plan.make_output_vec();
-    let done = plan.process(&mut input, &mut out);
-    debug_assert!(done.is_ok());
-    out
+
+    /// Adds the errors of a block of the gauges `used`.
+    pub(super) fn add(&mut self, used: &[usize], block: &Block, n_told: usize) {
+        let size = triangle(self.n);
+        for i in 0..n_told {
+            let at = (block.first_told + i * block.step) / self.window;
+            let Some(told) = self.told.get_mut(at) else {
+                continue;
+            };
+            *told += 1.0;
+            let sums = &mut self.motion[at * size..(at + 1) * size];
+            for by_gauge in &block.errors {
+                for (a, [x, y]) in used.iter().zip(by_gauge) {
+                    for (b, [u, v]) in used.iter().zip(by_gauge).take_while(|(b, _)| *b <= a) {
+                        sums[triangle(*a) + b] += 0.5 * (x[i] * u[i] + y[i] * v[i]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Sums become means.
+    pub(super) fn settle(&mut self) {
+        let size = triangle(self.n);
+        let all: f64 = self.told.iter().sum();
+        for (sums, told) in self.motion.chunks_exact_mut(size.max(1)).zip(&self.told) {
+            for (mean, sum) in self.mean.iter_mut().zip(sums) {
+                *mean += *sum / all.max(1.0);
+                *sum /= told.max(1.0);
+            }
+        }
+    }
+
+    /// The motion's part at a sample: of its window, or of the nearest of which something is told.
+    fn motion_at(&self, sample: usize) -> &[f64] {
+        let size = triangle(self.n);
+        let (at, windows) = (sample / self.window, self.told.len());
+        let near = (0..windows).flat_map(|d| [at.checked_sub(d), at.checked_add(d)]);
+        let told = |w: &usize| self.told.get(*w).is_some_and(|t| *t > 0.0);
+        match near.flatten().find(told) {
+            Some(w) => &self.motion[w * size..(w + 1) * size],
+            None => &self.mean,
+        }
+    }
+
+    /// Variance that motion gives to what `weights` make of the gauges `used`, at a sample; over the record where that is `None`.
+    pub fn of_motion(&self, sample: Option<usize>, used: &[usize], weights: &[f64]) -> f64 {
+        let part = sample.map_or(&*self.mean, |i| self.motion_at(i));
+        let mut sum = 0.0;
+        for (a, x) in used.iter().zip(weights) {
+            for (b, y) in used.iter().zip(weights).take_while(|(b, _)| *b < a) {
+                sum += 2.0 * x * y * part[triangle(*a) + b];
+            }
+            sum += x * x * part[triangle(*a) + a];
+        }
+        sum.max(0.0)
+    }
+
+    /// The noise's part of readings of the gauges `used`, `n_used x n_used`: that of the gauges that read where these are all, else of the largest
+    /// set of gauges that holds them; nothing where none does.
+    pub fn of_noise(&self, used: &[usize]) -> Matrix {
+        let n = used.len();
+        let own = self.noise.iter().find(|(set, _)| set == used);
+        let holds = |set: &[usize]| used.iter().all(|g| set.binary_search(g).is_ok());
+        let Some((set, noise)) = own.or_else(|| self.noise.iter().find(|(set, _)| holds(set)))
+        else {
+            return Matrix::zeros(n, n);
+        };
+        let at: Vec<usize> = used
+            .iter()
+            .filter_map(|g| set.binary_search(g).ok())
+            .collect();
+        Matrix::from_fn(n, n, |a, b| noise[(at[a], at[b])])
+    }
+
+    /// Both parts at a sample in which the gauges `used` read.
+    pub fn beyond(&self, sample: usize, used: &[usize]) -> Beyond {
+        let own = self.of_noise(used);
+        let mut noise = Matrix::zeros(self.n, self.n);
+        let mut shared = Matrix::zeros(self.n, self.n);
+        let part = self.motion_at(sample);
+        for (i, &a) in used.iter().enumerate() {
+            for (j, &b) in used.iter().enumerate() {
+                noise[(a, b)] = own[(i, j)];
+                shared[(a, b)] = part[triangle(a.max(b)) + a.min(b)];
+            }
+        }
+        Beyond { noise, shared }
+    }
 }

@@ -1,209 +1,237 @@
 //! The filter that puts readings at rest, and how far round a sample it reaches.
 
 use super::plant::Plant;
-use super::types::{BAND_END, Unfit};
+use super::types::{BAND_END, Dynamics, Unfit};
 use crate::linalg::complex::ComplexMatrix;
 use crate::linalg::{Complex, Matrix};
-use crate::series::plans::{forward, inverse};
+use crate::series::plans::inverse;
 use rayon::prelude::*;
-use std::ops::Range;
 
 /// Share of the filter's weight that may lie beyond its reach: an error of a thousandth of what the loads were there.
 const BEYOND: f64 = 1e-3;
 /// Longest transform, samples.
 const LONGEST: usize = 1 << 20;
-/// Numbers that a filter may hold: 256 MB.
-const MOST_NUMBERS: usize = 16_000_000;
 /// Samples of the first transform that is tried, in periods of the highest frequency wanted.
 const PERIODS: f64 = 16.0;
 /// Share of a transform that the reach may take at either side.
 const SIDE: usize = 8;
-/// Blocks in memory at a time.
-const GROUP: usize = 16;
+/// Share of the variance that all modes make of a reading at some frequency, under which a mode is left out there: all that are left out come to
+/// less than a hundredth of a standard deviation where there are twenty.
+const WORTH_ITS_TIME: f64 = 1e-3;
+
+/// Frequencies whose noise is added up together.
+const TOGETHER: usize = 256;
 
 /// `T(w) = B (1 - Psi a C G)`, `n x n`, a matrix a frequency.
 pub(super) struct Kernel {
     /// Samples of a transform.
-    length: usize,
+    pub length: usize,
     /// Samples to either side that a sample at rest hangs on.
     pub reach: usize,
-    bins: Vec<Bin>,
-    shapes: ComplexMatrix,
-    /// Variance of a reading at rest over that of a reading, mean of the gauges.
-    pub noise_share: f64,
-    /// By load: variance of what readings at rest make of it beyond that of readings with `noise_share` of the variance, for noise of variance 1.
-    pub excess: Vec<f64>,
+    pub bins: Vec<Bin>,
+    /// By mode that errs: what a unit of each load moves it by at rest, `C`.
+    pub moved: Vec<Vec<f64>>,
+    /// The static gain, `k x n`.
+    pub at_rest: Matrix,
+    /// Covariance of readings at rest for noise of variance 1, `n x n`.
+    pub noise: Matrix,
+    /// Numbers that it holds.
+    pub numbers: usize,
 }
 
 /// A frequency.
-struct Bin {
+pub(super) struct Bin {
     /// B.
-    band: f64,
-    /// B a C G: what each mode moves beyond its answer at rest, `m x n`.
-    motion: ComplexMatrix,
+    pub band: f64,
+    /// G, `k x n`.
+    pub gain: ComplexMatrix,
+    /// What motion adds to the strain of unit loads, B Psi a C, `n x k`.
+    pub added: ComplexMatrix,
+    /// By mode that errs: what readings at rest are off by where it answers 1 more than is taken, `T psi`.
+    pub spread: Vec<Vec<Complex<f64>>>,
+    /// By mode that errs: what it answers more where its frequency, and its damping, is one standard deviation higher.
+    pub errors: Vec<[Complex<f64>; 2]>,
+    /// What readings at rest are off by for unit loads where the modes that are not told answer, `T (S - Psi C) a`, `n x k`; none where there are none.
+    pub further: Option<ComplexMatrix>,
+}
+
+impl Bin {
+    /// `T x` of strain `x`, columns by columns.
+    fn rested(&self, x: &ComplexMatrix) -> ComplexMatrix {
+        x * Complex::new(self.band, 0.0) - &self.added * (&self.gain * x)
+    }
 }
 
 impl Kernel {
-    /// For samples at `rate_hz`.
+    /// For samples at `rate_hz`, of `most_numbers` numbers at most.
     ///
     /// # Errors
     /// See [`Unfit`].
-    pub fn new(plant: &Plant<'_>, rate_hz: f64) -> Result<Self, Unfit> {
+    pub fn new(plant: &Plant<'_>, rate_hz: f64, most_numbers: usize) -> Result<Self, Unfit> {
         let up_to = plant.dynamics().up_to_hz;
         let end_hz = BAND_END * up_to;
         if !(2.0 * end_hz < rate_hz) {
             return Err(Unfit::Rate { rate_hz, end_hz });
         }
+        let narrow = Unfit::Narrow { rate_hz, end_hz };
+        let wanted = PERIODS * rate_hz / up_to;
+        if !(wanted <= LONGEST as f64) {
+            return Err(narrow);
+        }
         let at_rest = plant.gain_at_rest().ok_or(Unfit::Untold { hz: 0.0 })?;
-        let mut length = ((PERIODS * rate_hz / up_to) as usize).next_power_of_two();
+        let first = (wanted as usize).next_power_of_two();
+        let mut length = first;
         loop {
             let n_bins = (end_hz / rate_hz * length as f64) as usize + 1;
-            let numbers = 2 * n_bins * (plant.n_modes() + plant.n_loads()) * plant.n_gauges();
-            if length > LONGEST || numbers > MOST_NUMBERS {
+            let numbers = n_bins.saturating_mul(numbers_of(plant));
+            if length > LONGEST || numbers > most_numbers {
+                if length == first {
+                    return Err(too_large(plant));
+                }
+                if is_narrow(plant, &at_rest, length / 2, rate_hz) {
+                    return Err(narrow);
+                }
                 let seconds = length as f64 / (2 * SIDE) as f64 / rate_hz;
                 return Err(Unfit::Rings { seconds });
             }
+            let hz = |b: usize| b as f64 * rate_hz / length as f64;
             let bins = (0..n_bins)
                 .into_par_iter()
-                .map(|b| bin(plant, b as f64 * rate_hz / length as f64))
+                .map(|b| bin(plant, hz(b)))
                 .collect::<Result<Vec<Bin>, Unfit>>()?;
-            let loads = of_loads(plant, &at_rest, &bins);
+            let loads = of_loads(&at_rest, &bins);
             let reach = reach_of(&loads, length, at_rest.shape());
             if reach <= length / SIDE {
                 let mut kernel = Self {
                     length,
                     reach,
                     bins,
-                    shapes: plant.shapes.clone(),
-                    noise_share: 0.0,
-                    excess: Vec::new(),
+                    moved: Vec::new(),
+                    at_rest,
+                    noise: Matrix::zeros(0, 0),
+                    numbers,
                 };
-                kernel.noise(&loads, &at_rest);
+                kernel.noise = kernel.noise_of();
+                kernel.err(plant, hz);
                 return Ok(kernel);
             }
             length *= 2;
         }
     }
 
-    /// What it does to white noise; `loads` is what it makes of each load.
-    fn noise(&mut self, loads: &[ComplexMatrix], at_rest: &Matrix) {
-        let n = self.shapes.nrows();
+    /// What it does to white noise.
+    fn noise_of(&self) -> Matrix {
+        let n = self.at_rest.ncols();
         let sides = |b: usize| if b == 0 { 1.0 } else { 2.0 } / self.length as f64;
-        let readings = (0..self.bins.len()).into_par_iter().map(|b| {
-            let bin = &self.bins[b];
-            let mut t = -(&self.shapes * &bin.motion);
-            (0..n).for_each(|g| t[(g, g)] += bin.band);
-            sides(b) * t.norm_squared() / n.max(1) as f64
-        });
-        self.noise_share = readings.collect::<Vec<f64>>().iter().sum();
-        let of_load = |l: usize| {
-            let made = loads.iter().enumerate();
-            let made: f64 = made.map(|(b, k)| sides(b) * k.row(l).norm_squared()).sum();
-            (made - self.noise_share * at_rest.row(l).norm_squared()).max(0.0)
+        let of_group = |(group, bins): (usize, &[Bin])| {
+            let mut sum = Matrix::zeros(n, n);
+            for (b, bin) in (group * TOGETHER..).zip(bins) {
+                let t = bin.rested(&ComplexMatrix::identity(n, n));
+                sum += (&t * t.adjoint()).map(|v| v.re * sides(b));
+            }
+            sum
         };
-        self.excess = (0..at_rest.nrows()).map(of_load).collect();
+        let groups = self.bins.par_chunks(TOGETHER).enumerate().map(of_group);
+        let groups: Vec<Matrix> = groups.collect();
+        groups.iter().fold(Matrix::zeros(n, n), |sum, m| sum + m)
     }
 
-    /// Samples of a transform.
-    pub fn length(&self) -> usize {
-        self.length
-    }
-
-    /// The readings `from` of the samples `span`, a channel each, put at rest and handed to `sink` in blocks: first sample, channels. Samples nearer
-    /// than the reach to an end of `span` are left out.
-    pub fn apply(
-        &self,
-        from: &[&[f64]],
-        span: Range<usize>,
-        mut sink: impl FnMut(usize, &[Vec<f64>]),
-    ) {
-        let hop = self.length - 2 * self.reach;
-        let firsts: Vec<usize> = (span.start + self.reach..span.end.saturating_sub(self.reach))
-            .step_by(hop)
-            .collect();
-        for group in firsts.chunks(GROUP) {
-            let done: Vec<Vec<Vec<f64>>> = group
-                .par_iter()
-                .map(|first| {
-                    let to = (first + hop).min(span.end - self.reach);
-                    self.block(from, &span, *first..to)
-                })
+    /// Adds what frequencies and damping that are not known exactly, and modes that are not told, make of the readings at rest.
+    fn err(&mut self, plant: &Plant<'_>, hz: impl Fn(usize) -> f64 + Sync) {
+        let erring = erring(plant, &self.bins, &hz);
+        let d = plant.dynamics();
+        let shapes = ComplexMatrix::from_fn(plant.n_gauges(), erring.len(), |g, j| {
+            plant.shapes[(g, erring[j])]
+        });
+        self.bins.par_iter_mut().enumerate().for_each(|(b, bin)| {
+            let spread = bin.rested(&shapes);
+            bin.spread = spread
+                .column_iter()
+                .map(|c| c.iter().copied().collect())
                 .collect();
-            for (first, block) in group.iter().zip(&done) {
-                sink(*first, block);
-            }
-        }
+            bin.errors = erring
+                .iter()
+                .map(|j| errors_of(plant, *j, hz(b), d))
+                .collect();
+            let rest = || bin.rested(&plant.rest) * plant.further(hz(b));
+            bin.further = d.further_hz.map(|_| rest());
+        });
+        self.moved = erring.iter().map(|j| plant.moved(*j)).collect();
     }
+}
 
-    /// The samples `wanted`, from those up to the reach round them.
-    fn block(&self, from: &[&[f64]], span: &Range<usize>, wanted: Range<usize>) -> Vec<Vec<f64>> {
-        let begin = wanted.start - self.reach;
-        let plan = forward(self.length);
-        let spectra: Vec<Vec<Complex<f64>>> = from
+/// What mode `j` answers more where its frequency, and its damping, is one standard deviation higher.
+fn errors_of(plant: &Plant<'_>, j: usize, hz: f64, d: &Dynamics) -> [Complex<f64>; 2] {
+    let a = plant.answer(j, hz);
+    [a.by_frequency * d.frequency_sd, a.by_damping * d.damping_sd]
+}
+
+/// The modes whose errors are worth their time.
+fn erring(plant: &Plant<'_>, bins: &[Bin], hz: &(impl Fn(usize) -> f64 + Sync)) -> Vec<usize> {
+    let moved: Vec<Vec<f64>> = (0..plant.n_modes()).map(|j| plant.moved(j)).collect();
+    let of_bin = |(b, bin): (usize, &Bin)| -> Vec<bool> {
+        let spread = bin.rested(&plant.shapes);
+        let of_mode = |(j, c): (usize, &Vec<f64>)| {
+            let by = ComplexMatrix::from_fn(1, c.len(), |_, l| Complex::new(c[l], 0.0)) * &bin.gain;
+            let [f, z] = errors_of(plant, j, hz(b), plant.dynamics());
+            spread.column(j).norm_squared() * by.norm_squared() * (f.norm_sqr() + z.norm_sqr())
+        };
+        let variances: Vec<f64> = moved.iter().enumerate().map(of_mode).collect();
+        let all: f64 = variances.iter().sum();
+        variances
             .iter()
-            .map(|channel| {
-                let mut input = plan.make_input_vec();
-                let last = span.end - 1;
-                // Beyond the end of the stretch nothing that is wanted reaches.
-                let sample = |i: usize| channel[(begin + i).min(last)];
-                input
-                    .iter_mut()
-                    .enumerate()
-                    .for_each(|(i, v)| *v = sample(i));
-                let mut out = plan.make_output_vec();
-                let done = plan.process(&mut input, &mut out);
-                debug_assert!(done.is_ok());
-                out
-            })
-            .collect();
-        let back = inverse(self.length);
-        let mut bins: Vec<Vec<Complex<f64>>> = spectra
-            .iter()
-            .map(|s| vec![Complex::default(); s.len()])
-            .collect();
-        let mut motion = vec![Complex::default(); self.shapes.ncols()];
-        for (b, bin) in self.bins.iter().enumerate() {
-            for (j, m) in motion.iter_mut().enumerate() {
-                let row = bin.motion.row(j);
-                *m = row.iter().zip(&spectra).map(|(w, s)| w * s[b]).sum();
-            }
-            for (g, out) in bins.iter_mut().enumerate() {
-                let moved = self.shapes.row(g);
-                let moved: Complex<f64> = moved.iter().zip(&motion).map(|(w, m)| w * m).sum();
-                out[b] = spectra[g][b] * bin.band - moved;
-            }
-        }
-        let scale = 1.0 / self.length as f64;
-        bins.iter_mut()
-            .map(|bins| {
-                bins[0].im = 0.0;
-                let mut out = back.make_output_vec();
-                let done = back.process(bins, &mut out);
-                debug_assert!(done.is_ok());
-                let kept = &out[self.reach..self.reach + wanted.len()];
-                kept.iter().map(|v| v * scale).collect()
-            })
+            .map(|v| *v > WORTH_ITS_TIME * all)
             .collect()
+    };
+    let by_bin: Vec<Vec<bool>> = bins.par_iter().enumerate().map(of_bin).collect();
+    let errs = |j: &usize| by_bin.iter().any(|b| b[*j]);
+    (0..plant.n_modes()).filter(errs).collect()
+}
+
+/// Real numbers that a frequency takes.
+fn numbers_of(plant: &Plant<'_>) -> usize {
+    let (n, k, m) = (plant.n_gauges(), plant.n_loads(), plant.n_modes());
+    2 * (3 * n * k + n * m + 2 * m)
+}
+
+fn too_large(plant: &Plant<'_>) -> Unfit {
+    Unfit::Large {
+        gauges: plant.n_gauges(),
+        loads: plant.n_loads(),
+        modes: plant.n_modes(),
     }
+}
+
+/// Whether the band alone, whatever the structure, reaches farther than a transform of `length` allows.
+fn is_narrow(plant: &Plant<'_>, at_rest: &Matrix, length: usize, rate_hz: f64) -> bool {
+    let n_bins = (BAND_END * plant.dynamics().up_to_hz / rate_hz * length as f64) as usize + 1;
+    let of_bin = |b: usize| {
+        let band = plant.band(b as f64 * rate_hz / length as f64);
+        at_rest.map(|v| Complex::new(v * band, 0.0))
+    };
+    let loads: Vec<ComplexMatrix> = (0..n_bins).map(of_bin).collect();
+    reach_of(&loads, length, at_rest.shape()) > length / SIDE
 }
 
 fn bin(plant: &Plant<'_>, hz: f64) -> Result<Bin, Unfit> {
     let band = plant.band(hz);
-    let gain = plant.gain(hz).ok_or(Unfit::Untold { hz })?;
-    let mut motion = plant.moved_by(&gain);
-    for j in 0..plant.n_modes() {
-        let added = plant.answer(j, hz).added * band;
-        motion.row_mut(j).iter_mut().for_each(|v| *v *= added);
-    }
-    Ok(Bin { band, motion })
+    let added = plant.added(hz);
+    let gain = plant.gain(&added).ok_or(Unfit::Untold { hz })?;
+    Ok(Bin {
+        band,
+        gain,
+        added: added * Complex::new(band, 0.0),
+        spread: Vec::new(),
+        errors: Vec::new(),
+        further: None,
+    })
 }
 
 /// What the filter and the static gain after it make of readings, `k x n` a frequency.
-fn of_loads(plant: &Plant<'_>, at_rest: &Matrix, bins: &[Bin]) -> Vec<ComplexMatrix> {
+fn of_loads(at_rest: &Matrix, bins: &[Bin]) -> Vec<ComplexMatrix> {
     let gain = at_rest.map(|v| Complex::new(v, 0.0));
-    let of_shapes = &gain * &plant.shapes;
     bins.par_iter()
-        .map(|b| &gain * Complex::new(b.band, 0.0) - &of_shapes * &b.motion)
+        .map(|b| &gain * Complex::new(b.band, 0.0) - (&gain * &b.added) * &b.gain)
         .collect()
 }
 

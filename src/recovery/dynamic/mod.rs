@@ -16,13 +16,15 @@
 //! R. E. Cornwell, R. R. Craig, C. P. Johnson, On the application of the mode-acceleration method to structural engineering problems, Earthquake
 //! Engineering and Structural Dynamics 11 (1983) 679.
 
+mod block;
 mod correct;
 mod doubt;
 mod kernel;
 mod plant;
 mod types;
 
-pub use correct::{AtRest, readings_at_rest};
+pub use correct::{AtRest, readings_at_rest, window};
+pub use doubt::{Beyond, Doubt, triangle};
 pub use types::{Dynamics, ElasticMode, Unfit};
 
 #[cfg(test)]

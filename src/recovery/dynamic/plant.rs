@@ -13,8 +13,10 @@ pub(super) struct Plant<'a> {
     s: ComplexMatrix,
     /// Strain of the modes' shapes, `n x m`.
     pub shapes: ComplexMatrix,
-    /// What a unit load moves each mode by at rest, `m x k`.
+    /// What a unit load moves each mode by at rest, `C`, `m x k`.
     moved: ComplexMatrix,
+    /// Strain of unit loads at rest that these modes don't hold, `S - Psi C`, `n x k`.
+    pub rest: ComplexMatrix,
     /// Variance of the noise over that of each load, 0 for loads without a stated size.
     ridge: Vec<f64>,
 }
@@ -36,13 +38,16 @@ impl<'a> Plant<'a> {
         let real = |v: f64| Complex::new(v, 0.0);
         let omega2 = |j: usize| (2.0 * PI * modes[j].hz).powi(2);
         let ridge = |prior: Option<f64>| prior.map_or(0.0, |p| (noise / p).powi(2));
+        let at_rest = ComplexMatrix::from_fn(n, k, |g, l| real(s.values[(used[g], l)]));
+        let shapes = ComplexMatrix::from_fn(n, modes.len(), |g, j| real(modes[j].strain[used[g]]));
+        let moved =
+            ComplexMatrix::from_fn(modes.len(), k, |j, l| real(modes[j].work[l] / omega2(j)));
         Self {
             dynamics,
-            s: ComplexMatrix::from_fn(n, k, |g, l| real(s.values[(used[g], l)])),
-            shapes: ComplexMatrix::from_fn(n, modes.len(), |g, j| real(modes[j].strain[used[g]])),
-            moved: ComplexMatrix::from_fn(modes.len(), k, |j, l| {
-                real(modes[j].work[l] / omega2(j))
-            }),
+            rest: &at_rest - &shapes * &moved,
+            s: at_rest,
+            shapes,
+            moved,
             ridge: s.priors().into_iter().map(ridge).collect(),
         }
     }
@@ -54,11 +59,10 @@ impl<'a> Plant<'a> {
         0.5 * (1.0 + (PI * share).cos())
     }
 
-    /// What mode `j` answers at a frequency.
-    pub fn answer(&self, j: usize, hz: f64) -> Answer {
-        let zeta = self.dynamics.damping;
-        let r = hz / self.dynamics.modes[j].hz;
-        let damped = Complex::new(0.0, 2.0 * zeta * r);
+    /// What a mode of the frequency `own_hz` answers at a frequency.
+    fn answer_of(&self, own_hz: f64, hz: f64) -> Answer {
+        let r = hz / own_hz;
+        let damped = Complex::new(0.0, 2.0 * self.dynamics.damping * r);
         let x = Complex::new(1.0 - r * r, 0.0) + damped;
         Answer {
             added: x.inv() - 1.0,
@@ -67,19 +71,35 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// The gain at a frequency, `k x n`; `None` where the gauges can't tell the loads apart there.
-    pub fn gain(&self, hz: f64) -> Option<ComplexMatrix> {
-        let mut h = self.s.clone();
-        for j in 0..self.n_modes() {
-            let added = self.answer(j, hz).added;
-            h += self.shapes.column(j) * self.moved.row(j) * added;
-        }
-        least_squares_gain(&h, &self.ridge)
+    /// What mode `j` answers at a frequency.
+    pub fn answer(&self, j: usize, hz: f64) -> Answer {
+        self.answer_of(self.dynamics.modes[j].hz, hz)
     }
 
-    /// What loads recovered by `gain` move each mode by at rest, `m x n`.
-    pub fn moved_by(&self, gain: &ComplexMatrix) -> ComplexMatrix {
-        &self.moved * gain
+    /// What the modes that are not told answer at most beyond their answer at rest: as the first of them; 0 where there are none.
+    pub fn further(&self, hz: f64) -> Complex<f64> {
+        let first = self.dynamics.further_hz;
+        first.map_or(Complex::default(), |own| self.answer_of(own, hz).added)
+    }
+
+    /// What the modes add to the strain of unit loads at rest, `Psi a C`, `n x k`.
+    pub fn added(&self, hz: f64) -> ComplexMatrix {
+        let mut by_load = self.moved.clone();
+        for (j, mut row) in by_load.row_iter_mut().enumerate() {
+            let added = self.answer(j, hz).added;
+            row.iter_mut().for_each(|v| *v *= added);
+        }
+        &self.shapes * by_load
+    }
+
+    /// The gain at a frequency where the modes add `added`, `k x n`; `None` where the gauges can't tell the loads apart there.
+    pub fn gain(&self, added: &ComplexMatrix) -> Option<ComplexMatrix> {
+        least_squares_gain(&(&self.s + added), &self.ridge)
+    }
+
+    /// What a unit of each load moves mode `j` by at rest.
+    pub fn moved(&self, j: usize) -> Vec<f64> {
+        self.moved.row(j).iter().map(|v| v.re).collect()
     }
 
     /// The static gain, `k x n`.

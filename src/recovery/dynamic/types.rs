@@ -19,6 +19,8 @@ pub struct ElasticMode {
 pub struct Dynamics {
     /// Modes that answer otherwise than at rest.
     pub modes: Vec<ElasticMode>,
+    /// Further modes lie from here on, Hz, and what they answer beyond their answer at rest is left to the doubt; `None` where there are none.
+    pub further_hz: Option<f64>,
     /// Loads are wanted up to here, Hz.
     pub up_to_hz: f64,
     /// Damping of every mode, share of critical.
@@ -45,6 +47,28 @@ pub enum Unfit {
     Untold {
         /// Where.
         hz: f64,
+    },
+    /// A band so narrow that its filter takes longer transforms than are reckoned with.
+    #[error(
+        "a band that ends at {end_hz} Hz is too narrow for {rate_hz:.4} samples a second: a sample at rest would hang on hundreds of thousands of others"
+    )]
+    Narrow {
+        /// Rate of the record.
+        rate_hz: f64,
+        /// End of the band.
+        end_hz: f64,
+    },
+    /// A filter of more numbers than are kept.
+    #[error(
+        "the filter of {gauges} gauges, {loads} loads and {modes} modes takes more than 256 MB"
+    )]
+    Large {
+        /// Gauges.
+        gauges: usize,
+        /// Loads.
+        loads: usize,
+        /// Modes.
+        modes: usize,
     },
     /// The reach of a reading exceeds what is reckoned with.
     #[error("a reading at rest would hang on those of more than {seconds:.4} s round it")]

@@ -1,0 +1,179 @@
+//! Errors of frequency, of modes that are not told, and of the gauges that read, against the intervals that are told of them.
+
+use super::{
+    Matrix, N_GAUGES, STRUCTURE, Structure, TAU, Waves, load, load_weights, loads_at, strain,
+    variance, waves,
+};
+use crate::recovery::dynamic::readings_at_rest;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// What intervals of weighted loads hold, the mean square of errors over that which is told, and that, on structures that differ from what is told by
+/// random frequencies. `blank` takes readings out of the record, `judged` says which samples count.
+fn held(
+    weights: [f64; 2],
+    of_loads: impl Fn(&mut ChaCha8Rng) -> Waves,
+    blank: impl Fn(&mut [Vec<f64>]),
+    judged: impl Fn(usize) -> bool,
+) -> [f64; 3] {
+    let mut random = ChaCha8Rng::seed_from_u64(15);
+    let mut normal = || {
+        let (a, b): (f64, f64) = (
+            random.random_range(1e-12..1.0),
+            random.random_range(0.0..TAU),
+        );
+        (-2.0 * a.ln()).sqrt() * b.cos()
+    };
+    let (told, sd, noise, rate, samples) = (STRUCTURE, [0.01, 0.0], 1e-4, 250.0, 1500);
+    let (s, dynamics) = told.told(20.0, sd);
+    let (mut inside, mut all, mut errors, mut variances) = (0, 0, 0.0, 0.0);
+    for trial in 0..100 {
+        let mut real = STRUCTURE;
+        for j in 0..3 {
+            real.hz[j] *= 1.0 + sd[0] * normal();
+            let share = (real.hz[j] / told.hz[j]).powi(2);
+            real.work[j] = real.work[j].map(|w| w * share);
+        }
+        let waves = of_loads(&mut ChaCha8Rng::seed_from_u64(200 + trial));
+        let mut record: Vec<Vec<f64>> = (0..N_GAUGES)
+            .map(|g| {
+                let reading = |i| strain(&real, &waves, g, f64::from(i) / rate) + noise * normal();
+                (0..samples).map(reading).collect()
+            })
+            .collect();
+        blank(&mut record);
+        let rested = readings_at_rest(&s, &dynamics, noise, &record, rate).unwrap();
+        for i in (0..samples as usize).step_by(37).filter(|i| judged(*i)) {
+            let reads = |g: &usize| rested.readings[*g][i].is_finite();
+            let used: Vec<usize> = (0..N_GAUGES).filter(reads).collect();
+            if used.is_empty() {
+                continue;
+            }
+            let rows = Matrix::from_fn(used.len(), 2, |g, l| s.values[(used[g], l)]);
+            let w = rows.pseudo_inverse(1e-12).unwrap().transpose()
+                * crate::linalg::Vector::from_column_slice(&weights);
+            let got: f64 = used
+                .iter()
+                .zip(w.iter())
+                .map(|(g, w)| w * rested.readings[*g][i])
+                .sum();
+            let of_noise = (w.transpose() * rested.doubt.of_noise(&used) * &w)[0];
+            let variance = rested.noise_share * noise * noise * w.norm_squared()
+                + of_noise
+                + rested.doubt.of_motion(Some(i), &used, w.as_slice());
+            let expected: f64 = (0..2)
+                .map(|l| weights[l] * load(&waves[l], i as f64 / rate))
+                .sum();
+            inside += usize::from((got - expected).powi(2) <= 1.96_f64.powi(2) * variance);
+            errors += (got - expected).powi(2);
+            variances += variance;
+            all += 1;
+        }
+    }
+    assert!(all > 300, "{all}");
+    let all = all as f64;
+    [inside as f64 / all, errors / variances, variances / all]
+}
+
+fn shaken(random: &mut ChaCha8Rng) -> Waves {
+    waves(
+        [&[1.0, 3.1, 6.2, 10.7, 17.0], &[0.7, 4.9, 9.8, 15.1, 18.9]],
+        random,
+    )
+}
+
+/// Errors of one mode's frequency stand in all loads together: sums and differences of loads take them as they are.
+#[test]
+fn intervals_of_sums_of_loads_hold_what_one_mode_puts_into_all() {
+    for weights in [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]] {
+        let [share, squares, _] = held(weights, shaken, |_| (), |_| true);
+        // As above; the mean square of 100 structures scatters by 14 % and by what their loads differ in, three times that.
+        assert!((0.90..=0.99).contains(&share), "{weights:?} {share}");
+        assert!((0.55..=1.6).contains(&squares), "{weights:?} {squares}");
+    }
+}
+
+/// Gauges of which some read in one half, others in the other half, and never all: each set has its own errors.
+#[test]
+fn intervals_hold_for_the_gauges_that_read() {
+    let halves = |record: &mut [Vec<f64>]| {
+        record[0][..750].fill(f64::NAN);
+        record[3][..750].fill(f64::NAN);
+        record[1][750..].fill(f64::NAN);
+    };
+    for part in [0..750, 750..1500] {
+        for weights in [[1.0, 0.0], [0.0, 1.0]] {
+            let [share, squares, _] = held(weights, shaken, halves, |i| part.contains(&i));
+            assert!(
+                (0.90..=0.99).contains(&share),
+                "{part:?} {weights:?} {share}"
+            );
+            assert!(
+                (0.5..=1.7).contains(&squares),
+                "{part:?} {weights:?} {squares}"
+            );
+        }
+    }
+}
+
+/// A record that rests, and shakes for a second: intervals are wide where it shakes, and narrow where it rests.
+#[test]
+fn intervals_follow_a_record_that_rests_and_then_shakes() {
+    // Waves .1 Hz apart that meet at 3 s: a Gaussian of .3 s, which comes again at 13 s.
+    let burst = |_: &mut ChaCha8Rng| -> Waves {
+        [7.0, 9.0].map(|f0| {
+            let wave = |m: i32| {
+                let off = 0.1 * f64::from(m);
+                let size = 0.2 * (-0.5 * (TAU * 0.3 * off).powi(2)).exp();
+                [size, f0 + off, -TAU * (f0 + off) * 3.0]
+            };
+            (-20..=20).map(wave).collect()
+        })
+    };
+    let shakes = |i: usize| (i as f64 / 250.0 - 3.0).abs() < 0.3;
+    let rests = |i: usize| i < 375;
+    for weights in [[1.0, 0.0], [0.0, 1.0]] {
+        let [share, squares, wide] = held(weights, burst, |_| (), shakes);
+        assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
+        assert!((0.4..=2.0).contains(&squares), "{weights:?} {squares}");
+        let [share, _, narrow] = held(weights, burst, |_| (), rests);
+        assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
+        // The burst is a Gaussian of .3 s: five of its widths before it there is noise alone.
+        assert!(narrow < 0.01 * wide, "{weights:?} {narrow} {wide}");
+    }
+}
+
+/// A mode at three times the band that is not among those that are told: what it answers is an eighth of its share at the end of the band.
+#[test]
+fn what_modes_that_are_not_told_answer_is_in_the_intervals() {
+    let real = Structure {
+        hz: [8.0, 13.0, 31.0, 60.0],
+        ..STRUCTURE
+    };
+    let (s, mut dynamics) = real.told(20.0, [0.0, 0.0]);
+    let waves = shaken(&mut ChaCha8Rng::seed_from_u64(8));
+    let of_gauge = |g| {
+        let reading = |i| strain(&real, &waves, g, f64::from(i) / 250.0);
+        (0..1500).map(reading).collect()
+    };
+    let record: Vec<Vec<f64>> = (0..N_GAUGES).map(of_gauge).collect();
+    let mut holds = |further_hz| {
+        dynamics.further_hz = further_hz;
+        let rested = readings_at_rest(&s, &dynamics, 0.0, &record, 250.0).unwrap();
+        let (mut inside, mut all) = (0, 0);
+        for i in rested.reach..1500 - rested.reach {
+            let got = loads_at(&s, &rested, i);
+            for l in 0..2 {
+                let error = got[l] - load(&waves[l], i as f64 / 250.0);
+                let sigma = variance(&s, &rested, 0.0, i, &load_weights(&s, l)).sqrt();
+                // A thousandth of what lies in the band is the filter's own.
+                inside += usize::from(error.abs() <= 1.96 * sigma + 1e-3);
+                all += 1;
+            }
+        }
+        inside as f64 / all as f64
+    };
+    // The one mode that is left out lies where it may lie at least, so that the error is the one that is told: its peaks are root 2 of that.
+    assert!(holds(Some(60.0)) > 0.99);
+    assert!(holds(None) < 0.5);
+}
