@@ -16,8 +16,8 @@ use crate::recovery::dynamic::{
 use crate::sensitivity::Sensitivity;
 use serde::Serialize;
 
-/// Modes are solved up to this many times the highest frequency wanted at least, and all that are solved are taken. What the next one answers beyond its
-/// answer at rest is an eighth of that at the highest frequency, and a third of it where the band ends; it is left to the doubt.
+/// Modes are solved up to this many times the highest frequency wanted at least, and all that are solved are taken. What the next one answers beyond
+/// its answer at rest is an eighth of that at the highest frequency, and a third of it where the band ends; it is left to the doubt.
 const MODES_UP_TO: f64 = 3.0;
 /// Modes that are looked for at first, and at most.
 const FIRST_MODES: usize = 16;

@@ -23,7 +23,8 @@ pub struct AtRest {
     pub read: usize,
     /// Samples of which a reading at rest is known.
     pub known: usize,
-    /// Samples at the ends of stretches, and in stretches too short to say anything, of which no gauge is known though those that read tell the loads.
+    /// Samples at the ends of stretches, and in stretches too short to say anything, of which no gauge is known though those that read tell the
+    /// loads.
     pub blank: usize,
     /// Samples to either side that a sample at rest hangs on, all gauges reading.
     pub reach: usize,

@@ -51,7 +51,8 @@ pub(super) struct Bin {
     pub spread: Vec<Vec<Complex<f64>>>,
     /// By mode that errs: what it answers more where its frequency, and its damping, is one standard deviation higher.
     pub errors: Vec<[Complex<f64>; 2]>,
-    /// What readings at rest are off by for unit loads where the modes that are not told answer, `T (S - Psi C) a`, `n x k`; none where there are none.
+    /// What readings at rest are off by for unit loads where the modes that are not told answer, `T (S - Psi C) a`, `n x k`; none where there are
+    /// none.
     pub further: Option<ComplexMatrix>,
 }
 
