@@ -89,8 +89,8 @@ const MOST: f64 = 1e30;
 const HALVINGS: usize = 20;
 
 /// The estimate with as much error of its own added to every reading as explains what is left: an unknown pattern over the gauges, larger where
-/// noise, scatter and the uncertainty of S are larger. Added alike for all gauges the loud ones would decide, those beside a wheel, which scatter most; as
-/// a factor on the whole covariance what is left would decide through the patterns that repeats hardly scatter by.
+/// noise, scatter and the uncertainty of S are larger. Added alike for all gauges the loud ones would decide, those beside a wheel, which scatter
+/// most; as a factor on the whole covariance what is left would decide through the patterns that repeats hardly scatter by.
 ///
 /// # Reference
 /// R. DerSimonian and N. Laird, Control. Clin. Trials 7 (1986) 177: excess scatter as a variance added, not as a factor.
