@@ -5,7 +5,7 @@ mod moving;
 mod support;
 
 use moving::generator::{Background, Layout, hide};
-use moving::{Score, frame_of, score};
+use moving::{Score, frame_of, record_of, score};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -412,6 +412,42 @@ fn a_spring_that_stiffens_on_both_sides_is_named_with_its_rate() {
     // One size has one variance: its sigma squared.
     let [sigma, variance] = [o.effects[0].sigma[0], o.covariance[0][0]];
     assert!((variance / (sigma * sigma) - 1.0).abs() < 1e-6, "{effect}");
+}
+
+/// A square and a cube of one stretch are one law of force: what the noisy stretch leaves of a square, up to a fifth of it, looks like a cube, so that
+/// a cube of an eighth of its force is not named. Under the rule for effects that are no such law (a twentieth) it is.
+#[test]
+fn a_second_law_of_one_spring_needs_a_fifth_of_the_force_of_the_first() {
+    let library = ["quadratic_stiffness", "cubic_stiffness"].map(String::from);
+    let case = moving::generator::hide_square_and_cube(Layout::Front, 0.12, 7);
+    let mut frame = frame_of(&case);
+    let tried = |frame: &MotionFrame| -> Vec<String> {
+        let o = examine(frame, &library).unwrap();
+        o.best_attempt.iter().map(|e| e.id.clone()).collect()
+    };
+    assert_eq!(tried(&frame), ["quadratic_stiffness"]);
+    frame.rules.form = frame.rules.next_form;
+    assert_eq!(tried(&frame).len(), 2);
+}
+
+/// An amplifier that read a tenth too much while the record was made and was put right before the second one: the gain explains the first record
+/// and makes the gap of the second larger, so that friction, which both records show, has no gain named beside it.
+#[test]
+fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
+    let library = ["coulomb_friction", "accel_gain"].map(String::from);
+    let case = hide(Layout::Front, "coulomb_friction", 2, Background::Clean, 7);
+    let mut wrong = frame_of(&case);
+    let mut channels = case.data.clone();
+    for (_, samples) in channels.iter_mut().filter(|(name, _)| name == "a_body") {
+        samples.iter_mut().for_each(|v| *v *= 1.1);
+    }
+    wrong.data = record_of(case.rate_hz, &channels);
+    let o = examine(&wrong, &library).unwrap();
+    let tried: Vec<&str> = o.best_attempt.iter().map(|e| e.id.as_str()).collect();
+    assert_eq!(tried, ["coulomb_friction"], "{}", o.remains);
+    assert_eq!(o.verdict, Verdict::Unknown);
+    let said = "accel_gain:a_body explains more of the fitted record, but the gap that judges does not fall by it";
+    assert!(o.remains.contains(said), "{}", o.remains);
 }
 
 /// The word is for what no parameter was fitted to: without a second record neither the page nor the result says it.

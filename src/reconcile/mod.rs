@@ -8,6 +8,7 @@ pub mod effect;
 pub mod motion;
 mod observation;
 mod outcome;
+mod proven;
 mod rules;
 mod search;
 pub mod strain;

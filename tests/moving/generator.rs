@@ -308,11 +308,29 @@ struct Exact {
     gain: Option<(String, f64)>,
     mass: Option<f64>,
     rate_hz: Option<f64>,
+    /// Force of a cube beside a square in the same spring, over that of the square at 20 mm.
+    cube: Option<f64>,
 }
 
 /// Hides `effect` of a size (0: small, 1: middle, 2: large) in a truck drawn from `seed`.
 pub fn hide(layout: Layout, effect: &str, size: usize, background: Background, seed: u64) -> Case {
     hide_exactly(layout, effect, size, background, seed, &Exact::default())
+}
+
+/// Hides a large square in the springs, and a cube of `share` of its force at a stretch of 20 mm beside it.
+pub fn hide_square_and_cube(layout: Layout, share: f64, seed: u64) -> Case {
+    let exact = Exact {
+        cube: Some(share),
+        ..Exact::default()
+    };
+    hide_exactly(
+        layout,
+        "quadratic_stiffness",
+        2,
+        Background::Clean,
+        seed,
+        &exact,
+    )
 }
 
 /// A control (nothing hidden) of samples at `rate_hz`, a whole part of 2,000.
@@ -433,7 +451,10 @@ fn hide_exactly(
             }
             "cubic_stiffness" => law.k3 = of([4e7, 1.2e8, 3.2e8]),
             // At a stretch of 20 mm these shares of the linear rate; a square that reaches it would push the other way.
-            "quadratic_stiffness" => law.k2 = of([0.05, 0.1, 0.2]) * k / 0.02,
+            "quadratic_stiffness" => {
+                law.k2 = of([0.05, 0.1, 0.2]) * k / 0.02;
+                law.k3 = exact.cube.unwrap_or(0.0) * law.k2 / 0.02;
+            }
             "progressive_leaf" => law.kp = of([0.1, 0.25, 0.5]) * k / 0.02,
             "coulomb_friction" => {
                 law.friction = of([150.0, 450.0, 1000.0]);

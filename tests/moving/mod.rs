@@ -15,19 +15,21 @@ use strainbridge::units::UnitSystem;
 use strainbridge::vehicle::preset::{PresetRequest, vehicle};
 use strainbridge::vehicle::term::UnitNames;
 
+/// A record of channels with their samples.
+pub fn record_of(rate_hz: f64, list: &[(String, Vec<f64>)]) -> Channels {
+    let list = list
+        .iter()
+        .map(|(name, samples)| Channel {
+            name: name.clone(),
+            unit: String::new(),
+            samples: samples.clone(),
+        })
+        .collect();
+    Channels::from_list(rate_hz, list).unwrap()
+}
+
 /// The frame that a job of the case would make.
 pub fn frame_of(case: &Case) -> MotionFrame {
-    let record = |list: &[(String, Vec<f64>)]| {
-        let list = list
-            .iter()
-            .map(|(name, samples)| Channel {
-                name: name.clone(),
-                unit: String::new(),
-                samples: samples.clone(),
-            })
-            .collect();
-        Channels::from_list(case.rate_hz, list).unwrap()
-    };
     let model = match case.layout {
         Layout::Rear => "rear3",
         Layout::Pair => "front_pair",
@@ -48,8 +50,8 @@ pub fn frame_of(case: &Case) -> MotionFrame {
         },
         not_compared: vec![],
         known: BTreeMap::new(),
-        data: record(&case.data),
-        hold_out: Some(record(&case.hold_out)),
+        data: record_of(case.rate_hz, &case.data),
+        hold_out: Some(record_of(case.rate_hz, &case.hold_out)),
         band: Band {
             low_hz: 0.7,
             high_hz: 20.0,

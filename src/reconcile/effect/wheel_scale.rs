@@ -1,4 +1,4 @@
-//! `wheel_scale`: the scale or transducer under one wheel reads a factor of the true force.
+//! `wheel_scale`: the scale or transducer under one wheel, or under all, reads a factor of the true force.
 
 use super::{Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState, WheelForces};
@@ -6,28 +6,39 @@ use crate::reconcile::strain::{StrainFrame, StrainState, WheelForces};
 /// Noted load = (1 + size / 100) times the load that acts.
 #[derive(Clone, Debug)]
 pub struct WheelScale {
-    /// Index of the load.
-    pub load: usize,
-    /// Its name.
+    /// Indices of the loads: one, or all.
+    pub loads: Vec<usize>,
+    /// Their names.
     pub name: String,
     /// Its place: the name without the component, where that is still unique.
     pub place: String,
 }
 
 impl WheelScale {
-    /// One on every load that was measured.
+    /// One on every load that was measured, and one on all together: a unit, scales that were calibrated against one weight.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         if frame.wheel_forces != WheelForces::Measured {
             return Vec::new();
         }
+        let names = &frame.load_names;
         let one = |(load, name): (usize, &String)| Self {
-            load,
+            loads: vec![load],
             name: name.clone(),
-            place: stem(&frame.load_names, name),
+            place: stem(names, name),
         };
-        frame.load_names.iter().enumerate().map(one).collect()
+        let all = (names.len() > 1).then(|| Self {
+            loads: (0..names.len()).collect(),
+            name: names.join(", "),
+            place: ALL.into(),
+        });
+        names.iter().enumerate().map(one).chain(all).collect()
     }
 }
+
+/// The place of a scale that is common to all loads.
+const ALL: &str = "all";
+/// What a load reads in pounds-force or in kilograms-force where newtons are meant, and the other way, as percent above the truth.
+const UNITS: [f64; 4] = [-77.52, 344.8, -89.8, 880.7];
 
 /// `LF` of `LF.FZ`, where no other load has that stem.
 pub(super) fn stem(names: &[String], name: &str) -> String {
@@ -52,12 +63,17 @@ impl StrainEffect for WheelScale {
     }
     fn parameters(&self) -> Vec<Parameter> {
         // Scales are calibrated to a percent; one that is wrong is wrong by some.
+        let units = if self.loads.len() > 1 {
+            &UNITS[..]
+        } else {
+            &[]
+        };
         vec![Parameter {
             unit: "percent",
             neutral: 0.0,
             prior_sd: 10.0,
             step: 0.1,
-            starts: vec![0.0],
+            starts: [&[0.0][..], units].concat(),
             plausible: 60.0,
         }]
     }
@@ -65,8 +81,10 @@ impl StrainEffect for WheelScale {
         let factor = 1.0 + parameters.first().copied().unwrap_or(0.0) / 100.0;
         let n_c = state.shape[2];
         for row in state.columns.chunks_exact_mut(n_c.max(1)) {
-            if let Some(cell) = row.get_mut(self.load) {
-                *cell /= factor;
+            for &load in &self.loads {
+                if let Some(cell) = row.get_mut(load) {
+                    *cell /= factor;
+                }
             }
         }
     }
@@ -78,6 +96,9 @@ impl StrainEffect for WheelScale {
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
+        if self.loads.len() > 1 {
+            return "weigh a known mass on one of the scales, and look up the unit in which they are noted".into();
+        }
         format!(
             "exchange the scale under {} with that of another wheel and repeat: the factor goes with the scale",
             self.place

@@ -6,12 +6,21 @@ use super::scorer::MotionScorer;
 use crate::reconcile::search::{Scored, Scorer, settle};
 
 /// Joins to `all` the best set with each of its channel faults moved to every other channel of the kind; best first again.
+///
+/// Constants of forms (the velocity below which friction fades) were found before the fault came, or with another channel at fault, and are as
+/// wrong there as the channel is. Each of these sets finds its own, so that none leads by them.
 pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>, decisive: f64) {
     let Some(best) = settle(all, decisive) else {
         return;
     };
+    let candidates = scorer.candidates;
+    if !best.set.iter().any(|&m| candidates[m].is_channel()) {
+        return;
+    }
+    let best = scorer.with_own_constants(best);
+    all.retain(|s| s.set != best.set);
+    all.push(best.clone());
     for &member in &best.set {
-        let candidates = scorer.candidates;
         let own = &candidates[member];
         if !own.is_channel() {
             continue;
@@ -23,10 +32,10 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
             let mut set: Vec<usize> = best.set.iter().copied().filter(|m| *m != member).collect();
             set.push(c);
             set.sort_unstable();
-            if all.iter().any(|s| s.set == set) {
-                continue;
-            }
-            all.extend(scorer.score(&set, Some((&best, None))));
+            let known = all.iter().position(|s| s.set == set);
+            let scored = known.map(|at| all.swap_remove(at));
+            let scored = scored.or_else(|| scorer.score(&set, Some((&best, None))));
+            all.extend(scored.map(|s| scorer.with_own_constants(s)));
         }
     }
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));

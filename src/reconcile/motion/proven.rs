@@ -3,45 +3,37 @@
 use super::fitted::MotionFit;
 use super::gap::proof_gap;
 use super::scorer::MotionScorer;
+use crate::reconcile::proven::{Useless, without_useless};
 use crate::reconcile::search::{Scored, Scorer};
 
-/// `best` without members beside others by which that gap does not fall, one after the other, the one that raises it most first; what is said
-/// of each. A single member is held against no effect at all by whoever judges the set.
+/// `best` without members that prove nothing ([`without_useless`]), and what is said of each.
 pub(super) fn proven(
     scorer: &mut MotionScorer,
     all: &[Scored<MotionFit>],
     best: Scored<MotionFit>,
 ) -> (Scored<MotionFit>, Vec<String>) {
-    let mut set = best;
-    let mut told = Vec::new();
-    while set.set.len() > 1 && !scorer.is_stopped() {
-        let Some(with) = proof_gap(scorer.frame, &set.fit).map(|g| g.gap) else {
-            break;
-        };
-        let mut least: Option<(usize, f64, Scored<MotionFit>)> = None;
-        for &member in &set.set {
-            let rest: Vec<usize> = set.set.iter().copied().filter(|m| *m != member).collect();
-            let known = all.iter().find(|s| s.set == rest).cloned();
-            let Some(fewer) = known.or_else(|| scorer.score(&rest, Some((&set, None)))) else {
-                continue;
-            };
-            let Some(gap) = proof_gap(scorer.frame, &fewer.fit).map(|g| g.gap) else {
-                continue;
-            };
-            if gap <= with && least.as_ref().is_none_or(|l| gap < l.1) {
-                least = Some((member, gap, fewer));
-            }
+    let members = |s: &Scored<MotionFit>| s.set.clone();
+    let (set, out) = without_useless(best, members, |set, members| {
+        if scorer.is_stopped() {
+            return None;
         }
-        let Some((member, gap, fewer)) = least else {
-            break;
+        let with = proof_gap(scorer.frame, &set.fit)?.gap;
+        let mut without = |c: &usize| {
+            let rest: Vec<usize> = set.set.iter().copied().filter(|m| m != c).collect();
+            let known = all.iter().find(|s| s.set == rest).cloned();
+            let fewer = known.or_else(|| scorer.score(&rest, Some((set, None))))?;
+            Some((proof_gap(scorer.frame, &fewer.fit)?.gap, fewer))
         };
-        told.push(format!(
+        Some((with, members.iter().map(&mut without).collect()))
+    });
+    let told = |u: &Useless| {
+        format!(
             "{} explains more of the fitted record, but the gap that judges does not fall by it ({:.2} % with it, {:.2} % without)",
-            scorer.candidates[member].id,
-            100.0 * with,
-            100.0 * gap
-        ));
-        set = fewer;
-    }
+            scorer.candidates[u.candidate].id,
+            100.0 * u.with,
+            100.0 * u.without
+        )
+    };
+    let told = out.iter().map(told).collect();
     (set, told)
 }

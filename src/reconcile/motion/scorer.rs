@@ -102,6 +102,25 @@ impl MotionScorer<'_> {
         best
     }
 
+    /// A set with the constants of its terms found with all members in it.
+    pub fn with_own_constants(&self, of: Scored<MotionFit>) -> Scored<MotionFit> {
+        let varies = |p: &Part| {
+            let is_term = matches!(p.shape, Change::Terms { .. });
+            is_term && !p.shape.neighbours(REFINE[0], self.frame.gravity).is_empty()
+        };
+        if of.set.len() < 2 || !of.fit.parts.iter().any(varies) {
+            return of;
+        }
+        let others = of.fit.parts.iter().filter(|p| !varies(p));
+        let settled: Vec<usize> = others.map(|p| p.candidate).collect();
+        let fit = self.refined(of.fit, &settled);
+        Scored {
+            log_evidence: evidence(self.frame, self.candidates, &fit),
+            set: of.set,
+            fit,
+        }
+    }
+
     /// Of several forms those that leave least with everything else as it is; none where the present one does.
     ///
     /// Of a change of mass the best with its weight and the best without: the balance of weight is another row for the two, so only a

@@ -1,7 +1,7 @@
 //! What noise and stated model uncertainty do to the residual, runs and gauges together.
 
 use super::frame::{Scatter, StrainFrame};
-use super::learnt::learnt;
+use super::learnt::{Shares, learnt, shares};
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
 use crate::reconcile::effect::{Member, SizedAmplitudes};
@@ -35,18 +35,30 @@ impl Selection {
     }
 }
 
-/// Patterns as the gauges read them: the linear part of the reading effects of `members` applied.
+/// Patterns as the gauges read them in `run`: the linear part of the reading effects of `members` applied.
 pub fn read_patterns(
     frame: &StrainFrame,
     members: &[Member<'_>],
     patterns: &[Vec<f64>],
+    run: usize,
 ) -> Vec<Vec<f64>> {
     let read = |pattern: &Vec<f64>| {
         let mut row = pattern.clone();
-        read_all(frame, members, 0, &mut row, Part::Linear);
+        read_all(frame, members, run, &mut row, Part::Linear);
         row
     };
     patterns.iter().map(read).collect()
+}
+
+/// The same in a run that no fault of single runs touches.
+pub(super) fn patterns_read(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    patterns: &[Vec<f64>],
+) -> Vec<Vec<f64>> {
+    let always = |m: &&Member<'_>| m.effect.runs().is_empty();
+    let members: Vec<Member<'_>> = members.iter().filter(always).copied().collect();
+    read_patterns(frame, &members, patterns, 0)
 }
 
 /// Covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
@@ -65,25 +77,23 @@ pub fn covariance(
     let [n_g, n_r, n_c] = state.shape;
     let column =
         |c: usize| -> Vec<f64> { (0..n_g).map(|g| state.influence[g * n_c + c]).collect() };
-    let columns: Vec<Vec<f64>> = (0..n_c).map(column).collect();
-    let columns = read_patterns(frame, members, &columns);
+    let columns: Vec<Vec<f64>> = (0..frame.n_loads()).map(column).collect();
     let mut predicted = Vec::with_capacity(n_r * n_g);
     for run in 0..n_r {
         let mut row = state.strain(run);
         read_all(frame, members, run, &mut row, Part::Linear);
         predicted.extend(row);
     }
-    // Within a run: noise, wheel forces, unknown amplitudes; the same block for every run. Between runs: what repeats of the amplitudes.
+    // Of the strain, within a run: wheel forces, unknown amplitudes. Between runs: what repeats of the amplitudes.
     let mut block = vec![0.0; n_g * n_g];
     let mut repeats = vec![0.0; n_g * n_g];
-    for pattern in columns.iter().take(frame.n_loads()) {
+    for pattern in &columns {
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
     let doubt = frame.relative_doubt();
     let known = frame.nuisance_amplitudes();
     for u in unknown.iter().chain(&known) {
-        let read = read_patterns(frame, members, &u.amplitudes.patterns);
-        for (pattern, &kind) in read.iter().zip(&u.amplitudes.kinds) {
+        for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
             // The model errs in these patterns as in all others.
             let own: Vec<f64> = pattern
                 .iter()
@@ -99,9 +109,8 @@ pub fn covariance(
             }
         }
     }
-    for g in 0..n_g {
-        block[g * n_g + g] += frame.noise * frame.noise;
-    }
+    let noise = frame.noise * frame.noise;
+    let any_repeats = repeats.iter().any(|v| *v != 0.0);
     let model = frame.model_rel * frame.model_rel;
     let errors = scattered(frame, members, &state);
     let across = |g: usize, r: usize, s: usize| {
@@ -112,18 +121,46 @@ pub fn covariance(
                 .map(|e| e[r * n_g + g] * e[s * n_g + g])
                 .sum::<f64>()
     };
+    // A contact that is open in a run reads none of what strains there.
+    let shares = shares_of_runs(frame, members, selection, n_g);
+    let read = |of: &[f64], (r, g): (usize, usize), (s, h): (usize, usize)| -> f64 {
+        let (Some(mine), Some(theirs)) = (shares[r].get(g), shares[s].get(h)) else {
+            return 0.0;
+        };
+        let one = |&(a, p): &(usize, f64)| {
+            let row = &of[a * n_g..(a + 1) * n_g];
+            p * theirs.iter().map(|&(b, q)| q * row[b]).sum::<f64>()
+        };
+        mine.iter().map(one).sum()
+    };
     let n = selection.len();
     let mut out = learnt(frame, members, &selection.0, &state).unwrap_or_else(|| vec![0.0; n * n]);
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
-            let within = if r == s {
-                block[g * n_g + h]
-            } else {
-                repeats[g * n_g + h]
+            let within = match r == s {
+                true => read(&block, (r, g), (s, h)) + if g == h { noise } else { 0.0 },
+                false if any_repeats => read(&repeats, (r, g), (s, h)),
+                false => 0.0,
             };
             let persistent = if g == h { across(g, r, s) } else { 0.0 };
             out[i * n + j] += within + persistent;
             out[j * n + i] = out[i * n + j];
+        }
+    }
+    out
+}
+
+/// By run of `selection` and channel: what each gauge's strain shares in it; nothing for other runs.
+fn shares_of_runs(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    selection: &Selection,
+    n_g: usize,
+) -> Vec<Vec<Shares>> {
+    let mut out: Vec<Vec<Shares>> = vec![Vec::new(); frame.n_runs()];
+    for &(run, _) in &selection.0 {
+        if let Some(own) = out.get_mut(run).filter(|own| own.is_empty()) {
+            *own = shares(frame, members, run, n_g);
         }
     }
     out

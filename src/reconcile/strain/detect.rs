@@ -1,6 +1,6 @@
 //! The smallest size of each effect that these data would show.
 
-use super::covariance::{Selection, covariance, read_patterns};
+use super::covariance::{Selection, covariance};
 use super::frame::StrainFrame;
 use super::prediction::predict;
 use crate::linalg::precision::Precision;
@@ -35,7 +35,7 @@ pub fn detectable(
         let id = full_id(effect);
         if let Some(a) = effect.amplitudes(frame) {
             // Amplitudes: expected gain of a size s times the usual one, patterns taken one by one.
-            let read = read_patterns(frame, &[], &a.patterns);
+            let read = &a.patterns;
             let mut strengths = Vec::new();
             for run in frame.observations.fit_runs() {
                 for (pattern, &kind) in read.iter().zip(&a.kinds) {

@@ -154,34 +154,26 @@ fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) 
 
 /// Patterns that are found anew, with the covariance of their amplitudes and its mean, as the fit runs tell.
 struct Patterns {
-    values: Vec<Vec<f64>>,
+    /// By run, as the gauges read them there.
+    values: Vec<Vec<Vec<f64>>>,
     mean: Vec<f64>,
     /// `n x n` by rows.
     covariance: Vec<f64>,
 }
 
 impl Patterns {
-    /// Strain of the mean amplitudes at a gauge.
-    fn expected(&self, gauge: usize) -> f64 {
-        self.values
-            .iter()
-            .zip(&self.mean)
-            .map(|(p, m)| p[gauge] * m)
-            .sum()
+    /// What the mean amplitudes make a gauge read in a run.
+    fn expected(&self, run: usize, gauge: usize) -> f64 {
+        let read = self.values[run].iter().zip(&self.mean);
+        read.map(|(p, m)| p[gauge] * m).sum()
     }
 
-    /// Covariance of the strain at two gauges.
-    fn between(&self, g: usize, h: usize) -> f64 {
-        let n = self.mean.len();
-        let rows = self.covariance.chunks_exact(n.max(1)).zip(&self.values);
-        rows.map(|(row, p)| {
-            p[g] * row
-                .iter()
-                .zip(&self.values)
-                .map(|(c, q)| c * q[h])
-                .sum::<f64>()
-        })
-        .sum()
+    /// Covariance of what two gauges read in a run.
+    fn between(&self, run: usize, g: usize, h: usize) -> f64 {
+        let (n, values) = (self.mean.len(), &self.values[run]);
+        let rows = self.covariance.chunks_exact(n.max(1)).zip(values);
+        rows.map(|(row, p)| p[g] * row.iter().zip(values).map(|(c, q)| c * q[h]).sum::<f64>())
+            .sum()
     }
 }
 
@@ -233,11 +225,7 @@ impl<'a> Told<'a> {
         let (mut steady, mut scatter) = (Vec::new(), Vec::new());
         let known = self.frame.nuisance_amplitudes();
         for u in self.unknown.iter().chain(&known) {
-            values.extend(read_patterns(
-                self.frame,
-                self.members,
-                &u.amplitudes.patterns,
-            ));
+            values.extend(u.amplitudes.patterns.iter().cloned());
             steady.extend(u.amplitudes.kinds.iter().map(|&k| u.steady_variance(k)));
             scatter.extend(u.amplitudes.kinds.iter().map(|&k| u.scatter_variance(k)));
         }
@@ -250,17 +238,16 @@ impl<'a> Told<'a> {
                     .collect::<Vec<f64>>()
             };
             let columns: Vec<Vec<f64>> = (0..self.frame.n_loads()).map(column).collect();
-            values.extend(read_patterns(self.frame, self.members, &columns));
+            values.extend(columns);
             steady.resize(values.len(), 0.0);
             scatter.resize(values.len(), self.frame.load_noise * self.frame.load_noise);
         }
         let n = values.len();
-        let over_fit = |p: usize| {
-            self.fit
-                .0
-                .iter()
-                .map(|e| values[p][e.1])
-                .collect::<Vec<f64>>()
+        let read = |run: usize| read_patterns(self.frame, self.members, &values, run);
+        let values: Vec<Vec<Vec<f64>>> = (0..self.frame.n_runs()).map(read).collect();
+        let over_fit = |p: usize| -> Vec<f64> {
+            let read = |&(run, g): &(usize, usize)| values[run][p][g];
+            self.fit.0.iter().map(read).collect()
         };
         let mut mean = vec![0.0; n];
         let mut covariance = vec![0.0; n * n];
@@ -346,7 +333,7 @@ impl<'a> Proof<'a> {
         let offset = all.0.iter().zip(mean.iter().zip(&mesh));
         ProofRun {
             offset: offset
-                .map(|(e, (m, d))| m - self.patterns.expected(e.1) + d)
+                .map(|(e, (m, d))| m - self.patterns.expected(run, e.1) + d)
                 .collect(),
             innovation: on_finer.iter().zip(&mean).map(|(r, m)| r - m).collect(),
             residual: on_own,
@@ -365,8 +352,9 @@ impl ProofRun<'_> {
         const BELIEVED: f64 = 3.0;
         let n = self.all.len();
         let gauge = |i: usize| self.all.0[i].1;
+        let run = self.all.0.first().map_or(0, |e| e.0);
         let patterns = &self.proof.patterns;
-        let expected: Vec<f64> = (0..n).map(|i| patterns.expected(gauge(i))).collect();
+        let expected: Vec<f64> = (0..n).map(|i| patterns.expected(run, gauge(i))).collect();
         let mut left: Vec<f64> = self
             .residual
             .iter()
@@ -391,7 +379,7 @@ impl ProofRun<'_> {
             for &i in &seen {
                 let shared: Vec<f64> = used
                     .iter()
-                    .map(|&j| patterns.between(gauge(i), gauge(j)))
+                    .map(|&j| patterns.between(run, gauge(i), gauge(j)))
                     .collect();
                 let whole: Vec<f64> = used.iter().map(|&j| self.spread[i * n + j]).collect();
                 let Some(c) = &factor else {

@@ -9,6 +9,7 @@ use super::likelihood::Fit;
 use super::neighbours::neighbours_that_fail;
 use super::next::next_measurement;
 use super::no_drift::no_drift;
+use super::outlier::but_for_one;
 use super::own_covariance::{own_evidence, under_own_covariance, with_members};
 use super::prediction::predict;
 use super::proven::proven;
@@ -168,6 +169,21 @@ fn reach(
     (after, noise_factor(frame, candidates, scored))
 }
 
+/// Whether a set that leaves `after`, with `noise` times the stated one, is at the floor; what is said of a reading but for which it is.
+fn reaches_floor(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+    after: &Adequacy,
+    noise: f64,
+) -> (bool, Option<String>) {
+    if noise > frame.rules.noise || at_floor(frame, after) {
+        return (noise <= frame.rules.noise, None);
+    }
+    let alone = but_for_one(frame, candidates, scored);
+    (alone.is_some(), alone)
+}
+
 /// The set of names alone, at least one, that has most evidence.
 fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option<&'a Scored<Fit>> {
     let is_name = |c: &usize| discrepancy(candidates, *c).is_none();
@@ -187,7 +203,7 @@ pub(super) fn judge(
     let frame = proofs.frame;
     let before = adequacy(frame, &[], &[], 0);
     let (after, noise) = reach(frame, candidates, best, &before);
-    let reached = at_floor(frame, &after) && noise <= frame.rules.noise;
+    let (reached, alone) = reaches_floor(frame, candidates, best, &after, noise);
     let rivals = rival_sets(frame, candidates, all, best);
     // As its rivals are.
     let level = |s: &Scored<Fit>| own_evidence(frame, candidates, s);
@@ -203,7 +219,12 @@ pub(super) fn judge(
         Some(p) => (Some(p.doubt), Some(p.set)),
         None => (None, stands),
     };
-    let unsure: Vec<String> = few.into_iter().chain(taken_out.clone()).collect();
+    let (fewer, no_zero) = without_false_zeros(frame, candidates, fewer.as_ref().unwrap_or(best))
+        .map_or((fewer, None), |(set, told)| (Some(set), Some(told)));
+    let unsure: Vec<String> = [few, taken_out.clone(), no_zero, alone]
+        .into_iter()
+        .flatten()
+        .collect();
     let best = fewer.as_ref().unwrap_or(best);
     let level = fewer.as_ref().map_or(alike.log_evidence, level);
     let explained = Explanation::of(frame, candidates, best);
@@ -220,7 +241,7 @@ pub(super) fn judge(
     let unmodelled = is_unmodelled(candidates, &best.set);
     let seldom = standing.doubt.clone().filter(|_| standing.is_none());
     let doubt = neighbours_that_fail(frame, &attempt)
-        .or_else(|| no_drift(frame, candidates, best))
+        .or_else(|| no_drift(frame, candidates, best).map(|n| n.words))
         // What explains the fitted runs that much better and runs to come no better is a form that is in no name.
         .or(taken_out.filter(|_| alike.log_evidence - level > WORTH_NAMING))
         .or(seldom);
@@ -235,7 +256,10 @@ pub(super) fn judge(
     };
     let withheld = (verdict == Verdict::Unknown).then(|| Withheld {
         implausible: (attempt.iter().filter(|e| !e.plausible))
-            .map(|e| e.id.clone())
+            .map(|e| match e.size.first() {
+                Some(size) => format!("{} ({size:.4} {})", e.id, e.unit),
+                None => e.id.clone(),
+            })
             .collect(),
         no_fall: (!attempt.is_empty() && !falls).then_some([gap.before, gap.after]),
         noise: (noise > frame.rules.noise).then_some(noise),
@@ -247,15 +271,7 @@ pub(super) fn judge(
         None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
     };
-    let rivals: Vec<Rival> = rivals
-        .par_iter()
-        .map(|s| Rival {
-            ids: ids(candidates, &s.set),
-            evidence_difference: level - s.log_evidence,
-            gap_after: validated(proofs, candidates, s).0.after,
-            indistinguishable: level - s.log_evidence < frame.rules.indistinguishable,
-        })
-        .collect();
+    let rivals = rivals_told(proofs, candidates, &rivals, level);
     let left = remains(
         frame,
         &explained.members,
@@ -299,6 +315,32 @@ pub(super) fn judge(
     }
 }
 
+/// A set without the zeros of it that do not drift, where it reaches the floor without them and has another name; what is said of them.
+fn without_false_zeros(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    best: &Scored<Fit>,
+) -> Option<(Scored<Fit>, String)> {
+    let mut set = best.clone();
+    let mut told = Vec::new();
+    while let Some(doubted) = no_drift(frame, candidates, &set) {
+        let rest: Vec<usize> = (set.set.iter().copied())
+            .filter(|c| *c != doubted.candidate)
+            .collect();
+        if named_part(candidates, &rest).is_empty() {
+            return None;
+        }
+        set = under_own_covariance(frame, candidates, &rest, &set)?;
+        told.push(doubted.words);
+    }
+    let reaches = || {
+        let left = adequacy_of(frame, candidates, &set);
+        let noise = noise_factor(frame, candidates, &set);
+        reaches_floor(frame, candidates, &set, &left, noise).0
+    };
+    (!told.is_empty() && reaches()).then(|| (set, told.join("; ")))
+}
+
 /// What to measure where no effect of the library comes near: is it the gauges or the runs?
 fn look_again(after: &Adequacy) -> String {
     /// As many gauges as one shunts in an hour.
@@ -313,6 +355,22 @@ fn look_again(after: &Adequacy) -> String {
         names(&after.gauges).join(", "),
         run.map_or("a run".into(), |r| format!("run {r}"))
     )
+}
+
+/// Rivals of a set of log evidence `level`, in words and numbers.
+fn rivals_told(
+    proofs: &Proofs<'_>,
+    candidates: &[Candidate],
+    rivals: &[Scored<Fit>],
+    level: f64,
+) -> Vec<Rival> {
+    let one = |s: &Scored<Fit>| Rival {
+        ids: ids(candidates, &s.set),
+        evidence_difference: level - s.log_evidence,
+        gap_after: validated(proofs, candidates, s).0.after,
+        indistinguishable: level - s.log_evidence < proofs.frame.rules.indistinguishable,
+    };
+    rivals.par_iter().map(one).collect()
 }
 
 /// Other sets of at most the same number of effects, nearest first, that do not contain the best one; each under its own covariance, as the

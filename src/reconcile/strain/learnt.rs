@@ -8,7 +8,7 @@ use crate::reconcile::effect::Member;
 use crate::sensitivity::Uncertainty;
 
 /// A gauge's share in what a channel reads.
-type Shares = Vec<(usize, f64)>;
+pub(super) type Shares = Vec<(usize, f64)>;
 
 /// Covariance of the readings of `selection` (run, gauge), `n x n` by rows, microstrain^2, `None` where S was not calibrated:
 ///
@@ -95,7 +95,12 @@ fn runs_of(
 }
 
 /// By channel: what each gauge's strain shares in it.
-fn shares(frame: &StrainFrame, members: &[Member<'_>], run: usize, n_g: usize) -> Vec<Shares> {
+pub(super) fn shares(
+    frame: &StrainFrame,
+    members: &[Member<'_>],
+    run: usize,
+    n_g: usize,
+) -> Vec<Shares> {
     let mut out = vec![Shares::new(); n_g];
     for gauge in 0..n_g {
         let mut row = vec![0.0; n_g];

@@ -1,7 +1,7 @@
 //! Readings with their covariance, and what a set of effects predicts of them: parameters are optimised in `optimum`,
 //! amplitudes integrated out; what is gained stands in `evidence`, candidates are tried in `screen`.
 
-use super::covariance::{Selection, covariance, read_patterns};
+use super::covariance::{Selection, covariance, patterns_read};
 use super::frame::StrainFrame;
 use super::prediction::predict;
 use super::size::{RunBlocks, usual_sizes};
@@ -188,7 +188,7 @@ impl<'a> Likelihood<'a> {
         let read: Vec<_> = list
             .into_iter()
             .map(|mut a| {
-                a.patterns = read_patterns(self.frame, members, &a.patterns);
+                a.patterns = patterns_read(self.frame, members, &a.patterns);
                 a
             })
             .collect();
@@ -204,7 +204,7 @@ impl<'a> Likelihood<'a> {
     ) -> Vec<SizedAmplitudes> {
         let one = |(c, s): &(usize, Vec<f64>)| {
             let mut amplitudes = self.candidates.get(*c)?.effect.amplitudes(self.frame)?;
-            amplitudes.patterns = read_patterns(self.frame, members, &amplitudes.patterns);
+            amplitudes.patterns = patterns_read(self.frame, members, &amplitudes.patterns);
             Some(SizedAmplitudes {
                 amplitudes,
                 sizes: s.clone(),

@@ -18,6 +18,7 @@ mod next;
 mod no_drift;
 mod nuisance;
 mod optimum;
+mod outlier;
 mod own_covariance;
 mod prediction;
 mod proven;

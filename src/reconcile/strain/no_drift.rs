@@ -12,47 +12,74 @@ use crate::reconcile::search::Scored;
 const CHANCE: f64 = 1e-3;
 /// Chance that a zero which scatters about where it was passes for one that moved.
 const MOVED: f64 = 0.01;
+/// Standard deviations of the stated doubt of a gauge's influence beyond which a slope is not the model's: one gauge of a thousand.
+const DOUBTS: f64 = 3.3;
 
-/// What speaks against a zero of `scored` that drifts and scatters, in words; `None` where nothing does.
+/// A zero of a set that is said to drift and does not.
+pub(super) struct NoDrift {
+    /// Candidate number.
+    pub candidate: usize,
+    /// What speaks against it.
+    pub words: String,
+}
+
+/// The first zero of `scored` that is said to drift and scatter, with what speaks against it; `None` where nothing does.
 ///
-/// What the gauge reads beside the other effects is held against `a + b p`, p the strain that the model has it read: a zero that has moved has
-/// an `a` beyond its scatter (t test), and what is left does not follow `p |p|` (F test).
+/// What the gauge reads beside the other effects is held against `a + b p`, p the strain that the model has it read: what is left does not
+/// follow `p |p|`, nor is `b` beyond its scatter and the doubt of the model (F tests). A zero that has moved has, over the runs in their order, a
+/// constant, a line or a parabola beyond its scatter.
 pub(super) fn no_drift(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
-) -> Option<String> {
+) -> Option<NoDrift> {
     let scatters = |c: &Candidate| {
         let e = c.effect.as_ref();
         let own = e.kind() == FaultKind::Zero && !e.parameters().is_empty();
         own && e.amplitudes(frame).is_some()
     };
+    let doubt = frame.relative_doubt();
     scored.set.iter().find_map(|&c| {
         let candidate = candidates.get(c).filter(|c| scatters(c))?;
         let &[gauge] = candidate.effect.gauges().as_slice() else {
             return None;
         };
-        let (p, r) = beside_others(frame, candidates, scored, c, gauge);
+        let read = beside_others(frame, candidates, scored, c, gauge);
         let id = full_id(candidate.effect.as_ref());
-        if follows(&p, &r) {
-            return Some(format!(
+        let doubt = doubt.get(gauge).copied().unwrap_or(0.0);
+        let words = if read.bends() {
+            format!(
                 "what {id} takes bends with the load: an amplifier near its limit or a gauge that yields, not a zero that moved"
-            ));
-        }
-        has_not_moved(&r).then(|| {
+            )
+        } else if read.goes_with_load(DOUBTS * doubt) {
+            format!("what {id} takes goes with the load: a gauge that reads more or less than it strains, not a zero that moved")
+        } else if read.has_not_moved() {
             format!("what {id} takes scatters about nothing: noise of that gauge alone, not a zero that moved")
-        })
+        } else {
+            return None;
+        };
+        Some(NoDrift { candidate: c, words })
     })
 }
 
-/// By run: strain that `gauge` would read with all members but one on, and what it reads besides.
+/// What a gauge reads beside other effects, by run.
+struct Besides {
+    /// Number of the run over that of all.
+    at: Vec<f64>,
+    /// Strain that it would read with the others on.
+    model: Vec<f64>,
+    /// What it reads besides.
+    rest: Vec<f64>,
+}
+
+/// What `gauge` reads beside all members but one.
 fn beside_others(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
     but: usize,
     gauge: usize,
-) -> (Vec<f64>, Vec<f64>) {
+) -> Besides {
     let others = scored.set.iter().zip(&scored.fit.parameters);
     let member = |(&c, p): (&usize, &'_ Vec<f64>)| (c, p.clone());
     let others: Vec<(usize, Vec<f64>)> = others.filter(|(c, _)| **c != but).map(member).collect();
@@ -66,35 +93,93 @@ fn beside_others(
         .collect();
     let predicted = predict(frame, &members);
     let n_g = frame.n_gauges();
-    let read = (0..frame.n_runs()).map(|r| (r, frame.observations.value(r, gauge)));
-    read.filter(|(_, v)| v.is_finite())
-        .filter_map(|(r, v)| predicted.get(r * n_g + gauge).map(|p| (*p, v - p)))
-        .unzip()
+    let n_r = frame.n_runs().max(1) as f64;
+    let mut out = Besides {
+        at: Vec::new(),
+        model: Vec::new(),
+        rest: Vec::new(),
+    };
+    for run in 0..frame.n_runs() {
+        let read = frame.observations.value(run, gauge);
+        if let Some(model) = predicted
+            .get(run * n_g + gauge)
+            .filter(|_| read.is_finite())
+        {
+            out.at.push(run as f64 / n_r);
+            out.model.push(*model);
+            out.rest.push(read - model);
+        }
+    }
+    out
 }
 
-/// Whether `r` follows `p |p|` beyond a straight line in `p`.
-fn follows(p: &[f64], r: &[f64]) -> bool {
-    let n = r.len();
-    let scale = p.iter().fold(0.0f64, |m, v| m.max(v.abs()));
-    if n < 5 || scale <= 0.0 {
-        return false;
+impl Besides {
+    /// Powers of the model's strain, over its largest.
+    fn strained(&self) -> Option<Vec<f64>> {
+        let scale = self.model.iter().fold(0.0f64, |m, v| m.max(v.abs()));
+        (scale > 0.0).then(|| self.model.iter().map(|v| v / scale).collect())
     }
-    let column = |i: usize, j: usize| {
-        let x = p[i] / scale;
-        [1.0, x, x * x.abs()][j]
-    };
-    let (line, bent) = (
-        left(&Matrix::from_fn(n, 2, column), r),
-        left(&Matrix::from_fn(n, 3, column), r),
-    );
-    let freedom = (n - 3) as f64;
-    let ratio = (line - bent) / (bent / freedom);
-    ratio.is_finite() && f_tail(ratio.max(0.0), 1.0, freedom) < CHANCE
+
+    /// Whether the rest follows `p |p|` beyond a straight line in `p`.
+    fn bends(&self) -> bool {
+        self.strained().is_some_and(|p| {
+            let column = |i: usize, j: usize| [1.0, p[i], p[i] * p[i].abs()][j];
+            chance(&self.rest, column, 2, 3) < CHANCE
+        })
+    }
+
+    /// Whether the rest follows `p` beyond a constant, by more than the share `doubt` of it.
+    fn goes_with_load(&self, doubt: f64) -> bool {
+        self.strained().is_some_and(|p| {
+            let column = |i: usize, j: usize| [1.0, p[i]][j];
+            chance(&self.rest, column, 1, 2) < CHANCE
+                && slope(&self.model, &self.rest).abs() > doubt
+        })
+    }
+
+    /// Whether constant, line and parabola over the runs are none that scatter makes.
+    fn has_not_moved(&self) -> bool {
+        /// Constant, line, parabola.
+        const FORMS: usize = 3;
+        let power = |i: usize, j: usize| self.at[i].powi(j as i32);
+        self.rest.len() > FORMS
+            && (1..=FORMS).all(|n| chance(&self.rest, power, 0, n) > MOVED / FORMS as f64)
+    }
+}
+
+/// Chance with which scatter alone makes `r` follow the first `more` columns as well as it does beyond the first `few` (F test).
+fn chance(r: &[f64], column: impl Fn(usize, usize) -> f64, few: usize, more: usize) -> f64 {
+    if r.len() < more + 2 {
+        return 1.0;
+    }
+    let freedom = (r.len() - more) as f64;
+    let left = |n: usize| left(&Matrix::from_fn(r.len(), n, &column), r);
+    let (before, after) = (left(few), left(more));
+    let ratio = (before - after) / (more - few) as f64 / (after / freedom);
+    if ratio.is_nan() {
+        return 1.0;
+    }
+    f_tail(ratio.max(0.0), (more - few) as f64, freedom)
+}
+
+/// Slope of the straight line through `y` over `x` (least squares).
+fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let n = x.len().max(1) as f64;
+    let mean = x.iter().sum::<f64>() / n;
+    let (mut xy, mut xx) = (0.0, 0.0);
+    for (x, y) in x.iter().zip(y) {
+        xy += (x - mean) * y;
+        xx += (x - mean).powi(2);
+    }
+    if xx > 0.0 { xy / xx } else { 0.0 }
 }
 
 /// Squared residual of `r` beside the columns of `x`.
 fn left(x: &Matrix, r: &[f64]) -> f64 {
     let whole: f64 = r.iter().map(|v| v * v).sum();
+    if x.ncols() == 0 {
+        return whole;
+    }
     let Some(basis) = dense::svd(x) else {
         return whole;
     };
@@ -103,39 +188,47 @@ fn left(x: &Matrix, r: &[f64]) -> f64 {
     whole - kept.map(|k| along(k).powi(2)).sum::<f64>()
 }
 
-/// Whether the mean of `r` is one that its scatter makes.
-fn has_not_moved(r: &[f64]) -> bool {
-    let n = r.len() as f64;
-    if n < 3.0 {
-        return false;
-    }
-    let mean = r.iter().sum::<f64>() / n;
-    let about: f64 = r.iter().map(|v| (v - mean).powi(2)).sum();
-    let squared_t = n * mean * mean / (about / (n - 1.0));
-    squared_t.is_finite() && f_tail(squared_t, 1.0, n - 1.0) > MOVED
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{follows, has_not_moved};
+    use super::Besides;
 
-    /// Scatter whose mean is none, of +-1 and +-2.
+    /// Scatter whose mean, slope and bend are none, of +-1 and +-2.
     const SCATTER: [f64; 8] = [1.0, -2.0, 2.0, -1.0, 1.0, 2.0, -2.0, -1.0];
+    /// Strain of runs whose load does not go with their order, microstrain.
+    const MODEL: [f64; 8] = [300.0, 0.0, 700.0, 100.0, 600.0, 200.0, 500.0, 400.0];
+
+    fn reads(f: impl Fn(f64, f64) -> f64) -> Besides {
+        let at: Vec<f64> = (0..8).map(|k| k as f64 / 8.0).collect();
+        let parts = at.iter().zip(MODEL).zip(SCATTER);
+        Besides {
+            rest: parts.map(|((t, p), s)| f(*t, p) + s).collect(),
+            model: MODEL.to_vec(),
+            at,
+        }
+    }
 
     #[test]
     fn scatter_about_nothing_is_no_zero_that_moved_and_an_offset_is_one() {
-        assert!(has_not_moved(&SCATTER));
-        let moved = SCATTER.map(|v| v + 10.0);
-        assert!(!has_not_moved(&moved));
+        assert!(reads(|_, _| 0.0).has_not_moved());
+        assert!(!reads(|_, _| 10.0).has_not_moved());
+    }
+
+    #[test]
+    fn a_zero_that_drifts_evenly_from_minus_to_plus_or_out_and_back_has_moved() {
+        assert!(!reads(|t, _| 40.0 * (t - 0.4375)).has_not_moved());
+        assert!(!reads(|t, _| 100.0 * (t - 0.4375).powi(2) - 8.2).has_not_moved());
     }
 
     #[test]
     fn readings_that_bend_follow_the_load_and_those_that_are_off_or_scaled_do_not() {
-        let p: Vec<f64> = (0..8).map(|k| 100.0 * k as f64).collect();
-        let with = |f: &dyn Fn(f64) -> f64| -> Vec<f64> {
-            p.iter().zip(SCATTER).map(|(p, s)| f(*p) + s).collect()
-        };
-        assert!(follows(&p, &with(&|p| -3e-4 * p * p)));
-        assert!(!follows(&p, &with(&|p| 40.0 + 0.1 * p)));
+        assert!(reads(|_, p| -3e-4 * p * p).bends());
+        assert!(!reads(|_, p| 40.0 + 0.1 * p).bends());
+    }
+
+    #[test]
+    fn a_slope_beyond_the_doubt_of_the_model_is_no_zero_and_one_within_may_be() {
+        assert!(reads(|_, p| 40.0 - 0.1 * p).goes_with_load(0.05));
+        assert!(!reads(|_, p| 40.0 - 0.1 * p).goes_with_load(0.2));
+        assert!(!reads(|t, _| 40.0 * t).goes_with_load(0.0));
     }
 }

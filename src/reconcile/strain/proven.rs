@@ -5,6 +5,7 @@ use super::likelihood::Fit;
 use super::own_covariance::under_own_covariance;
 use super::validation::{Proofs, validated, validated_beside};
 use crate::reconcile::effect::Candidate;
+use crate::reconcile::proven::{Useless, without_useless};
 use crate::reconcile::search::Scored;
 use rayon::prelude::*;
 
@@ -16,8 +17,7 @@ pub(super) struct Proven {
     pub doubt: String,
 }
 
-/// `best` without names beside others by which the gap does not fall, one after the other, the one that raises it most first; `None` where
-/// it falls by every name. All gaps are those of the same readings. A single name is held against no effect at all by whoever judges the set.
+/// `best` without names that prove nothing ([`without_useless`]); `None` where the gap falls by every name.
 pub(super) fn proven(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -27,39 +27,29 @@ pub(super) fn proven(
         return None;
     }
     let frame = proofs.frame;
-    let mut set = best.clone();
-    let mut told: Vec<String> = Vec::new();
-    loop {
-        let names = named_part(candidates, &set.set);
-        if names.len() < 2 || frame.stop.is_asked() {
-            break;
+    let names = |s: &Scored<Fit>| named_part(candidates, &s.set);
+    let (set, out) = without_useless(best.clone(), names, |set, names| {
+        if frame.stop.is_asked() {
+            return None;
         }
-        let with = validated(proofs, candidates, &set).0.after;
         let without = |c: &usize| {
             let rest: Vec<usize> = set.set.iter().copied().filter(|m| m != c).collect();
-            let fitted = under_own_covariance(frame, candidates, &rest, &set)?;
-            let after = validated_beside(proofs, candidates, &fitted, &set.set)
-                .0
-                .after;
-            (after <= with).then_some((*c, after, fitted))
+            let fitted = under_own_covariance(frame, candidates, &rest, set)?;
+            let gap = validated_beside(proofs, candidates, &fitted, &set.set).0;
+            Some((gap.after, fitted))
         };
-        let useless: Vec<Option<(usize, f64, Scored<Fit>)>> =
-            names.par_iter().map(without).collect();
-        let least = useless
-            .into_iter()
-            .flatten()
-            .min_by(|a, b| a.1.total_cmp(&b.1));
-        let Some((c, after, fitted)) = least else {
-            break;
-        };
-        told.push(format!(
+        let with = validated(proofs, candidates, set).0.after;
+        Some((with, names.par_iter().map(without).collect()))
+    });
+    let told = |u: &Useless| {
+        format!(
             "{} ({:.2} % with it, {:.2} % without)",
-            ids(candidates, &[c]).concat(),
-            100.0 * with,
-            100.0 * after
-        ));
-        set = fitted;
-    }
+            ids(candidates, &[u.candidate]).concat(),
+            100.0 * u.with,
+            100.0 * u.without
+        )
+    };
+    let told: Vec<String> = out.iter().map(told).collect();
     (!told.is_empty()).then(|| Proven {
         set,
         doubt: format!(

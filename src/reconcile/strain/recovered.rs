@@ -56,7 +56,8 @@ fn recover(
             .map(|g| state.influence[g * n_c + l])
             .collect::<Vec<f64>>()
     };
-    let columns = read_patterns(frame, members, &(0..n_l).map(column).collect::<Vec<_>>());
+    let columns: Vec<Vec<f64>> = (0..n_l).map(column).collect();
+    let columns = read_patterns(frame, members, &columns, run);
     state.columns[run * n_c..run * n_c + n_l].fill(0.0);
     let mut rest = state.strain(run);
     read_all(frame, members, run, &mut rest, Part::Whole);

@@ -31,8 +31,10 @@ impl Scorer for Likelihood<'_> {
         if full_id(a.as_ref()) == full_id(b.as_ref()) {
             return false;
         }
-        let shared = a.gauges().iter().any(|g| b.gauges().contains(g));
-        !shared || a.kind().besides(b.kind())
+        let (at_a, at_b) = (a.gauges(), b.gauges());
+        let shared = at_a.iter().any(|g| at_b.contains(g));
+        let n = self.frame.n_gauges();
+        !shared || a.kind().besides(b.kind()) || inside(&at_a, &at_b, n) || inside(&at_b, &at_a, n)
     }
 
     fn kin(&self, candidate: usize) -> usize {
@@ -65,5 +67,29 @@ impl Scorer for Likelihood<'_> {
             .enumerate()
             .filter_map(same)
             .collect()
+    }
+}
+
+/// Whether a fault at the gauge of `one` is told from one of `many` in file order, of `n` in all, by the others of `many`: all gauges there
+/// are, or one of a stretch that is not at its end, where the stretch might as well be shorter.
+fn inside(one: &[usize], many: &[usize], n: usize) -> bool {
+    let &[gauge] = one else {
+        return false;
+    };
+    let within = many.len() > 3 && many.first() < Some(&gauge) && Some(&gauge) < many.last();
+    many.len() == n && n > 3 || within && many.contains(&gauge)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::inside;
+
+    #[test]
+    fn a_fault_of_one_gauge_is_told_beside_one_of_all_or_within_a_stretch_and_not_at_its_end() {
+        let all: Vec<usize> = (0..9).collect();
+        assert!(inside(&[0], &all, 9) && inside(&[4], &all, 9));
+        assert!(inside(&[4], &all[2..7], 9));
+        assert!(!inside(&[2], &all[2..7], 9) && !inside(&[6], &all[2..7], 9));
+        assert!(!inside(&[3], &[3, 7], 9) && !inside(&[3, 4], &all, 9));
     }
 }

@@ -1,0 +1,48 @@
+//! A reading that stands alone: far off, where everything else is at the floor.
+
+use super::covariance::{Selection, covariance};
+use super::explanation::Explanation;
+use super::frame::StrainFrame;
+use super::judge::{adequacy_of, at_floor};
+use super::likelihood::Fit;
+use super::prediction::predict;
+use crate::linalg::precision::Precision;
+use crate::reconcile::effect::Candidate;
+use crate::reconcile::search::Scored;
+
+/// The reading of the fit runs without which `scored` reaches the floor, in words; `None` where there is no such reading.
+///
+/// One spike in a few hundred readings is no effect, nor does it speak against one. It is the reading furthest off given all others, by
+/// `(P r)_i / sqrt(P_ii)` standard deviations, P the precision of the residual r, and further than a healthy gauge is.
+pub(super) fn but_for_one(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+) -> Option<String> {
+    let e = Explanation::of(frame, candidates, scored);
+    let readings = Selection::of_runs(frame, &frame.observations.fit_runs());
+    let n_g = frame.n_gauges();
+    let predicted = readings.pick(&predict(frame, &e.members), n_g);
+    let read = readings.pick(&frame.observations.values, n_g);
+    let residual: Vec<f64> = read.iter().zip(predicted).map(|(y, p)| y - p).collect();
+    let covariance = covariance(frame, &e.members, &readings, &e.unknown);
+    let precision = Precision::of(&covariance, readings.len())?;
+    let weighted = precision.apply(&residual).into_iter().enumerate();
+    let (at, off) = weighted
+        .map(|(i, v)| (i, v / precision.entry(i, i).sqrt()))
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))?;
+    if off.abs() < frame.rules.part {
+        return None;
+    }
+    let &(run, gauge) = readings.0.get(at)?;
+    let mut rest = frame.clone();
+    *rest.observations.values.get_mut(run * n_g + gauge)? = f64::NAN;
+    at_floor(&rest, &adequacy_of(&rest, candidates, scored)).then(|| {
+        format!(
+            "one reading stands alone, that of {} in {}, {:.1} standard deviations off: a spike, or one that was written down wrong",
+            frame.gauges[gauge].name,
+            frame.observations.runs[run],
+            off.abs()
+        )
+    })
+}
