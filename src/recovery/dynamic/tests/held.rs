@@ -8,14 +8,14 @@ use crate::recovery::dynamic::readings_at_rest;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// What intervals of weighted loads hold, the mean square of errors over that which is told, and that, on structures that differ from what is told by
+/// What intervals of weighted loads hold, the mean square of errors over that which is told, that, and what noise makes of it, on structures that differ from what is told by
 /// random frequencies. `blank` takes readings out of the record, `judged` says which samples count.
 fn held(
     weights: [f64; 2],
     of_loads: impl Fn(&mut ChaCha8Rng) -> Waves,
     blank: impl Fn(&mut [Vec<f64>]),
     judged: impl Fn(usize) -> bool,
-) -> [f64; 3] {
+) -> [f64; 4] {
     let mut random = ChaCha8Rng::seed_from_u64(15);
     let mut normal = || {
         let (a, b): (f64, f64) = (
@@ -27,6 +27,7 @@ fn held(
     let (told, sd, noise, rate, samples) = (STRUCTURE, [0.01, 0.0], 1e-4, 250.0, 1500);
     let (s, dynamics) = told.told(20.0, sd);
     let (mut inside, mut all, mut errors, mut variances) = (0, 0, 0.0, 0.0);
+    let mut by_noise = 0.0;
     for trial in 0..100 {
         let mut real = STRUCTURE;
         for j in 0..3 {
@@ -58,21 +59,26 @@ fn held(
                 .map(|(g, w)| w * rested.readings[*g][i])
                 .sum();
             let of_noise = (w.transpose() * rested.doubt.of_noise(&used) * &w)[0];
-            let variance = rested.noise_share * noise * noise * w.norm_squared()
-                + of_noise
-                + rested.doubt.of_motion(Some(i), &used, w.as_slice());
+            let of_noise = rested.noise_share * noise * noise * w.norm_squared() + of_noise;
+            let variance = of_noise + rested.doubt.of_motion(Some(i), &used, w.as_slice());
             let expected: f64 = (0..2)
                 .map(|l| weights[l] * load(&waves[l], i as f64 / rate))
                 .sum();
             inside += usize::from((got - expected).powi(2) <= 1.96_f64.powi(2) * variance);
             errors += (got - expected).powi(2);
             variances += variance;
+            by_noise += of_noise;
             all += 1;
         }
     }
     assert!(all > 300, "{all}");
     let all = all as f64;
-    [inside as f64 / all, errors / variances, variances / all]
+    [
+        inside as f64 / all,
+        errors / variances,
+        variances / all,
+        by_noise / all,
+    ]
 }
 
 fn shaken(random: &mut ChaCha8Rng) -> Waves {
@@ -86,7 +92,7 @@ fn shaken(random: &mut ChaCha8Rng) -> Waves {
 #[test]
 fn intervals_of_sums_of_loads_hold_what_one_mode_puts_into_all() {
     for weights in [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0], [1.0, -1.0]] {
-        let [share, squares, _] = held(weights, shaken, |_| (), |_| true);
+        let [share, squares, ..] = held(weights, shaken, |_| (), |_| true);
         // As above; the mean square of 100 structures scatters by 14 % and by what their loads differ in, three times that.
         assert!((0.90..=0.99).contains(&share), "{weights:?} {share}");
         assert!((0.55..=1.6).contains(&squares), "{weights:?} {squares}");
@@ -103,7 +109,7 @@ fn intervals_hold_for_the_gauges_that_read() {
     };
     for part in [0..750, 750..1500] {
         for weights in [[1.0, 0.0], [0.0, 1.0]] {
-            let [share, squares, _] = held(weights, shaken, halves, |i| part.contains(&i));
+            let [share, squares, ..] = held(weights, shaken, halves, |i| part.contains(&i));
             assert!(
                 (0.90..=0.99).contains(&share),
                 "{part:?} {weights:?} {share}"
@@ -133,13 +139,18 @@ fn intervals_follow_a_record_that_rests_and_then_shakes() {
     let shakes = |i: usize| (i as f64 / 250.0 - 3.0).abs() < 0.3;
     let rests = |i: usize| i < 375;
     for weights in [[1.0, 0.0], [0.0, 1.0]] {
-        let [share, squares, wide] = held(weights, burst, |_| (), shakes);
+        let [share, squares, wide, noise] = held(weights, burst, |_| (), shakes);
         assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
         assert!((0.4..=2.0).contains(&squares), "{weights:?} {squares}");
-        let [share, _, narrow] = held(weights, burst, |_| (), rests);
+        let [share, _, narrow, same] = held(weights, burst, |_| (), rests);
         assert!((0.88..=1.0).contains(&share), "{weights:?} {share}");
-        // The burst is a Gaussian of .3 s: five of its widths before it there is noise alone.
-        assert!(narrow < 0.01 * wide, "{weights:?} {narrow} {wide}");
+        // The burst is a Gaussian of .3 s: five of its widths before it there is noise alone, which is the same all the time.
+        assert!(
+            (same / noise - 1.0).abs() < 1e-9,
+            "{weights:?} {same} {noise}"
+        );
+        let [narrow, wide] = [narrow - noise, wide - noise];
+        assert!(narrow < 0.01 * wide, "{weights:?} {narrow} {wide} {noise}");
     }
 }
 
