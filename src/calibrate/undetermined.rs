@@ -123,9 +123,9 @@ const ENOUGH: f64 = 5.0;
 /// Loads that the calibrated S tells worse than half of their size in half of the runs or more, though the runs determine S by count: one run of
 /// known loads beside many whose sum alone is known decides how that sum is shared, by chance.
 ///
-/// An error where of some runs a sum alone is known, where a load is not told at all, and where many runs leave a load known worse than it is
-/// large: they do not fit their loads. Of few runs whose loads are all known it is a warning: their scatter is
-/// known badly, and repeats narrow it.
+/// An error where of some runs a sum alone is known, where a load is not told at all, and where, without a model, many runs leave a load known worse
+/// than it is large: they do not fit their loads. Of few runs whose loads are all known it is a warning: their scatter is known badly, and repeats
+/// narrow it. So it is beside a model, by which S is determined: then gauges that hardly feel a load are what tells it badly.
 pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Finding> {
     let errors = ErrorModel {
         noise: task.noise,
@@ -171,7 +171,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         .collect();
     let worst = wide.iter().map(|w| w.1).max_by(f64::total_cmp)?;
     let shared = used.iter().any(|r| !is_known(r, &state.scales));
-    let contradicts = worst > 1.0 && state.scatter.dof > ENOUGH;
+    let contradicts = task.model.is_none() && worst > 1.0 && state.scatter.dof > ENOUGH;
     let error = shared || contradicts || !worst.is_finite();
     let names: Vec<&str> = (wide.iter())
         .map(|w| task.loads[w.0].name.as_str())

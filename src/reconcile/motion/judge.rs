@@ -210,8 +210,9 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
 }
 
 /// The best set, or the best one all of whose members may be named: sizes beyond their own scatter (a change of mass of which nothing is known but
-/// that it hides what the wheels weigh makes any channel fit), channels beyond their tolerance, no effect of the vehicle that closes less of the gap than declared tolerances leave on average, and none beside one of the vehicle that closes no more than what that one's
-/// form leaves of itself.
+/// that it hides what the wheels weigh makes any channel fit), channels beyond their tolerance, no effect of the vehicle that closes less of the
+/// gap than declared tolerances leave on average, and none beside one of the vehicle that closes no more than what that one's form leaves of
+/// itself.
 fn nameable(
     scorer: &MotionScorer,
     all: &[Scored<MotionFit>],

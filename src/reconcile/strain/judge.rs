@@ -180,7 +180,9 @@ fn reaches_floor(
     if noise > frame.rules.noise || at_floor(frame, after) {
         return (noise <= frame.rules.noise, None);
     }
-    let alone = but_for_one(frame, candidates, scored);
+    let alone = but_for_one(frame, candidates, scored, |rest| {
+        at_floor(rest, &adequacy_of(rest, candidates, scored))
+    });
     (alone.is_some(), alone)
 }
 

@@ -3,14 +3,13 @@
 use super::covariance::{Selection, covariance};
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::judge::{adequacy_of, at_floor};
 use super::likelihood::Fit;
 use super::prediction::predict;
 use crate::linalg::precision::Precision;
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
-/// The reading of the fit runs without which `scored` reaches the floor, in words; `None` where there is no such reading.
+/// The reading of the fit runs without which `scored` reaches the floor, as `at_floor` judges, in words; `None` where there is no such reading.
 ///
 /// One spike in a few hundred readings is no effect, nor does it speak against one. It is the reading furthest off given all others, by
 /// `(P r)_i / sqrt(P_ii)` standard deviations, P the precision of the residual r, and further than a healthy gauge is.
@@ -18,6 +17,7 @@ pub(super) fn but_for_one(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
+    at_floor: impl FnOnce(&StrainFrame) -> bool,
 ) -> Option<String> {
     let e = Explanation::of(frame, candidates, scored);
     let readings = Selection::of_runs(frame, &frame.observations.fit_runs());
@@ -37,7 +37,7 @@ pub(super) fn but_for_one(
     let &(run, gauge) = readings.0.get(at)?;
     let mut rest = frame.clone();
     *rest.observations.values.get_mut(run * n_g + gauge)? = f64::NAN;
-    at_floor(&rest, &adequacy_of(&rest, candidates, scored)).then(|| {
+    at_floor(&rest).then(|| {
         format!(
             "one reading stands alone, that of {} in {}, {:.1} standard deviations off: a spike, or one that was written down wrong",
             frame.gauges[gauge].name,

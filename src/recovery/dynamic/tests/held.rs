@@ -8,8 +8,8 @@ use crate::recovery::dynamic::readings_at_rest;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// What intervals of weighted loads hold, the mean square of errors over that which is told, that, and what noise makes of it, on structures that differ from what is told by
-/// random frequencies. `blank` takes readings out of the record, `judged` says which samples count.
+/// What intervals of weighted loads hold, the mean square of errors over that which is told, that, and what noise makes of it, on structures that
+/// differ from what is told by random frequencies. `blank` takes readings out of the record, `judged` says which samples count.
 fn held(
     weights: [f64; 2],
     of_loads: impl Fn(&mut ChaCha8Rng) -> Waves,
