@@ -120,12 +120,18 @@ fn is_dead(
     if used.is_empty() || rows.len() < least.min(part.len()) / 2 {
         return false;
     }
-    gives == Gives::Nothing || changes(s, &used, &rows, g, errors, noise_factor)
+    // One whose zero is off stands still too while the vehicle stands: that its value is another says nothing of a part.
+    let changes = || match Others::new(s, &used, g, errors, noise_factor) {
+        Some(others) => others.change(&rows),
+        None => any_changes(&used, &rows, errors.noise_variance(noise_factor)),
+    };
+    gives == Gives::Nothing || changes()
 }
 
-/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) say that the strain at gauge `g` changes by more than noise and
-/// the model's error make of the others' readings; where the others don't tell it, whether any of theirs changes by more than noise.
-pub fn changes(
+/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) say that gauge `g`, which gives one value in all rows, is dead:
+/// the strain there changes by more than noise and the model's error make of the others' readings, or it is, in the mean, farther from that value
+/// than they make. Where the others don't tell it, whether any of theirs changes by more than noise.
+pub fn is_told_dead(
     s: &Sensitivity,
     used: &[usize],
     rows: &[&Vec<f64>],
@@ -133,37 +139,16 @@ pub fn changes(
     errors: ErrorModel,
     noise_factor: f64,
 ) -> bool {
-    let Some(others) = Others::new(s, used, g, errors, noise_factor) else {
-        let limit = CHANGES * CHANGES * errors.noise_variance(noise_factor);
-        let of = |h: &usize| variance(rows.iter().map(|row| row[*h]));
-        return used.iter().any(|h| of(h) > limit);
-    };
-    let loads: Vec<Vec<f64>> = rows.iter().map(|row| others.gain.loads(row)).collect();
-    let change = variance(loads.iter().map(|f| others.strain(f)));
-    let sizes = (0..s.loads.len()).map(|l| variance(loads.iter().map(|f| f[l])).sqrt());
-    change > CHANGES * CHANGES * others.variance(&sizes.collect::<Vec<f64>>())
+    match Others::new(s, used, g, errors, noise_factor) {
+        Some(others) => others.change(rows) || others.contradict(rows, g),
+        None => any_changes(used, rows, errors.noise_variance(noise_factor)),
+    }
 }
 
-/// Whether the readings of gauge `g` lie farther from what the gauges `used` expect there, in the mean of the rows, than noise and the model's
-/// error make; `false` where the others don't tell it.
-pub fn contradicts(
-    s: &Sensitivity,
-    used: &[usize],
-    rows: &[&Vec<f64>],
-    g: usize,
-    errors: ErrorModel,
-    noise_factor: f64,
-) -> bool {
-    let Some(others) = Others::new(s, used, g, errors, noise_factor) else {
-        return false;
-    };
-    let n = rows.len().max(1) as f64;
-    let mean = |of: &dyn Fn(&Vec<f64>) -> f64| rows.iter().map(|row| of(row)).sum::<f64>() / n;
-    let loads: Vec<f64> = (0..s.loads.len())
-        .map(|l| mean(&|row| others.gain.loads(row)[l]))
-        .collect();
-    let off = mean(&|row| row[g]) - others.strain(&loads);
-    off * off > CHANGES * CHANGES * others.variance(&loads)
+/// Whether any gauge of `used` changes by more than noise.
+fn any_changes(used: &[usize], rows: &[&Vec<f64>], noise: f64) -> bool {
+    let of = |h: &usize| variance(rows.iter().map(|row| row[*h]));
+    used.iter().any(|h| of(h) > CHANGES * CHANGES * noise)
 }
 
 /// What some gauges tell of the strain at another one.
@@ -201,6 +186,26 @@ impl<'a> Others<'a> {
             own,
             gain,
         })
+    }
+
+    /// Whether they say that the strain there changes.
+    fn change(&self, rows: &[&Vec<f64>]) -> bool {
+        let loads: Vec<Vec<f64>> = rows.iter().map(|row| self.gain.loads(row)).collect();
+        let change = variance(loads.iter().map(|f| self.strain(f)));
+        let sd = |l: usize| variance(loads.iter().map(|f| f[l])).sqrt();
+        let sizes: Vec<f64> = (0..self.own.len()).map(sd).collect();
+        change > CHANGES * CHANGES * self.variance(&sizes)
+    }
+
+    /// Whether they say, in the mean, that the strain there is another than gauge `g` reads.
+    fn contradict(&self, rows: &[&Vec<f64>], g: usize) -> bool {
+        let n = rows.len().max(1) as f64;
+        let mut loads = vec![0.0; self.own.len()];
+        for f in rows.iter().map(|row| self.gain.loads(row)) {
+            loads.iter_mut().zip(f).for_each(|(sum, f)| *sum += f / n);
+        }
+        let off = rows.iter().map(|row| row[g]).sum::<f64>() / n - self.strain(&loads);
+        off * off > CHANGES * CHANGES * self.variance(&loads)
     }
 
     /// Loads that strain it.

@@ -18,7 +18,7 @@ use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
-use crate::recovery::stuck::{changes, contradicts};
+use crate::recovery::stuck::is_told_dead;
 use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
 use crate::sensitivity::Sensitivity;
 use crate::series::SeriesError;
@@ -330,10 +330,7 @@ impl Kernel {
         }
         let (errors, factor) = (self.errors, self.noise_factor);
         for (gives, (g, ..)) in given.iter_mut().zip(found) {
-            let dead = || {
-                changes(&self.sensitivity, &used, &rows, *g, errors, factor)
-                    || contradicts(&self.sensitivity, &used, &rows, *g, errors, factor)
-            };
+            let dead = || is_told_dead(&self.sensitivity, &used, &rows, *g, errors, factor);
             if *gives == Gives::OneValue && !dead() {
                 *gives = Gives::Signal;
             }
