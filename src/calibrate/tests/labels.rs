@@ -1,5 +1,6 @@
 //! What known runs contradict or do not tell: labels exchanged between two runs, loads shared out by chance, one loading in several sizes.
 
+use super::severe;
 use crate::calibrate::*;
 use crate::finding::Severity;
 use crate::recovery::{ErrorModel, Readings, recover};
@@ -49,11 +50,6 @@ fn lanes(times: usize, scatter: f64, seed: u64) -> Task {
         runs,
         sums: vec![vec![1.0; 3]],
     }
-}
-
-fn severe(c: &Calibration, code: &str) -> Option<(Severity, String)> {
-    let found = c.findings.iter().find(|f| f.code == code);
-    found.map(|f| (f.severity, f.subject.clone()))
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! One thing wrong, planted: a sign or a unit of known loads, a gauge wired backwards, two exchanged.
 
+use super::severe;
 use crate::calibrate::*;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
@@ -68,11 +69,6 @@ fn task(times: usize, seed: u64) -> Task {
         runs: runs.collect(),
         sums: vec![vec![1.0; 3]],
     }
-}
-
-fn severe(c: &Calibration, code: &str) -> Option<(Severity, String)> {
-    let found = c.findings.iter().find(|f| f.code == code);
-    found.map(|f| (f.severity, f.subject.clone()))
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! Errors of frequency, of modes that are not told, and of the gauges that read, against the intervals that are told of them.
 
 use super::{
-    Matrix, N_GAUGES, STRUCTURE, Structure, TAU, Waves, load, load_weights, loads_at, strain,
-    variance, waves,
+    Matrix, N_GAUGES, STRUCTURE, Structure, TAU, Waves, load, load_weights, loads_at, normal,
+    strain, variance, waves,
 };
 use crate::recovery::dynamic::readings_at_rest;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 /// What intervals of weighted loads hold, the mean square of errors over that which is told, that, and what noise makes of it, on structures that
@@ -17,13 +17,7 @@ fn held(
     judged: impl Fn(usize) -> bool,
 ) -> [f64; 4] {
     let mut random = ChaCha8Rng::seed_from_u64(15);
-    let mut normal = || {
-        let (a, b): (f64, f64) = (
-            random.random_range(1e-12..1.0),
-            random.random_range(0.0..TAU),
-        );
-        (-2.0 * a.ln()).sqrt() * b.cos()
-    };
+    let mut normal = || normal(&mut random);
     let (told, sd, noise, rate, samples) = (STRUCTURE, [0.01, 0.0], 1e-4, 250.0, 1500);
     let (s, dynamics) = told.told(20.0, sd);
     let (mut inside, mut all, mut errors, mut variances) = (0, 0, 0.0, 0.0);

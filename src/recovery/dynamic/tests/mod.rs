@@ -7,6 +7,15 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
+/// Mean 0, variance 1 (Box and Muller).
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (a, b): (f64, f64) = (
+        random.random_range(1e-12..1.0),
+        random.random_range(0.0..TAU),
+    );
+    (-2.0 * a.ln()).sqrt() * b.cos()
+}
+
 fn sensitivity(values: Matrix) -> Sensitivity {
     let loads = (0..values.ncols()).map(|l| Load::named(format!("F{l}")));
     Sensitivity {
@@ -263,13 +272,7 @@ fn a_gap_takes_what_hangs_on_it_and_the_rest_stays() {
 #[test]
 fn intervals_hold_what_frequencies_damping_and_noise_make() {
     let mut random = ChaCha8Rng::seed_from_u64(5);
-    let mut normal = || {
-        let (a, b): (f64, f64) = (
-            random.random_range(1e-12..1.0),
-            random.random_range(0.0..TAU),
-        );
-        (-2.0 * a.ln()).sqrt() * b.cos()
-    };
+    let mut normal = || normal(&mut random);
     let (told, sd, noise, rate) = (STRUCTURE, [0.02, 0.3], 2e-5, 250.0);
     let (s, dynamics) = told.told(20.0, sd);
     let (mut held, mut all) = (0, 0);
@@ -313,13 +316,7 @@ fn intervals_hold_what_frequencies_damping_and_noise_make() {
 #[test]
 fn noise_alone_keeps_the_variance_that_is_told() {
     let mut random = ChaCha8Rng::seed_from_u64(6);
-    let mut normal = || {
-        let (a, b): (f64, f64) = (
-            random.random_range(1e-12..1.0),
-            random.random_range(0.0..TAU),
-        );
-        (-2.0 * a.ln()).sqrt() * b.cos()
-    };
+    let mut normal = || normal(&mut random);
     let (s, dynamics) = STRUCTURE.told(20.0, [0.0, 0.0]);
     let record: Vec<Vec<f64>> = (0..N_GAUGES)
         .map(|_| (0..40_000).map(|_| normal()).collect())
