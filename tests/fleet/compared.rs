@@ -130,6 +130,41 @@ fn a_factor_on_every_load_is_that_factor_to_the_slope_and_the_error_of_s_leaves_
 }
 
 #[test]
+fn sums_of_loads_are_counted_like_loads() {
+    let job = "target = { total = 1e6 }\n[[combination]]\nname = \"total\"\nterms = { \"A.FZ\" = 1.0, \"B.FZ\" = 1.0 }\n\
+               [[combination]]\nname = \"twice\"\nterms = { \"A.FZ\" = 2.0 }\n";
+    let dir = folder("sums", job, &[("T1_1.csv", record(4.0, PERIODS, right))]);
+    let (code, result) = fleet(&dir, &["T1_1.csv"], &[]);
+    assert_eq!(code, 0, "{result}");
+    let load = |l: usize| &result["vehicles"][0]["loads"][l];
+    assert_eq!(load(2)["load"], "total", "{result}");
+    // From 1.7 of the amplitude down to the lowest sample, up to -0.3, down and up again.
+    let turn = |i: usize| std::f64::consts::TAU * i as f64 / PERIOD as f64;
+    let sum = |i: usize| 4.0 * (turn(i).cos() + 0.7 * (2.0 * turn(i)).cos());
+    let lowest = (0..PERIOD).map(sum).fold(f64::INFINITY, f64::min);
+    let period = (sum(0) - lowest).powi(SLOPE) + (sum(PERIOD / 2) - lowest).powi(SLOPE);
+    is_close(number(&load(2)["damage"]), PERIODS as f64 * period);
+    is_close(number(&load(2)["max"]), sum(0));
+    is_close(number(&load(2)["min"]), lowest);
+    is_close(
+        number(&load(2)["to_target"]["value"]),
+        PERIODS as f64 * period / 1e6,
+    );
+    // Twice a load is that load in a smaller unit: so much more damage, as well known.
+    let power = 2_f64.powi(SLOPE);
+    for key in ["damage", "damage_low", "damage_high"] {
+        is_close(number(&load(3)[key]), power * number(&load(0)[key]));
+    }
+    let table = std::fs::read_to_string(dir.join("out/fleet.csv")).unwrap();
+    assert!(table.contains("\nT1,1,") && table.contains(",total,"));
+    // A sum of what S lacks is a fault of the job.
+    let job = "[[combination]]\nname = \"total\"\nterms = { \"C.FZ\" = 1.0 }\n";
+    let dir = folder("no_sum", job, &[("T1_1.csv", record(4.0, 1, right))]);
+    let (code, said) = fleet(&dir, &["T1_1.csv"], &[]);
+    assert_eq!(code, 2, "{said}");
+}
+
+#[test]
 fn a_mission_is_the_damage_an_hour_of_its_kinds_by_their_shares() {
     let job = "mission_hours = 1000\n\
                [[fleet.mission]]\nname = \"road\"\nshare = 0.75\ndays = [\"road*\"]\n\

@@ -11,8 +11,7 @@ use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
 use crate::app::job::gauge_column::strain_columns;
-use crate::app::recover::strain_without_gauge;
-use crate::app::strain::LoadUnits;
+use crate::app::recover::{Listed, strain_without_gauge};
 use crate::finding::Severity;
 use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
@@ -57,11 +56,11 @@ pub struct Kernel {
     pub errors: ErrorModel,
     /// Noise variance of a reading less zero, in units of that of a reading.
     pub noise_factor: f64,
-    /// Units by load.
-    pub units: Vec<LoadUnits>,
+    /// What is counted: the loads of S, then sums of them, with their units.
+    pub listed: Listed,
     /// Harm of a cycle.
     pub law: Law,
-    /// Width of a class, by load, report units.
+    /// Width of a class, by load and sum, report units.
     pub widths: Vec<f64>,
     /// Seconds in the unit of times in tables that state none; `None`: seconds.
     pub time_unit_s: Option<f64>,
@@ -107,12 +106,12 @@ impl Kernel {
         );
         let filter = widened.as_ref().unwrap_or(&r.filter);
         let scales = scales(&r, filter, pass.missing.whole, &pass.by_gauges);
-        let loads = pass.counters.into_iter().zip(&self.sensitivity.loads);
+        let loads = pass.counters.into_iter().zip(&self.listed.names);
         let loads = loads
-            .zip(&self.units)
+            .zip(&self.listed.units)
             .zip(pass.noise.iter().zip(scales))
-            .map(|(((c, load), unit), (noise, scale))| LoadDay {
-                name: load.name.clone(),
+            .map(|(((c, name), unit), (noise, scale))| LoadDay {
+                name: name.clone(),
                 unit: unit.name.clone(),
                 noise: *noise,
                 scale,
@@ -140,7 +139,7 @@ impl Kernel {
 
     /// The record, recovered and counted.
     fn pass(&self, record: &Record, r: &Recovering) -> Result<Pass, String> {
-        let k = self.sensitivity.loads.len();
+        let k = self.listed.names.len();
         let noise = noise_of(r);
         let counter = |l: usize| {
             let at = |v: &[f64]| v.get(l).copied().unwrap_or(1.0);
@@ -204,14 +203,16 @@ impl Kernel {
         if !explained || widening == Widening::none() {
             return None;
         }
-        Filter::new(
+        let mut filter = Filter::new(
             &r.sensitivity,
             r.zero.clone(),
             self.errors,
             self.noise_factor,
             &r.typical,
             widening,
-        )
+        )?;
+        filter.combine(&self.listed.sums);
+        Some(filter)
     }
 
     /// The columns that a record is read for.
@@ -400,7 +401,7 @@ impl Kernel {
         {
             return Err("every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?".to_owned());
         }
-        let filter = Filter::new(
+        let mut filter = Filter::new(
             &s,
             zero.clone(),
             self.errors,
@@ -409,9 +410,12 @@ impl Kernel {
             Widening::none(),
         )
         .ok_or_else(singular)?;
-        let factors: Vec<f64> = self.units.iter().map(|u| u.factor).collect();
+        filter.combine(&self.listed.sums);
+        let factors: Vec<f64> = self.listed.units.iter().map(|u| u.factor).collect();
         let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
-        let values = |g: usize| row(g).map(|(g, l, f)| s.values[(g, l)] / f).collect();
+        // Sums strain nothing beyond their loads.
+        let values = |(g, l, f)| if l < k { s.values[(g, l)] / f } else { 0.0 };
+        let values = |g: usize| row(g).map(values).collect();
         let by_row = (0..used.len()).map(values).collect();
         Ok(Recovering {
             filter,

@@ -92,12 +92,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         ))
     })?;
     let kernel = kernel_of(&mut work, job)?;
-    let loads: Vec<&str> = kernel
-        .sensitivity
-        .loads
-        .iter()
-        .map(|l| l.name.as_str())
-        .collect();
+    let loads: Vec<&str> = kernel.listed.names.iter().map(String::as_str).collect();
     check_targets(&job.file, section, &loads)?;
     let kept = KeptDays::new(&spec.folder, job_digest(&mut work, job, section));
     let order = |names: &mut dyn Iterator<Item = &str>| {

@@ -5,8 +5,8 @@ use super::recovering::UnderWay;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::job::correct::channel_of;
-use crate::app::recover::{reference_strain, zero_of};
-use crate::app::strain::{load_units, prepare, stated_errors};
+use crate::app::recover::{listed, reference_strain, zero_of};
+use crate::app::strain::{prepare, stated_errors};
 use crate::app::work::Work;
 use crate::app::zeroed::no_zero_runs;
 use crate::sensitivity::check_separability;
@@ -47,8 +47,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     {
         *z -= r;
     }
-    let names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
-    let units = load_units(job, &names);
+    let listed = listed(job, s)?;
     let section = job.fleet.as_ref();
     let law = Law {
         slope: job.recover.slope,
@@ -59,15 +58,16 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
             })
         }),
     };
-    let widths = s
-        .loads
-        .iter()
-        .zip(&units)
-        .map(|(l, u)| {
-            l.expected
-                .filter(|e| *e > 0.0)
-                .map_or(1.0, |e| round(e * u.factor / CLASSES))
-        })
+    let expected = |l: usize| s.loads.get(l)?.expected.filter(|e| *e > 0.0);
+    let of_sum = |terms: &Vec<(usize, f64)>| -> Option<f64> {
+        let each = terms.iter().map(|(l, c)| Some(c.abs() * expected(*l)?));
+        each.sum::<Option<f64>>().filter(|e| *e > 0.0)
+    };
+    let loads = (0..s.loads.len()).map(expected);
+    let widths = loads
+        .chain(listed.sums.iter().map(of_sum))
+        .zip(&listed.units)
+        .map(|(e, u)| e.map_or(1.0, |e| round(e * u.factor / CLASSES)))
         .collect();
     let errors = stated_errors(measured, s, prepared.fields.as_ref());
     Ok(Kernel {
@@ -75,7 +75,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         zero,
         errors,
         noise_factor: 1.0 + effective.map_or(0.0, |n| 1.0 / n),
-        units,
+        listed,
         law,
         widths,
         time_unit_s: measured.time_unit_s,

@@ -64,9 +64,9 @@ pub(super) struct Recovering {
     pub zero: Vec<f64>,
     /// Readings that are taken for none, since the gauge is dead there: used gauge and samples.
     pub blank: Vec<(usize, Range<usize>)>,
-    /// S of the used gauges, strain per report unit.
+    /// S of the used gauges, strain per report unit; of sums of loads nothing.
     pub s: Vec<Vec<f64>>,
-    /// Report units per job unit, by load.
+    /// Report units per job unit, by load and sum.
     pub factors: Vec<f64>,
     /// Samples of the record.
     pub samples: usize,

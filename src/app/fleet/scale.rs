@@ -43,7 +43,9 @@ pub(super) fn scales(
     let mut sets: Vec<(&Vec<usize>, u64)> = by_gauges.iter().map(|(g, n)| (g, *n)).collect();
     sets.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(b.0)));
     sets.truncate(SETS);
-    let of_all = covariances(r, |f| filter.sigma(f));
+    let scales = r.sensitivity.scales();
+    let covariances = |sigma: &dyn Fn(&[f64]) -> Vec<f64>| covariances(&scales, &r.factors, sigma);
+    let of_all = covariances(&|f| filter.sigma(f));
     if sets.is_empty() {
         return of_all;
     }
@@ -51,7 +53,7 @@ pub(super) fn scales(
         .into_iter()
         .filter_map(|(gauges, n)| {
             let gain = filter.estimate(gauges.clone())?;
-            let of_set = covariances(r, |f| filter.sigma_with(&gain, f));
+            let of_set = covariances(&|f| filter.sigma_with(&gain, f));
             Some((gain, n as f64, of_set))
         })
         .collect();
@@ -73,27 +75,76 @@ pub(super) fn scales(
         .collect()
 }
 
-/// What the variance of each load, by `sigma` at loads, gains where one load acts alone.
-fn covariances(r: &Recovering, sigma: impl Fn(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
-    let k = r.factors.len();
-    let zero_sigma = sigma(&vec![0.0; k]);
-    let mut out = vec![vec![0.0; k * k]; k];
-    for m in 0..k {
-        let scales = r.sensitivity.scales();
-        let one = scales.get(m).copied().filter(|s| *s > 0.0).unwrap_or(1.0);
+/// Of each load the matrix B by which its variance, by `sigma` at loads, gains `f' B f` with the loads `f`: its diagonal from loads that act alone,
+/// the rest from pairs of them.
+///
+/// `scales` are sizes of the loads, `factors` report units per job unit, of sums of loads too, which stand behind the loads and are known by these.
+fn covariances(
+    scales: &[f64],
+    factors: &[f64],
+    sigma: impl Fn(&[f64]) -> Vec<f64>,
+) -> Vec<Vec<f64>> {
+    let k = factors.len();
+    let one = |m: usize| scales.get(m).copied().filter(|s| *s > 0.0).unwrap_or(1.0);
+    let own = scales.len();
+    let at_rest = sigma(&vec![0.0; k]);
+    let gained = |loads: &[usize]| -> Vec<f64> {
         let mut f = vec![0.0; k];
-        if let Some(slot) = f.get_mut(m) {
-            *slot = FAR * one;
+        for m in loads {
+            if let Some(slot) = f.get_mut(*m) {
+                *slot = FAR * one(*m);
+            }
         }
-        for (l, sigma) in sigma(&f).iter().enumerate() {
-            let own = zero_sigma.get(l).copied().unwrap_or(0.0);
-            let per = (sigma * sigma - own * own).max(0.0) / (FAR * one).powi(2);
-            let factor = |l: usize| r.factors.get(l).copied().unwrap_or(1.0);
-            let units = factor(l) / factor(m);
-            if let Some(slot) = out.get_mut(l).and_then(|row| row.get_mut(m * k + m)) {
-                *slot = per * units * units;
+        let both = sigma(&f).into_iter().zip(&at_rest);
+        both.map(|(s, rest)| (s * s - rest * rest).max(0.0))
+            .collect()
+    };
+    let alone: Vec<Vec<f64>> = (0..own).map(|m| gained(&[m])).collect();
+    let factor = |l: usize| factors.get(l).copied().unwrap_or(1.0);
+    let mut out = vec![vec![0.0; k * k]; k];
+    for (m, of_m) in alone.iter().enumerate() {
+        for (n, of_n) in alone.iter().enumerate().skip(m) {
+            let pair = if n > m { gained(&[m, n]) } else { Vec::new() };
+            for (l, matrix) in out.iter_mut().enumerate() {
+                let at = |v: &[f64]| v.get(l).copied().unwrap_or(0.0);
+                let (a, b) = (at(of_m), at(of_n));
+                let most = (a * b).sqrt();
+                let both = match n > m {
+                    true => (0.5 * (at(&pair) - a - b)).clamp(-most, most),
+                    false => a,
+                };
+                let units = factor(l) * factor(l) / (factor(m) * factor(n));
+                let per = both / (FAR * one(m)) / (FAR * one(n)) * units;
+                for i in [m * k + n, n * k + m] {
+                    if let Some(slot) = matrix.get_mut(i) {
+                        *slot = per;
+                    }
+                }
             }
         }
     }
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sum_of_loads_has_what_their_errors_have_in_common() {
+        // One error of 2 % on both loads, and their sum; kN and kN, of N.
+        let common = |of: [f64; 2]| move |f: &[f64]| 0.02 * (of[0] * f[0] + of[1] * f[1]);
+        let errors = [common([1.0, 0.0]), common([0.0, 1.0]), common([1.0, 1.0])];
+        let sigma = |f: &[f64]| errors.iter().map(|e| e(f).hypot(3.0)).collect();
+        let out = covariances(&[2e4, 5e3], &[1e-3; 3], sigma);
+        let is_close = |of: &[f64], expected: [f64; 9]| {
+            // Noise of 3 beside loads of 1e9 and more.
+            let both = of.iter().zip(expected);
+            both.for_each(|(a, b)| assert!((a - b).abs() < 1e-12, "{of:?}"));
+        };
+        let s = 0.02 * 0.02;
+        is_close(&out[0], [s, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        is_close(&out[1], [0.0, 0.0, 0.0, 0.0, s, 0.0, 0.0, 0.0, 0.0]);
+        is_close(&out[2], [s, s, 0.0, s, s, 0.0, 0.0, 0.0, 0.0]);
+    }
 }
