@@ -17,7 +17,11 @@ mod open;
 mod pages;
 #[cfg(feature = "parquet")]
 mod parquet;
+#[cfg(feature = "parquet")]
+mod parquet_bytes;
 mod reader;
+#[cfg(feature = "parquet")]
+mod rows;
 mod source;
 mod span;
 mod stored;

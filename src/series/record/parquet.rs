@@ -3,24 +3,26 @@
 use super::arrow::durations;
 use super::column::{Column, is_time, name_and_unit, seconds_in};
 use super::pages::Pages;
-use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::parquet_bytes::Whole;
+use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
+use super::rows::{Shared, Strips};
 use super::source::Source;
-use super::strip::{Room, Strip, broken};
+use super::strip::{Strip, broken};
 use super::tile::Tile;
 use crate::series::error::SeriesError;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
 use parquet::column::reader::{ColumnReader, get_column_reader};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::{ParquetMetaData, ParquetMetaDataReader};
-use parquet::file::reader::{ChunkReader, Length};
 use parquet::file::serialized_reader::SerializedPageReader;
 use parquet::schema::types::{ColumnDescPtr, ColumnDescriptor};
 use std::ops::ControlFlow;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
-/// Rows of a row group that are a piece: few enough that a file of one group is read by several threads, enough that a page on the
-/// border, which both neighbours decode, costs little.
+/// Rows of a row group that are a piece: few enough that a file of one group is read by several threads.
 const PIECE: usize = 262_144;
+/// Pieces that decode their rows together: the page on their border is decoded once.
+const TOGETHER: usize = 2;
 
 /// A Parquet file as a record.
 pub struct Parquet {
@@ -33,10 +35,31 @@ pub struct Parquet {
     times: Times,
     /// What is taken off stored times, s.
     epoch: f64,
-    /// Row group, first row in it, rows.
-    pieces: Vec<(usize, usize, usize)>,
-    /// Room of pieces that were decoded before, for the next ones: memory that is given back and taken anew costs as much as decoding.
-    room: Mutex<Vec<Room>>,
+    pieces: Vec<Part>,
+    /// What pieces decode together.
+    units: Vec<Unit>,
+    /// Decoded rows, and memory of those before: given back and taken anew it costs as much as decoding.
+    shared: Shared,
+}
+
+/// Rows of a row group.
+#[derive(Clone, Copy)]
+struct Part {
+    group: usize,
+    /// Its first row there.
+    from: usize,
+    rows: usize,
+    /// The unit that it belongs to.
+    unit: usize,
+}
+
+/// Pieces of a row group that follow each other.
+#[derive(Clone, Copy)]
+struct Unit {
+    group: usize,
+    from: usize,
+    rows: usize,
+    pieces: usize,
 }
 
 /// What an index column says beside its values: a plain number, or a point in time.
@@ -89,16 +112,37 @@ impl Parquet {
             .map(|(leaf, m, c)| (leaf, worth(m), c))
             .map(|(leaf, worth, c)| ((leaf, worth), c))
             .unzip();
-        let mut pieces = Vec::new();
+        let (mut pieces, mut units): (Vec<Part>, Vec<Unit>) = (Vec::new(), Vec::new());
         for (g, group) in metadata.row_groups().iter().enumerate() {
             let rows = usize::try_from(group.num_rows()).unwrap_or(0);
             let parts = rows.div_ceil(PIECE).max(1);
             let each = rows.div_ceil(parts).max(1);
             for from in (0..rows).step_by(each) {
-                pieces.push((g, from, each.min(rows - from)));
+                let n = each.min(rows - from);
+                match units
+                    .last_mut()
+                    .filter(|u| u.group == g && u.pieces < TOGETHER)
+                {
+                    Some(unit) => {
+                        unit.rows += n;
+                        unit.pieces += 1;
+                    }
+                    None => units.push(Unit {
+                        group: g,
+                        from,
+                        rows: n,
+                        pieces: 1,
+                    }),
+                }
+                pieces.push(Part {
+                    group: g,
+                    from,
+                    rows: n,
+                    unit: units.len() - 1,
+                });
             }
         }
-        let rows = pieces.iter().map(|p| p.2).sum();
+        let rows = pieces.iter().map(|p| p.rows).sum();
         let mut file = Self {
             whole,
             metadata,
@@ -110,7 +154,8 @@ impl Parquet {
             },
             epoch: 0.0,
             pieces,
-            room: Mutex::default(),
+            units,
+            shared: Shared::default(),
         };
         if let Some((leaf, meaning, unit, _)) = time {
             file.set_time(leaf, meaning, &unit)?;
@@ -211,50 +256,88 @@ impl RecordReader for Parquet {
     }
 
     fn rows(&self, piece: usize) -> Option<usize> {
-        self.pieces.get(piece).map(|p| p.2)
+        self.pieces.get(piece).map(|p| p.rows)
     }
 
     fn read(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
-        self.read_rows(piece, usize::MAX, picks, sink)
+        let Some(&part) = self.pieces.get(piece) else {
+            return Ok(());
+        };
+        let Some(&unit) = self.units.get(part.unit).filter(|u| u.pieces > 1) else {
+            return self.read_alone(part, picks, sink);
+        };
+        let most = rayon::current_num_threads();
+        let rows = self.shared.rows(part.unit, unit.pieces, picks, most);
+        let decoded = rows.decoded(&mut |j, strip| {
+            let Some(pick) = picks.get(j) else {
+                return true;
+            };
+            let done = self.decode(*pick, (unit.group, unit.from, unit.rows), strip);
+            done.is_ok()
+        });
+        // Where the rows of the other piece are damaged, those of this one need not be.
+        let Some(strips) = decoded else {
+            return self.read_alone(part, picks, sink);
+        };
+        self.lay_out(&strips, part.from - unit.from, part.rows, picks, sink);
+        self.shared.done_with(&rows, strips);
+        Ok(())
     }
 
     fn head(&self, piece: usize, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
-        self.read_rows(piece, BLOCK, picks, sink)
+        match self.pieces.get(piece) {
+            Some(part) => {
+                let rows = part.rows.min(BLOCK);
+                self.read_alone(Part { rows, ..*part }, picks, sink)
+            }
+            None => Ok(()),
+        }
     }
 }
 
 impl Parquet {
-    /// The first rows of a piece, `most` or all that it has: column by column, so that one page is in memory at a time, then in blocks.
-    fn read_rows(
+    /// Some rows, decoded by themselves.
+    fn read_alone(&self, part: Part, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
+        let mut strips = self.shared.spare();
+        strips.resize_with(picks.len(), Strip::default);
+        for (pick, strip) in picks.iter().zip(&mut strips) {
+            self.decode(*pick, (part.group, part.from, part.rows), strip)?;
+        }
+        self.lay_out(&strips, 0, part.rows, picks, sink);
+        self.shared.take_back(strips);
+        Ok(())
+    }
+
+    /// The leaf of what is picked, the worth of a stored unit and what is taken off it; `None` where there is nothing to decode.
+    fn stored(&self, pick: Pick) -> Option<(usize, f64, f64)> {
+        match pick {
+            Pick::Nothing => None,
+            Pick::Column(c) => self.leaves.get(c).map(|(leaf, worth)| (*leaf, *worth, 0.0)),
+            Pick::Time => self.time.map(|(leaf, worth)| (leaf, worth, self.epoch)),
+        }
+    }
+
+    /// Decodes rows of what is picked, a page at a time: row group, first row in it, rows.
+    fn decode(
         &self,
-        piece: usize,
-        most: usize,
-        picks: &[Pick],
-        sink: &mut Sink,
+        pick: Pick,
+        (group, from, rows): (usize, usize, usize),
+        strip: &mut Strip,
     ) -> Result<(), SeriesError> {
-        let Some(&(group, from, rows)) = self.pieces.get(piece) else {
+        let Some((leaf, ..)) = self.stored(pick) else {
             return Ok(());
         };
-        let rows = rows.min(most);
-        let mut room = self.room().pop().unwrap_or_default();
-        room.strips.resize_with(picks.len(), Strip::default);
-        let mut columns = Vec::new();
-        for (j, (pick, strip)) in picks.iter().zip(&mut room.strips).enumerate() {
-            let (leaf, worth, off) = match pick {
-                Pick::Nothing => continue,
-                Pick::Column(c) => match self.leaves.get(*c) {
-                    Some((leaf, worth)) => (*leaf, *worth, 0.0),
-                    None => continue,
-                },
-                Pick::Time => match self.time {
-                    Some((leaf, worth)) => (leaf, worth, self.epoch),
-                    None => continue,
-                },
-            };
-            let mut reader = self.column(group, leaf, from)?;
-            strip.decode(&mut reader, &self.descriptor(leaf), rows, &mut room.buffers)?;
-            columns.push((j, worth, off));
-        }
+        let mut reader = self.column(group, leaf, from)?;
+        let column = self.descriptor(leaf);
+        self.shared
+            .with_buffers(|b| strip.decode(&mut reader, &column, rows, b))
+    }
+
+    /// Hands out decoded rows, `rows` from number `from` on, in blocks.
+    fn lay_out(&self, strips: &Strips, from: usize, rows: usize, picks: &[Pick], sink: &mut Sink) {
+        let stored = picks.iter().enumerate();
+        let stored = stored.filter_map(|(j, pick)| Some((j, self.stored(*pick)?)));
+        let columns: Vec<(usize, f64, f64)> = stored.map(|(j, (_, w, off))| (j, w, off)).collect();
         let k = picks.len();
         let mut values = vec![f64::NAN; BLOCK.min(rows) * k];
         let mut tile = Tile::new();
@@ -262,8 +345,8 @@ impl Parquet {
             let count = BLOCK.min(rows - first);
             for (j, worth, off) in &columns {
                 let place = tile.column(*j, count, &mut values, k);
-                if let Some(strip) = room.strips.get(*j) {
-                    strip.put(first, *worth, *off, place);
+                if let Some(strip) = strips.get(*j) {
+                    strip.put(from + first, *worth, *off, place);
                 }
             }
             tile.lay_out(&mut values, k);
@@ -276,16 +359,10 @@ impl Parquet {
                 break;
             }
         }
-        self.room().push(room);
-        Ok(())
     }
 
     fn descriptor(&self, leaf: usize) -> ColumnDescPtr {
         self.metadata.file_metadata().schema_descr().column(leaf)
-    }
-
-    fn room(&self) -> MutexGuard<'_, Vec<Room>> {
-        self.room.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -333,144 +410,4 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
         _ => Ok(rows),
     };
     skipped.map(|_| ()).map_err(broken)
-}
-
-/// The bytes of the file as this library asks for them: of a file in memory a page is a part of it, not a copy.
-struct Whole {
-    source: Source,
-    shared: bytes::Bytes,
-    pages: Arc<Mutex<Vec<Vec<u8>>>>,
-}
-
-/// Bytes of a page read from a file. Its memory goes back to the pages that were decoded, for the next ones.
-struct Lent {
-    memory: Vec<u8>,
-    length: usize,
-    pages: Arc<Mutex<Vec<Vec<u8>>>>,
-}
-
-/// Memory of larger pages is given back to the system.
-const LARGE_PAGE: usize = 8 << 20;
-
-impl AsRef<[u8]> for Lent {
-    fn as_ref(&self) -> &[u8] {
-        self.memory.get(..self.length).unwrap_or_default()
-    }
-}
-
-impl Drop for Lent {
-    fn drop(&mut self) {
-        if self.memory.len() <= LARGE_PAGE {
-            let mut pages = self.pages.lock().unwrap_or_else(PoisonError::into_inner);
-            pages.push(std::mem::take(&mut self.memory));
-        }
-    }
-}
-
-/// Lends the bytes of the file.
-struct Owner(Bytes);
-
-impl AsRef<[u8]> for Owner {
-    fn as_ref(&self) -> &[u8] {
-        (*self.0).as_ref()
-    }
-}
-
-impl Whole {
-    fn of(source: Source) -> Self {
-        let shared = match &source {
-            Source::Memory(bytes) => bytes::Bytes::from_owner(Owner(bytes.clone())),
-            Source::File(_) => bytes::Bytes::new(),
-        };
-        Self {
-            source,
-            shared,
-            pages: Arc::default(),
-        }
-    }
-
-    /// Bytes from `start` on, at most so many; all of these where `all`.
-    fn taken(&self, start: u64, most: usize, all: bool) -> Result<bytes::Bytes, ParquetError> {
-        let left = self
-            .source
-            .size()
-            .checked_sub(start)
-            .ok_or_else(|| ParquetError::EOF(format!("byte {start} lies beyond the end")))?;
-        let length = most.min(usize::try_from(left).unwrap_or(usize::MAX));
-        if all && length < most {
-            return Err(ParquetError::EOF("the file ends early".into()));
-        }
-        match &self.source {
-            Source::Memory(_) => {
-                let start = start as usize;
-                Ok(self.shared.slice(start..start + length))
-            }
-            Source::File(file) => {
-                let mut pages = self.pages.lock().unwrap_or_else(PoisonError::into_inner);
-                let mut memory = pages.pop().unwrap_or_default();
-                drop(pages);
-                memory.resize(memory.len().max(length), 0);
-                let out = memory.get_mut(..length).unwrap_or_default();
-                file.read_at(start, out)
-                    .map_err(|e| ParquetError::General(e.to_string()))?;
-                Ok(bytes::Bytes::from_owner(Lent {
-                    memory,
-                    length,
-                    pages: Arc::clone(&self.pages),
-                }))
-            }
-        }
-    }
-}
-
-impl Length for Whole {
-    fn len(&self) -> u64 {
-        self.source.size()
-    }
-}
-
-/// Reads on from a place: the header of a page.
-struct Reading {
-    whole: Arc<Whole>,
-    at: u64,
-    ahead: bytes::Bytes,
-}
-
-impl std::io::Read for Reading {
-    fn read(&mut self, out: &mut [u8]) -> std::io::Result<usize> {
-        /// Bytes fetched at a time: a header with its statistics.
-        const AHEAD: usize = 512;
-        if self.ahead.is_empty() {
-            let more = self.whole.taken(self.at, AHEAD.max(out.len()), false);
-            self.ahead = more.map_err(std::io::Error::other)?;
-            self.at += self.ahead.len() as u64;
-        }
-        let n = self.ahead.len().min(out.len());
-        let taken = self.ahead.split_to(n);
-        for (slot, b) in out.iter_mut().zip(&taken) {
-            *slot = *b;
-        }
-        Ok(n)
-    }
-}
-
-impl ChunkReader for Whole {
-    type T = Reading;
-
-    fn get_read(&self, start: u64) -> Result<Self::T, ParquetError> {
-        self.taken(start, 0, true)?;
-        Ok(Reading {
-            whole: Arc::new(Self {
-                source: self.source.clone(),
-                shared: self.shared.clone(),
-                pages: Arc::clone(&self.pages),
-            }),
-            at: start,
-            ahead: bytes::Bytes::new(),
-        })
-    }
-
-    fn get_bytes(&self, start: u64, length: usize) -> Result<bytes::Bytes, ParquetError> {
-        self.taken(start, length, true)
-    }
 }

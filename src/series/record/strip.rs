@@ -7,17 +7,10 @@ use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::schema::types::ColumnDescriptor;
 
-/// Room to decode a piece in; used again for the next one.
-#[derive(Default)]
-pub(super) struct Room {
-    pub strips: Vec<Strip>,
-    pub buffers: Buffers,
-}
-
 /// Rows of a column that are decoded at a time.
 const ROWS: usize = 8192;
 
-/// Room for some values of one column.
+/// Room for some values of one column; used again for the next one.
 #[derive(Default)]
 pub(super) struct Buffers {
     levels: Vec<i16>,

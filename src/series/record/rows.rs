@@ -1,0 +1,291 @@
+//! Rows of a Parquet file that two pieces decode together: a page on their border, and what comes before it, is decoded once, and the columns by
+//! whichever of the two threads is free.
+
+use super::reader::Pick;
+use super::strip::{Buffers, Strip};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Decoded columns of some rows, by pick.
+pub(super) type Strips = Vec<Strip>;
+
+/// Rows being decoded, or decoded.
+pub(super) struct Rows {
+    /// Which rows these are.
+    unit: usize,
+    picks: Vec<Pick>,
+    state: Mutex<State>,
+    /// Something has changed.
+    turn: Condvar,
+}
+
+struct State {
+    /// Columns in work or to come.
+    strips: Strips,
+    /// The next column to be decoded.
+    next: usize,
+    /// Columns that are decoded.
+    finished: usize,
+    decoded: Option<Arc<Strips>>,
+    failed: bool,
+    /// Pieces that have not read them yet.
+    left: usize,
+}
+
+/// Rows that pieces have in work, the oldest first, and memory of those that are done with.
+#[derive(Default)]
+pub(super) struct Shared {
+    rows: Mutex<Vec<Arc<Rows>>>,
+    spare: Mutex<Vec<Strips>>,
+    buffers: Mutex<Vec<Buffers>>,
+}
+
+fn locked<T>(m: &Mutex<T>) -> MutexGuard<'_, T> {
+    m.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Shared {
+    /// The rows `unit`, which `pieces` pieces read, each once; at most `most` of them are kept.
+    pub fn rows(&self, unit: usize, pieces: usize, picks: &[Pick], most: usize) -> Arc<Rows> {
+        let mut all = locked(&self.rows);
+        if let Some(found) = all.iter().find(|r| r.unit == unit && r.picks == picks) {
+            return found.clone();
+        }
+        let mut strips = self.spare();
+        strips.resize_with(picks.len(), Strip::default);
+        let new = Arc::new(Rows {
+            unit,
+            picks: picks.to_vec(),
+            state: Mutex::new(State {
+                strips,
+                next: 0,
+                finished: 0,
+                decoded: None,
+                failed: false,
+                left: pieces,
+            }),
+            turn: Condvar::new(),
+        });
+        all.push(new.clone());
+        // A reader that has enough leaves rows which nobody asks for again.
+        if all.len() > most.max(1) {
+            all.remove(0);
+        }
+        new
+    }
+
+    /// Says that a piece has read them.
+    pub fn done_with(&self, rows: &Arc<Rows>, strips: Arc<Strips>) {
+        drop(strips);
+        let mut state = locked(&rows.state);
+        state.left = state.left.saturating_sub(1);
+        if state.left > 0 {
+            return;
+        }
+        let decoded = state.decoded.take();
+        drop(state);
+        locked(&self.rows).retain(|r| !Arc::ptr_eq(r, rows));
+        if let Some(strips) = decoded.and_then(Arc::into_inner) {
+            locked(&self.spare).push(strips);
+        }
+    }
+
+    /// Memory for columns.
+    pub fn spare(&self) -> Strips {
+        locked(&self.spare).pop().unwrap_or_default()
+    }
+
+    /// Takes it back.
+    pub fn take_back(&self, strips: Strips) {
+        locked(&self.spare).push(strips);
+    }
+
+    /// Runs with memory for decoding.
+    pub fn with_buffers<T>(&self, run: impl FnOnce(&mut Buffers) -> T) -> T {
+        let mut buffers = locked(&self.buffers).pop().unwrap_or_default();
+        let out = run(&mut buffers);
+        locked(&self.buffers).push(buffers);
+        out
+    }
+}
+
+/// A column that a thread decodes; where it does not come to its end, the rows have failed.
+struct Turn<'a> {
+    rows: &'a Rows,
+    column: usize,
+    strip: Strip,
+    good: bool,
+}
+
+impl Drop for Turn<'_> {
+    fn drop(&mut self) {
+        let mut state = locked(&self.rows.state);
+        if let (true, Some(slot)) = (self.good, state.strips.get_mut(self.column)) {
+            *slot = std::mem::take(&mut self.strip);
+            state.finished += 1;
+            if state.finished == self.rows.picks.len() {
+                state.decoded = Some(Arc::new(std::mem::take(&mut state.strips)));
+            }
+        } else {
+            state.failed = true;
+        }
+        self.rows.turn.notify_all();
+    }
+}
+
+impl Rows {
+    /// The decoded columns; `decode` fills the strip of one, and is called for those that no other thread has begun. `None` where one of them
+    /// failed, or where they were given up: whoever asks decodes for itself, and says what is wrong.
+    pub fn decoded(
+        &self,
+        decode: &mut dyn FnMut(usize, &mut Strip) -> bool,
+    ) -> Option<Arc<Strips>> {
+        let mut state = locked(&self.state);
+        loop {
+            if state.failed || state.left == 0 {
+                return None;
+            }
+            if let Some(decoded) = &state.decoded {
+                return Some(decoded.clone());
+            }
+            let column = state.next;
+            if let Some(strip) = state.strips.get_mut(column).map(std::mem::take) {
+                state.next += 1;
+                drop(state);
+                let mut turn = Turn {
+                    rows: self,
+                    column,
+                    strip,
+                    good: false,
+                };
+                turn.good = decode(column, &mut turn.strip);
+                drop(turn);
+                state = locked(&self.state);
+            } else {
+                state = self
+                    .turn
+                    .wait(state)
+                    .unwrap_or_else(PoisonError::into_inner);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::series::record::{Options, open_record, read_channels};
+    use parquet::data_type::{DoubleType, FloatType};
+    use parquet::file::properties::WriterProperties;
+    use parquet::file::writer::SerializedFileWriter;
+    use parquet::schema::parser::parse_message_type;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    const PICKS: [Pick; 5] = [
+        Pick::Time,
+        Pick::Column(0),
+        Pick::Column(1),
+        Pick::Nothing,
+        Pick::Column(3),
+    ];
+
+    /// What each of two pieces gets on a thread of its own.
+    fn of_two(
+        shared: &Shared,
+        decode: &(dyn Fn(usize) -> bool + Sync),
+    ) -> [Option<Arc<Strips>>; 2] {
+        let one = || {
+            let rows = shared.rows(7, 2, &PICKS, 4);
+            rows.decoded(&mut |j, _| decode(j))
+        };
+        std::thread::scope(|scope| {
+            let two = [scope.spawn(one), scope.spawn(one)];
+            two.map(|t| t.join().unwrap())
+        })
+    }
+
+    #[test]
+    fn two_pieces_decode_each_column_once_and_leave_their_memory() {
+        let shared = Shared::default();
+        let calls = AtomicUsize::new(0);
+        let got = of_two(&shared, &|_| {
+            calls.fetch_add(1, Ordering::Relaxed);
+            true
+        });
+        assert_eq!(calls.load(Ordering::Relaxed), PICKS.len());
+        for strips in got {
+            let strips = strips.unwrap();
+            assert_eq!(strips.len(), PICKS.len());
+            let rows = shared.rows(7, 2, &PICKS, 4);
+            shared.done_with(&rows, strips);
+        }
+        assert!(locked(&shared.rows).is_empty());
+        assert_eq!(locked(&shared.spare).len(), 1);
+    }
+
+    #[test]
+    fn where_a_column_fails_each_piece_is_left_to_itself() {
+        let got = of_two(&Shared::default(), &|j| j != 2);
+        assert!(got.iter().all(Option::is_none));
+    }
+
+    #[test]
+    fn rows_that_nobody_comes_back_for_are_not_kept() {
+        let shared = Shared::default();
+        for unit in 0..9 {
+            let rows = shared.rows(unit, 2, &PICKS, 3);
+            let strips = rows.decoded(&mut |_, _| true).unwrap();
+            shared.done_with(&rows, strips);
+        }
+        assert_eq!(locked(&shared.rows).len(), 3);
+    }
+
+    #[test]
+    fn a_row_group_of_several_pieces_is_what_was_written() {
+        const ROWS: usize = 700_000;
+        let schema = "message m { required double time; optional float g; required float h; }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut bytes = Vec::new();
+        let properties = Arc::new(WriterProperties::builder().build());
+        let mut file = SerializedFileWriter::new(&mut bytes, schema, properties).unwrap();
+        let mut group = file.next_row_group().unwrap();
+        let times: Vec<f64> = (0..ROWS).map(|i| i as f64 * 0.01).collect();
+        let mut column = group.next_column().unwrap().unwrap();
+        let typed = column.typed::<DoubleType>();
+        typed.write_batch(&times, None, None).unwrap();
+        column.close().unwrap();
+        let levels: Vec<i16> = (0..ROWS).map(|i| i16::from(i % 7 != 0)).collect();
+        let known = (0..ROWS).filter(|i| i % 7 != 0);
+        let known: Vec<f32> = known.map(|i| i as f32).collect();
+        let mut column = group.next_column().unwrap().unwrap();
+        let typed = column.typed::<FloatType>();
+        typed.write_batch(&known, Some(&levels), None).unwrap();
+        column.close().unwrap();
+        let all: Vec<f32> = (0..ROWS).map(|i| -(i as f32)).collect();
+        let mut column = group.next_column().unwrap().unwrap();
+        let typed = column.typed::<FloatType>();
+        typed.write_batch(&all, None, None).unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+        file.close().unwrap();
+        let record = open_record(Arc::new(bytes), &Options::default()).unwrap();
+        assert!(record.n_pieces() > 2);
+        let read = read_channels(&record).unwrap();
+        assert_eq!(read.list[0].samples.len(), ROWS);
+        for (i, (g, h)) in read.list[0]
+            .samples
+            .iter()
+            .zip(&read.list[1].samples)
+            .enumerate()
+        {
+            assert_eq!(*h, -(i as f64));
+            assert!(
+                if i % 7 == 0 {
+                    g.is_nan()
+                } else {
+                    *g == i as f64
+                },
+                "{i}: {g}"
+            );
+        }
+    }
+}
