@@ -3,13 +3,15 @@
 //! Loads are vertical unit forces at grids spread over the model. With a third argument the supported stiffness goes to a Matrix
 //! Market file, which `../shared/benchmarks/frames/pardiso_anchor.py` reads: run both in one sitting and compare.
 //!
+//! `--paper`: work and longest chain of the elimination tree, and what many threads come to.
 //! `--zones`: ten zones, a fortieth of the shells each and a tenth thicker, as variants on one factor, over the time of the solution.
 
 use nastran::bdf::{IncludeRequest, Loaded, Loader, read_deck};
 use std::io::Write;
 use std::time::Instant;
 use strainbridge::fe::{
-    Corners, SolveOptions, Support, UnitLoad, solve_unit_loads, solve_variants, supported_stiffness,
+    Corners, SolveOptions, Support, UnitLoad, factor_on_paper, solve_unit_loads, solve_variants,
+    supported_stiffness,
 };
 use strainbridge::model::{GridIx, Model, Vec3};
 
@@ -84,6 +86,21 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let took = start.elapsed().as_secs_f64();
         let share = took / solved;
         writeln!(out, "{ZONES} zones {took:.2} s, {share:.2} solutions")?;
+    }
+    if std::env::args().any(|a| a == "--paper") {
+        let (work, threads) = factor_on_paper(&model)?;
+        let (all, chain) = (1e-9 * work.total, work.total / work.longest);
+        writeln!(
+            out,
+            "{all:.1} thousand million multiplications, {chain:.1} times the longest chain"
+        )?;
+        for (n, busiest) in threads {
+            writeln!(
+                out,
+                "{n} threads: {:.2} times as fast",
+                work.total / busiest
+            )?;
+        }
     }
     if let Some(matrix) = arguments.get(2) {
         let (n, entries) = supported_stiffness(&model)?;

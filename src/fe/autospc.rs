@@ -4,6 +4,7 @@ use super::assembly::{Assembled, Numbering};
 use crate::finding::{Finding, Severity};
 use crate::linalg::{DMatrix, sparse::BlockMatrix};
 use crate::model::Model;
+use rayon::prelude::*;
 
 /// A direction at a grid is without stiffness when it has less than this share of the grid's stiffest one.
 pub(super) const EPZERO: f64 = 1e-8;
@@ -12,6 +13,8 @@ const NOTHING: f64 = 1e-13;
 /// A load is aimed along a direction when it has more than this share of its size there: grids of a nearly flat shell lean by less,
 /// and what they lose is judged once the structure is solved.
 const AIMED: f64 = 1e-3;
+/// Grids that a thread looks at together.
+const MIN_GRIDS: usize = 256;
 /// Share of the loads that may go into held directions: that of a solution whose equations hold to six digits.
 const LOST: f64 = 1e-6;
 
@@ -53,8 +56,8 @@ pub(super) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
     let typical = diagonal.iter().fold(0.0_f64, |a, v| a.max(*v));
     let start = assembled.symbolic.unknown_start();
-    let mut weak = Vec::new();
-    for (g, free) in assembled.numbering.free.iter().enumerate() {
+    let of_grid = |(g, free): (usize, &u8)| -> Vec<Weak> {
+        let mut weak = Vec::new();
         let block = BlockMatrix::diagonal_block(&assembled.stiffness, &assembled.symbolic, g);
         let n = free.count_ones() as usize;
         let translations = (free & 0b111).count_ones() as usize;
@@ -98,8 +101,13 @@ pub(super) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
                 }
             }
         }
-    }
-    weak
+        weak
+    };
+    let grids = assembled.numbering.free.par_iter().enumerate();
+    grids
+        .with_min_len(MIN_GRIDS)
+        .flat_map_iter(of_grid)
+        .collect()
 }
 
 /// Gershgorin: every eigenvalue is above 1e-4 of the largest diagonal entry.

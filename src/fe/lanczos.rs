@@ -38,6 +38,8 @@ pub(super) struct Wanted<'a> {
     pub(super) count: usize,
     /// How well.
     pub(super) accuracy: Accuracy,
+    /// Shapes too; they are empty where not.
+    pub(super) shapes: bool,
     /// Looked at between blocks.
     pub(super) stop: &'a Stop,
 }
@@ -115,7 +117,10 @@ pub(super) fn lowest(
     wanted: Wanted<'_>,
 ) -> Result<Vec<Pair>, FeError> {
     let Wanted {
-        count, accuracy, ..
+        count,
+        accuracy,
+        shapes,
+        ..
     } = wanted;
     let n = system.symbolic.n_unknowns();
     let most = (VECTORS_A_MODE * count).max(4 * BLOCK).min(n);
@@ -194,7 +199,10 @@ pub(super) fn lowest(
         .into_par_iter()
         .map(|c| Pair {
             frequency: 1.0 / values[c].sqrt() / std::f64::consts::TAU,
-            shape: combine(&basis, |r| vectors[(r, c)]),
+            shape: match shapes {
+                true => combine(&basis, |r| vectors[(r, c)]),
+                false => Field::new(),
+            },
             residual: found[c].0,
             gap: found[c].1,
         })

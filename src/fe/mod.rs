@@ -64,8 +64,8 @@ pub use report::{SolveReport, Solved};
 pub use shape_checks::check_shapes;
 pub use solution::*;
 pub use solve::{
-    Triplets, solution_of, solve_cases, solve_displacements, solve_unit_loads, solve_unit_loads_on,
-    supported_stiffness,
+    Triplets, factor_on_paper, solution_of, solve_cases, solve_displacements, solve_unit_loads,
+    solve_unit_loads_on, supported_stiffness,
 };
 pub use support::{
     Support, SupportChoice, SupportError, assumed_relief, contradictions, support_of,

@@ -144,6 +144,7 @@ pub(super) fn frequencies(
     let wanted = Wanted {
         count,
         accuracy: BESIDE_STATICS,
+        shapes: false,
         stop,
     };
     let pairs = lowest(prepared, mass, system, factor, wanted)?;
@@ -172,6 +173,7 @@ fn pairs_of(
     let wanted = Wanted {
         count,
         accuracy: ALONE,
+        shapes: true,
         stop,
     };
     let pairs = lowest(prepared, mass, &system, &factor, wanted)?;

@@ -10,10 +10,14 @@ use super::rigid_motion::rigid;
 use crate::linalg::{DMatrix, DVector, Matrix6};
 use crate::model::{Grid, GridIx, Mat3, Model, Vec3};
 use nastran::cards::Dofs;
+use rayon::prelude::*;
 use serde::Serialize;
 
 /// A rigid motion counts as free when held dofs resist it by less than this share.
 const FREE_MOTION: f64 = 1e-10;
+
+/// Unknowns that a thread looks at together.
+const MIN_UNKNOWNS: usize = 4096;
 
 /// The free rigid motions of a model and what balances loads on them.
 #[derive(Clone, Debug)]
@@ -232,6 +236,7 @@ impl RigidBody {
         numbering: &Numbering,
     ) -> Vec<usize> {
         let fields: Vec<Vec<f64>> = (0..self.n_free())
+            .into_par_iter()
             .map(|c| self.packed(axes, numbering, c))
             .collect();
         let n = fields.first().map_or(0, Vec::len);
@@ -255,11 +260,19 @@ impl RigidBody {
                 }
                 r
             };
+            // The first of those that are as far.
+            let farther = |a: (f64, usize), b: (f64, usize)| if b.0 > a.0 { b } else { a };
+            let none = || (1e-12, usize::MAX);
             let farthest = |pick: bool| {
                 (0..n)
+                    .into_par_iter()
+                    .with_min_len(MIN_UNKNOWNS)
                     .filter(|&i| translation[i] == pick)
-                    .map(|i| (dot(&rest(i), &rest(i)), i))
-                    .fold((1e-12, usize::MAX), |a, b| if b.0 > a.0 { b } else { a })
+                    .map(|i| {
+                        let r = rest(i);
+                        (dot(&r, &r), i)
+                    })
+                    .reduce(none, farther)
             };
             // A straight bar turns about its own axis without a translation anywhere.
             let mut best = farthest(true);

@@ -19,6 +19,7 @@ use super::support::{Support, contradictions};
 use super::system::System;
 use super::{Solution, UnitLoad};
 use crate::finding::{Finding, Severity, few};
+use crate::linalg::sparse::TreeWork;
 use crate::model::Model;
 use rayon::prelude::*;
 
@@ -353,6 +354,19 @@ pub(super) fn acting(
         balance,
         findings,
     })
+}
+
+/// Work of the factor of the free structure, longest chain in it, and what the busiest of 1, 2, 4, .. 64 threads does: [`Symbolic::tree_work`].
+///
+/// # Errors
+/// See [`FeError`].
+pub fn factor_on_paper(model: &Model) -> Result<(TreeWork, Vec<(usize, f64)>), FeError> {
+    let prepared = Prepared::new(model);
+    let mass = Mass::new(&prepared);
+    let sets = (None, None, [].as_slice());
+    let system = System::new(&prepared, &mass, sets, Relief::Automatic, &mut Vec::new())?;
+    let with = |e: u32| (1 << e, system.symbolic.work_with(1 << e));
+    Ok((system.symbolic.tree_work(), (0..=6).map(with).collect()))
 }
 
 /// A matrix as its order and entries of its lower triangle: row, column, value.

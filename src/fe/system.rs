@@ -49,8 +49,12 @@ impl System {
         let model = prepared.model;
         let support = (sets.0, relief);
         let reduction = reduce(model, &prepared.axes, sets)?;
-        let mut assembled = assemble(prepared, &reduction)?;
-        let body = body(prepared, mass, &reduction, relief)?;
+        // The order of the unknowns leaves a thread idle.
+        let (assembled, body) = rayon::join(
+            || assemble(prepared, &reduction),
+            || body(prepared, mass, &reduction, relief),
+        );
+        let (mut assembled, body) = (assembled?, body?);
         if let Some(body) = &body {
             findings.extend(ties(prepared, &assembled, body));
         }

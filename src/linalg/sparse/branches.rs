@@ -115,7 +115,7 @@ impl Branches {
 }
 
 /// Multiplications to eliminate so many unknowns from a matrix with so many rows below them.
-fn work(own: usize, below: usize) -> f64 {
+pub(super) fn work(own: usize, below: usize) -> f64 {
     let (w, m) = (own as f64, below as f64);
     w * w * w / 6.0 + w * w * m / 2.0 + w * m * m / 2.0
 }

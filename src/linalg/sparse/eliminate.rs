@@ -119,6 +119,18 @@ pub(super) fn take_out(
     }
 }
 
+/// Multiplications of [`eliminate`] and [`take_out`] that follow each other however many threads share the matrix: of every block of columns the block
+/// itself and one tile of rows, then one strip.
+pub(super) fn longest_chain(own: usize, below: usize) -> f64 {
+    let blocks = (0..own).step_by(BLOCK).map(|k| {
+        let (n, tile) = (BLOCK.min(own - k), TILE.min(own + below - k));
+        let (n, before, tile) = (n as f64, k as f64, tile as f64);
+        n * n * before + n * n * n / 6.0 + tile * n * (before + n / 2.0)
+    });
+    let strip = (STRIP.min(below) * below) as f64 * own as f64;
+    blocks.sum::<f64>() + strip
+}
+
 /// Tiles of rows with the first row of each.
 fn row_tiles(mut a: MatMut<'_, f64>) -> Vec<(usize, MatMut<'_, f64>)> {
     let mut tiles = Vec::with_capacity(a.nrows() / TILE + 1);

@@ -19,6 +19,7 @@ mod solve;
 mod substitution;
 mod supernodes;
 mod symbolic;
+mod tree_work;
 
 pub use block_matrix::{BlockMatrix, DenseTerm};
 pub use error::FactorError;
@@ -27,6 +28,7 @@ pub use graph::BlockGraph;
 pub use order::OrderingMethod;
 pub use solve::Refined;
 pub use symbolic::Symbolic;
+pub use tree_work::TreeWork;
 
 #[cfg(test)]
 mod tests;

@@ -133,6 +133,27 @@ fn every_unknown_is_in_one_branch_or_the_top_and_threads_change_nothing() {
 }
 
 #[test]
+fn work_on_paper_is_that_of_a_dense_matrix_and_bounded_by_its_longest_chain() {
+    // All groups joined: one front, or a chain of fronts, of a dense matrix.
+    let n: u32 = 100;
+    let all: Vec<u32> = (0..n).collect();
+    let graph = BlockGraph::from_cliques(n as usize, || std::iter::once(all.as_slice()));
+    let dense = Symbolic::analyse(&graph, &[6; 100]).unwrap();
+    let cube = (6.0 * f64::from(n)).powi(3) / 6.0;
+    assert!((dense.tree_work().total / cube - 1.0).abs() < 1e-9);
+    let (graph, sizes, _) = lattice(60, 3, true);
+    for symbolic in [dense, Symbolic::analyse(&graph, &sizes).unwrap()] {
+        let work = symbolic.tree_work();
+        let with = |threads| symbolic.work_with(threads);
+        assert!((with(1) / work.total - 1.0).abs() < 1e-9);
+        for threads in [2, 4, 8, 64] {
+            assert!(with(threads) <= with(threads / 2));
+            assert!(with(threads) >= work.longest.max(work.total / threads as f64));
+        }
+    }
+}
+
+#[test]
 fn epsilon_is_small_where_digits_are_lost_and_refinement_makes_it_no_larger() {
     let (side, m) = (40, 6);
     let (graph, sizes, mut terms) = lattice(side, m, true);
