@@ -11,6 +11,8 @@ pub enum ZeroDrift {
     Step,
     /// In proportion to the number of the run: it creeps; the size is that of the last run.
     Creep,
+    /// Evenly from where it was at the first run; the size is the way to the last.
+    Line,
     /// It stays away and scatters about where it went.
     Wander,
 }
@@ -25,7 +27,7 @@ const PLAUSIBLE: f64 = 1000.0;
 impl ZeroDrift {
     /// All kinds on every gauge.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
-        let kinds = [Self::Step, Self::Creep, Self::Wander];
+        let kinds = [Self::Step, Self::Creep, Self::Line, Self::Wander];
         (0..frame.n_gauges())
             .flat_map(|g| kinds.map(|k| OnGauges::one(frame, g, k)))
             .collect()
@@ -34,6 +36,7 @@ impl ZeroDrift {
     fn unit(self) -> &'static str {
         match self {
             Self::Creep => "microstrain at the last run",
+            Self::Line => "microstrain from the first run to the last",
             Self::Step | Self::Wander => "microstrain",
         }
     }
@@ -47,26 +50,36 @@ impl ChannelFault for ZeroDrift {
         FaultKind::Zero
     }
     fn parameters(&self) -> Vec<Parameter> {
-        vec![Parameter {
-            unit: self.unit(),
+        let of = |unit| Parameter {
+            unit,
             neutral: 0.0,
             prior_sd: USUAL,
             step: 0.5,
             starts: vec![0.0],
             plausible: PLAUSIBLE,
-        }]
+        };
+        let mut all = vec![of(self.unit())];
+        if *self == Self::Line {
+            all.push(of("microstrain at the first run"));
+        }
+        all
     }
     fn read(&self, at: At<'_>, parameters: &[f64], row: &mut [f64]) {
         let (Part::Whole, [size, ..]) = (at.part, parameters) else {
             return;
         };
-        let share = match self {
-            Self::Creep => (at.run + 1) as f64 / at.frame.n_runs().max(1) as f64,
-            Self::Step | Self::Wander => 1.0,
+        let n = at.frame.n_runs();
+        let moved = match self {
+            Self::Creep => size * (at.run + 1) as f64 / n.max(1) as f64,
+            Self::Line => {
+                let first = parameters.get(1).copied().unwrap_or(0.0);
+                first + size * at.run as f64 / n.saturating_sub(1).max(1) as f64
+            }
+            Self::Step | Self::Wander => *size,
         };
         for &g in at.gauges {
             if let Some(cell) = row.get_mut(g) {
-                *cell += size * share;
+                *cell += moved;
             }
         }
     }
@@ -93,7 +106,9 @@ impl ChannelFault for ZeroDrift {
         match self {
             Self::Step => Extension::channel(names, Correction::Offset(size)),
             // Where it will be in a run to come nobody knows.
-            Self::Creep | Self::Wander => Extension::channel(names, Correction::Ignore),
+            Self::Creep | Self::Line | Self::Wander => {
+                Extension::channel(names, Correction::Ignore)
+            }
         }
     }
     fn separate_by(&self, place: &str) -> String {

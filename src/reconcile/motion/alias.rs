@@ -1,11 +1,19 @@
 //! Sets that differ from the best one by which channel is at fault: scored whether or not the search came by them, so that channels
 //! which the record can't tell apart are all on the table.
 
+use super::change::Change;
+use super::design::BinEquation;
+use super::evidence::beside_shaking;
 use super::fitted::MotionFit;
+use super::frame::MotionFrame;
 use super::scorer::MotionScorer;
 use crate::reconcile::search::{Scored, Scorer, settle};
 
 /// Joins to `all` the best set with each of its channel faults moved to every other channel of the kind; best first again.
+///
+/// The background stands in the units of the equations, whose scale the gain of a channel may change; where no force fixes it, models that differ by that
+/// scale alone are alike. So each of these sets is held against the best one with the background that it leaves itself, and the lead is that of both
+/// likelihoods at their largest.
 ///
 /// Constants of forms (the velocity below which friction fades) were found before the fault came, or with another channel at fault, and are as
 /// wrong there as the channel is. Each of these sets finds its own, so that none leads by them.
@@ -20,6 +28,8 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
     let best = scorer.with_own_constants(best);
     all.retain(|s| s.set != best.set);
     all.push(best.clone());
+    let beside = |fit: &MotionFit| beside_shaking(scorer.frame, fit);
+    let of_best = scorer.with_own_background(&best).log_evidence;
     for &member in &best.set {
         let own = &candidates[member];
         if !own.is_channel() {
@@ -35,8 +45,36 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
             let known = all.iter().position(|s| s.set == set);
             let scored = known.map(|at| all.swap_remove(at));
             let scored = scored.or_else(|| scorer.score(&set, Some((&best, None))));
-            all.extend(scored.map(|s| scorer.with_own_constants(s)));
+            let gain = matches!(own.shapes.first(), Some(Change::Gain { .. }));
+            all.extend(scored.map(|s| {
+                let s = scorer.with_own_constants(s);
+                let own = scorer.with_own_background(&s);
+                let lead = match gain && has_no_scale(scorer.frame, &best.fit) {
+                    true => beside(&own.fit) - beside(&best.fit),
+                    false => own.log_evidence - of_best,
+                };
+                Scored {
+                    log_evidence: best.log_evidence + lead,
+                    ..own
+                }
+            }));
         }
     }
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+}
+
+/// Whether the scale of all that was measured is free: two channels, both of motion, and neither a force nor the weight beside them. A gain of the one
+/// and the inverse gain of the other are then one and the same model of the shaken part, whatever a finite record seems to prefer.
+fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
+    /// Channels of which one gain is the inverse of another.
+    const PAIR: usize = 2;
+    let equations = &fit.design.equations;
+    let driven = |e: &BinEquation| e.target.iter().any(|t| t.norm_sqr() > 0.0);
+    // A force that is no multiple of the motion, and known.
+    let mut terms = frame.vehicle.links.iter().flat_map(|l| &l.terms);
+    let fixed = !frame.known.is_empty() && terms.any(|t| !t.is_linear());
+    !fixed
+        && fit.rest.is_none()
+        && fit.design.channels.len() == PAIR
+        && !equations.iter().any(driven)
 }

@@ -45,6 +45,11 @@ pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) 
         - unusual(frame, fit)
 }
 
+/// What speaks for a set beside the shaken part of the record: means of accelerometers, sizes of channel faults.
+pub fn beside_shaking(frame: &MotionFrame, fit: &MotionFit) -> f64 {
+    -0.5 * zeros(frame, fit) - unusual(frame, fit)
+}
+
 /// What the sizes of channel faults cost.
 fn unusual(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     fit.parts
