@@ -5,8 +5,7 @@
 //! `C` the scatter. As a regression of `U' eps` on the other directions it is a ridge: shrinking keeps `1 - w` of the sample among these and adds
 //! `w` times their mean variance. What it leaves in the runs that taught it is less than what it leaves in others.
 
-use super::scatter::basis;
-use crate::linalg::{Matrix, spd};
+use crate::linalg::{Matrix, dense, spd};
 
 /// What is to be added to the scatter, `n x n` by rows, so that intervals of loads are as wide as other runs scatter; `None` where they are.
 ///
@@ -90,4 +89,13 @@ fn learnt(sample: &[f64], basis: &[Vec<f64>], w: f64) -> f64 {
         own / (own + w * mean).max(f64::MIN_POSITIVE)
     };
     variances.iter().map(kept).sum()
+}
+
+/// Orthonormal patterns over the gauges that loads make; `None` where numbers are not finite.
+pub(super) fn basis(columns: &Matrix) -> Option<Vec<Vec<f64>>> {
+    let d = dense::svd(&dense::unit_columns(columns))?;
+    let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;
+    let kept = (0..d.s.len()).filter(|&i| d.s[i] > limit);
+    let of = |i: usize| d.u.column(i).iter().copied().collect();
+    Some(kept.map(of).collect())
 }

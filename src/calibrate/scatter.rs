@@ -2,7 +2,7 @@
 
 use super::overfit;
 use crate::linalg::tail::chi_square_tail;
-use crate::linalg::{Matrix, dense, spd};
+use crate::linalg::{Matrix, spd};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::collections::BTreeMap;
 
@@ -254,20 +254,11 @@ impl Squares {
     }
 }
 
-/// Orthonormal patterns over the gauges that loads make; `None` where numbers are not finite.
-pub(super) fn basis(columns: &Matrix) -> Option<Vec<Vec<f64>>> {
-    let d = dense::svd(&dense::unit_columns(columns))?;
-    let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;
-    let kept = (0..d.s.len()).filter(|&i| d.s[i] > limit);
-    let of = |i: usize| d.u.column(i).iter().copied().collect();
-    Some(kept.map(of).collect())
-}
-
 /// The sample with patterns that loads make and all others apart, `n x n`.
 fn target(sample: &[f64], columns: &Matrix, dof: f64) -> Vec<f64> {
     let n = columns.nrows();
     let all: f64 = (0..n).map(|g| sample[g * n + g]).sum();
-    let Some(basis) = basis(columns) else {
+    let Some(basis) = overfit::basis(columns) else {
         return (0..n * n)
             .map(|i| if i / n == i % n { all / n as f64 } else { 0.0 })
             .collect();
