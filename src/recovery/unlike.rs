@@ -90,7 +90,7 @@ const MOST: f64 = 1e30;
 const HALVINGS: usize = 20;
 
 /// The estimate with as much more error as explains what is left, in the one of two ways that makes the readings likelier: all of the covariance
-/// larger, as where a truck is faster than those of the calibration and scatters as they do, but more; or an error of its own added to every
+/// larger, as where a run scatters as those of the calibration do, but more; or an error of its own added to every
 /// reading, an unknown pattern over the gauges, larger where noise, scatter and the uncertainty of S are larger, as where a truck is at a place
 /// that no run has seen. Each has one size, found of the run. Where nothing but a stated error of S is known, the second.
 ///
