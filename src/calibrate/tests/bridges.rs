@@ -336,9 +336,10 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
             "{case}: {subjects:?}"
         );
     }
-    // Peaks do not tell two of them. Case 08 drifts by 20 microstrain over each record: at the peaks, less the zero that they are taken from, the
-    // others expect of the gauge what it reads to 1 % (-1.6 +- 7.9 microstrain). Case 09 reads .7 of what it should: .96 of what the others expect. In
-    // the other cases at Ponca, where it is sound, it reads .93 to 1.47 of that. What is asked of them is that no other gauge is blamed.
+    // Peaks do not tell two of them. Case 08 drifts by 20 microstrain over each record: at the peaks, less the zero that they are taken from,
+    // the others expect of the gauge what it reads to 1 % (-1.6 +- 7.9 microstrain). Case 09 reads .7 of what it should: .96 of what the
+    // others expect. In other cases at Ponca, where it is sound, it reads .93 to 1.47 of that. What is asked of them is that no other gauge is
+    // blamed.
     for case in ["case01", "case05", "case08", "case09", "case10"] {
         let (codes, subjects) = planted(case).unwrap();
         assert!(codes.is_empty(), "{case}: {codes:?} {subjects:?}");
