@@ -19,6 +19,7 @@ mod held_out;
 mod known;
 mod model_error;
 mod next;
+mod overfit;
 mod posterior;
 mod prior;
 mod runs;

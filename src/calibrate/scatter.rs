@@ -1,7 +1,8 @@
 //! Scatter of repeats: covariance over gauges of what the fitted runs leave, shrunk because runs are few and gauges many.
 
+use super::overfit;
 use crate::linalg::tail::chi_square_tail;
-use crate::linalg::{Matrix, dense, spd};
+use crate::linalg::{Matrix, spd};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::collections::BTreeMap;
 
@@ -62,7 +63,8 @@ impl Scatter {
     ///
     /// Scatter is of two kinds: patterns that loads make (size and place of the load: dynamic share, lateral place), which decide how far
     /// recovered loads scatter, and all others. The sample is shrunk towards one with these kinds apart: the block within the span of S,
-    /// itself shrunk towards its mean, and the mean of the rest; their cross terms vanish.
+    /// itself shrunk towards its mean, and the mean of the rest; their cross terms vanish. What it then says too well of
+    /// loads is added ([`overfit`]).
     ///
     /// # Reference
     /// Weight of the target: Y. Chen, A. Wiesel, Y. C. Eldar, A. O. Hero, IEEE Trans. Signal Process. 58 (2010) 5016, eq. 23 (oracle
@@ -96,11 +98,14 @@ impl Scatter {
         let shrink = shrinkage(&sample, n, dof);
         let target = target(&sample, columns, dof);
         let outside = n.saturating_sub(columns.ncols()).max(1) as f64;
-        let covariance = (0..n * n)
-            .map(|i| keep * ((1.0 - shrink) * sample[i] + shrink * target[i]))
+        let shrunk: Vec<f64> = (0..n * n)
+            .map(|i| (1.0 - shrink) * sample[i] + shrink * target[i])
             .collect();
+        let added = overfit::added(&sample, (&shrunk, shrink), columns, dof);
+        let added = added.unwrap_or_else(|| vec![0.0; n * n]);
+        let all = shrunk.iter().zip(&added);
         Self {
-            covariance,
+            covariance: all.map(|(c, a)| keep * (c + a)).collect(),
             dof,
             dof_outside: dof_of_shrunk(dof, shrink, outside),
             // Noise is no part of what repeats have in common.
@@ -253,16 +258,11 @@ impl Squares {
 fn target(sample: &[f64], columns: &Matrix, dof: f64) -> Vec<f64> {
     let n = columns.nrows();
     let all: f64 = (0..n).map(|g| sample[g * n + g]).sum();
-    let Some(d) = dense::svd(&dense::unit_columns(columns)) else {
+    let Some(basis) = overfit::basis(columns) else {
         return (0..n * n)
             .map(|i| if i / n == i % n { all / n as f64 } else { 0.0 })
             .collect();
     };
-    let limit = d.s.first().copied().unwrap_or(0.0) * dense::RANK_TOLERANCE;
-    let basis: Vec<Vec<f64>> = (0..d.s.len())
-        .filter(|&i| d.s[i] > limit)
-        .map(|i| d.u.column(i).iter().copied().collect())
-        .collect();
     let k = basis.len();
     let mut inside = vec![0.0; k * k];
     for (i, u) in basis.iter().enumerate() {

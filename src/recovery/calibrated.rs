@@ -20,16 +20,36 @@ pub fn estimate(
     errors: ErrorModel,
     known: &Uncertainty,
 ) -> RunEstimate {
-    estimate_with(s, r, (errors, 0.0), known)
+    estimate_with(s, r, (errors, Excess::NONE), known).0
 }
 
-/// The same where each reading has an error of its own besides, of `more` times its variance.
+/// Error of readings beyond what is known, in units of it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Excess {
+    /// Of each reading by itself, times its variance.
+    pub each: f64,
+    /// Of all together, times their covariance.
+    pub all: f64,
+}
+
+impl Excess {
+    pub const NONE: Self = Self {
+        each: 0.0,
+        all: 0.0,
+    };
+}
+
+/// The same where readings err more than is known; beside it the log of the restricted likelihood of the readings, which holds no loads:
+/// `-1/2 (ln |V| + ln |S' V^-1 S| + r' V^-1 r)`.
+///
+/// # Reference
+/// H. D. Patterson and R. Thompson, Biometrika 58 (1971) 545.
 pub(super) fn estimate_with(
     s: &Sensitivity,
     r: &Readings,
-    (errors, more): (ErrorModel, f64),
+    (errors, excess): (ErrorModel, Excess),
     known: &Uncertainty,
-) -> RunEstimate {
+) -> (RunEstimate, f64) {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let used: Vec<usize> = (0..n)
         .filter(|&g| r.strain.get(g).is_some_and(|v| v.is_finite()))
@@ -56,8 +76,16 @@ pub(super) fn estimate_with(
     };
     let noise = (errors.noise * errors.noise * r.noise_factor).max(f64::MIN_POSITIVE);
     let known_of_used = known.of_gauges(&used);
-    let Some(solved) = solve(&a, &y, (noise, more), &priors, &s.scales(), &known_of_used) else {
-        return out;
+    let solved = solve(
+        &a,
+        &y,
+        (noise, excess),
+        &priors,
+        &s.scales(),
+        &known_of_used,
+    );
+    let Some(solved) = solved else {
+        return (out, f64::NAN);
     };
     let f = solved.fit.f;
     for l in 0..k {
@@ -79,7 +107,10 @@ pub(super) fn estimate_with(
     out.dof = (used.len() + priors.iter().flatten().count()).saturating_sub(solved.fit.rank);
     out.rank = solved.fit.rank;
     out.estimate.values = f;
-    out
+    let told = solved.fit.covariance.transpose();
+    let told = spd::cholesky(told.as_slice(), k).map_or(f64::NAN, |l| spd::log_det(&l, k));
+    let likelihood = 0.5 * (told - solved.log_det - out.chi2);
+    (out, likelihood)
 }
 
 /// A run's system solved: variances of the readings, and the sum of squares that is left, whitened.
@@ -87,12 +118,14 @@ struct Solved {
     fit: Fit,
     variances: Vec<f64>,
     chi2: f64,
+    /// `ln |V|`.
+    log_det: f64,
 }
 
 fn solve(
     a: &Matrix,
     y: &[f64],
-    (noise, more): (f64, f64),
+    (noise, excess): (f64, Excess),
     priors: &[Option<f64>],
     scales: &[f64],
     known: &Uncertainty,
@@ -102,8 +135,9 @@ fn solve(
     let mut out = None;
     for _ in 0..ROUNDS {
         let mut covariance = known.strain_covariance(n, &f);
+        covariance.iter_mut().for_each(|v| *v *= 1.0 + excess.all);
         for v in covariance.iter_mut().step_by(n + 1) {
-            *v = (*v + noise) * (1.0 + more);
+            *v = (*v + noise * (1.0 + excess.all)) * (1.0 + excess.each);
         }
         let (fit, chi2) = fit_correlated(a, y, &covariance, priors, scales)?;
         f.clone_from(&fit.f);
@@ -111,6 +145,7 @@ fn solve(
             fit,
             variances: (0..n).map(|g| covariance[g * n + g]).collect(),
             chi2,
+            log_det: spd::log_det(&spd::cholesky(&covariance, n)?, n),
         });
     }
     out

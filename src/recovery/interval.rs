@@ -10,5 +10,10 @@ pub fn student_95(dof: f64) -> f64 {
     if dof.is_infinite() {
         return NORMAL_95;
     }
-    StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(NORMAL_95, |t| t.inverse_cdf(0.975))
+    student(0.975, dof)
+}
+
+/// Value of Student's t with finite `dof` degrees of freedom that lies under the share `p`, 0.5 to 1.
+pub fn student(p: f64, dof: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, dof.max(1.0)).map_or(f64::INFINITY, |t| t.inverse_cdf(p))
 }

@@ -2,14 +2,17 @@
 
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
+use super::interval::student;
 use super::types::{Readings, RunEstimate};
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// Sigmas, root mean square over runs, from which a gauge is named. A few repeats know their own scatter to a factor of two at best, and
-/// healthy gauges near a wheel reach five: calibrations of two runs a lane on two measured bridges.
+/// Sigmas, root mean square over runs, from which a gauge is named whatever is known of the scatter. A few repeats know their own scatter to a
+/// factor of two at best, and healthy gauges near a wheel reach five: calibrations of two runs a lane on two measured bridges.
 const NAMED: f64 = 8.0;
+/// Chance of a gauge that is named where all are sound.
+const FALSE: f64 = 0.01;
 /// How close to the chi2 without the gauge a repair must come to be the cause.
 const AS_GOOD: f64 = 1.5;
 /// Share of what the others expect under which a gauge reads nothing.
@@ -25,6 +28,21 @@ struct Without {
     /// Fall of chi2 a run.
     fall: f64,
     chi2: f64,
+    /// Degrees of freedom of what is left.
+    dof: usize,
+}
+
+impl Without {
+    /// Sigmas from which the gauge is named, one of `n`: those of Student's t with the degrees of freedom of the scatter (Bonferroni), times what
+    /// the others have too much; never more than [`NAMED`]. All runs may have the same error, so that they count as one.
+    fn limit(&self, n: usize, known: &Uncertainty) -> f64 {
+        if !known.dof.is_finite() {
+            return NAMED;
+        }
+        let excess = (self.chi2 / self.dof.max(1) as f64).max(1.0);
+        let t = student(1.0 - 0.5 * FALSE / n as f64, known.dof);
+        NAMED.min(t * excess.sqrt())
+    }
 }
 
 /// What the named gauges' readings come to: findings, and the readings without these gauges.
@@ -42,18 +60,24 @@ pub(super) fn check(
         return (findings, readings);
     }
     for _ in 0..MOST {
-        let base = chi2(s, &readings, errors, known);
+        let (base, _) = chi2(s, &readings, errors, known);
         let mut order: Vec<Without> = (0..s.gauges.len())
             .into_par_iter()
             .map(|gauge| {
-                let chi2 = chi2(s, &silent(&readings, gauge), errors, known);
+                let (chi2, dof) = chi2(s, &silent(&readings, gauge), errors, known);
                 let runs = count(&readings, gauge).max(1) as f64;
                 let fall = (base - chi2) / runs;
-                Without { gauge, fall, chi2 }
+                Without {
+                    gauge,
+                    fall,
+                    chi2,
+                    dof,
+                }
             })
             .collect();
         order.sort_by(|a, b| b.fall.total_cmp(&a.fall));
-        let Some(worst) = order.first().filter(|w| w.fall > NAMED * NAMED) else {
+        let worst = order.first().map(|w| (w, w.limit(s.gauges.len(), known)));
+        let Some((worst, limit)) = worst.filter(|(w, limit)| w.fall > limit * limit) else {
             break;
         };
         let g = worst.gauge;
@@ -61,24 +85,24 @@ pub(super) fn check(
         let partners = order.iter().skip(1).take(PARTNERS).map(|w| w.gauge);
         let exchanged = partners
             .map(|h| {
-                let both = chi2(s, &silent(&silent(&readings, g), h), errors, known);
-                (h, chi2(s, &swapped(&readings, g, h), errors, known), both)
+                let both = chi2(s, &silent(&silent(&readings, g), h), errors, known).0;
+                (h, chi2(s, &swapped(&readings, g, h), errors, known).0, both)
             })
             .filter(|(_, swapped, both)| {
                 *swapped < AS_GOOD * both && *swapped < worst.chi2 / AS_GOOD
             })
             .min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((h, ..)) = exchanged {
-            findings.push(exchange(&s.gauges[g], &s.gauges[h], sigmas));
+            findings.push(exchange(&s.gauges[g], &s.gauges[h], [sigmas, limit]));
             readings = silent(&silent(&readings, g), h);
             continue;
         }
-        let turned = chi2(s, &flipped(&readings, g), errors, known);
+        let turned = chi2(s, &flipped(&readings, g), errors, known).0;
         let without = silent(&readings, g);
         let scale = scale_of(s, &readings, &without, g, errors, known);
         findings.push(name(
             &s.gauges[g],
-            sigmas,
+            [sigmas, limit],
             turned < AS_GOOD * worst.chi2,
             scale,
         ));
@@ -87,9 +111,15 @@ pub(super) fn check(
     (findings, readings)
 }
 
-fn chi2(s: &Sensitivity, readings: &[Readings], errors: ErrorModel, known: &Uncertainty) -> f64 {
-    let runs = readings.iter();
-    runs.map(|r| estimate(s, r, errors, known).chi2).sum()
+/// Sum of squares that is left of all runs, and its degrees of freedom.
+fn chi2(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    known: &Uncertainty,
+) -> (f64, usize) {
+    let runs = readings.iter().map(|r| estimate(s, r, errors, known));
+    runs.fold((0.0, 0), |a, r| (a.0 + r.chi2, a.1 + r.dof))
 }
 
 fn count(readings: &[Readings], gauge: usize) -> usize {
@@ -134,7 +164,7 @@ fn scale_of(
     all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-fn exchange(a: &str, b: &str, sigmas: f64) -> Finding {
+fn exchange(a: &str, b: &str, [sigmas, limit]: [f64; 2]) -> Finding {
     Finding::new(
         Severity::Warning,
         "gauges-exchanged",
@@ -142,10 +172,10 @@ fn exchange(a: &str, b: &str, sigmas: f64) -> Finding {
         format!("gauges `{a}` and `{b}` read each other's strain ({sigmas:.0} sigma): they are left out here"),
         "exchange their columns, or their plugs",
     )
-    .with_numbers(sigmas, NAMED)
+    .with_numbers(sigmas, limit)
 }
 
-fn name(gauge: &str, sigmas: f64, turned: bool, scale: f64) -> Finding {
+fn name(gauge: &str, [sigmas, limit]: [f64; 2], turned: bool, scale: f64) -> Finding {
     let (code, what, remedy) = if scale.abs() < NOTHING {
         (
             "gauge-dead",
@@ -168,5 +198,5 @@ fn name(gauge: &str, sigmas: f64, turned: bool, scale: f64) -> Finding {
     let message = format!(
         "gauge `{gauge}` {what} ({sigmas:.0} sigma by noise, scatter and the uncertainty of S): it is left out here"
     );
-    Finding::new(Severity::Warning, code, gauge, message, remedy).with_numbers(sigmas, NAMED)
+    Finding::new(Severity::Warning, code, gauge, message, remedy).with_numbers(sigmas, limit)
 }

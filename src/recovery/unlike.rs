@@ -1,7 +1,8 @@
 //! Runs whose strain is none that the calibrated loads make, judged against what repeats scatter by.
 
-use super::calibrated::estimate_with;
+use super::calibrated::{Excess, estimate_with};
 use super::errors::ErrorModel;
+use super::interval::student_95;
 use super::types::{Readings, RunEstimate};
 use super::verdict::chance;
 use crate::finding::{Finding, Severity};
@@ -50,7 +51,7 @@ pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Ve
                 &r.estimate.run,
                 format!(
                     "run `{}`: what the loads leave is {birge:.1} times what noise, scatter and the uncertainty of S make, most at {}. Its loads are estimated with \
-                     that much more error on every gauge, their intervals accordingly",
+                     that much more scatter of all gauges together, or error of each gauge by itself, whichever makes its strain likelier, their intervals accordingly",
                     r.estimate.run,
                     worst(gauges, r)
                 ),
@@ -88,30 +89,49 @@ const MOST: f64 = 1e30;
 /// Halvings of the last step: to six digits.
 const HALVINGS: usize = 20;
 
-/// The estimate with as much error of its own added to every reading as explains what is left: an unknown pattern over the gauges, larger where
-/// noise, scatter and the uncertainty of S are larger. Added alike for all gauges the loud ones would decide, those beside a wheel, which scatter
-/// most; as a factor on the whole covariance what is left would decide through the patterns that repeats hardly scatter by.
+/// The estimate with as much more error as explains what is left, in the one of two ways that makes the readings likelier: all of the covariance
+/// larger, as where a run scatters as those of the calibration do, but more; or an error of its own added to every
+/// reading, an unknown pattern over the gauges, larger where noise, scatter and the uncertainty of S are larger, as where a truck is at a place
+/// that no run has seen. Each has one size, found of the run. Where nothing but a stated error of S is known, the second.
+///
+/// The added error is no constant: added alike for all gauges the loud ones would decide, those beside a wheel, which scatter most.
 ///
 /// # Reference
-/// R. DerSimonian and N. Laird, Control. Clin. Trials 7 (1986) 177: excess scatter as a variance added, not as a factor.
+/// R. T. Birge, Phys. Rev. 40 (1932) 207: excess scatter as a factor; R. DerSimonian and N. Laird, Control. Clin. Trials 7 (1986) 177: as a
+/// variance added.
 pub fn estimate_loosely(
     s: &Sensitivity,
     readings: &Readings,
     errors: ErrorModel,
     known: &Uncertainty,
 ) -> RunEstimate {
-    let with = |more: f64| estimate_with(s, readings, (errors, more), known);
-    let explained = |more: f64| {
-        let run = with(more);
+    let with = |excess: Excess| estimate_with(s, readings, (errors, excess), known);
+    let (apart, likelihood_apart) = explained(&|each| with(Excess { each, all: 0.0 }));
+    if !known.dof.is_finite() {
+        return apart;
+    }
+    let (mut together, likelihood) = explained(&|all| with(Excess { each: 0.0, all }));
+    if !(likelihood > likelihood_apart) {
+        return apart;
+    }
+    // A factor that this run tells is known no better than by what it has to spare.
+    together.estimate.coverage_factor = student_95(known.dof.min(together.dof as f64));
+    together
+}
+
+/// With the least excess that explains what is left of a run.
+fn explained(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
+    let is = |more: f64| {
+        let run = with(more).0;
         run.chi2 <= run.dof as f64
     };
     let (mut low, mut high) = (0.0, 1.0);
-    while !explained(high) && high < MOST {
+    while !is(high) && high < MOST {
         (low, high) = (high, STEP * high);
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        match explained(middle) {
+        match is(middle) {
             true => high = middle,
             false => low = middle,
         }

@@ -123,11 +123,12 @@ struct Weighed {
     wrong_lanes: Vec<String>,
 }
 
-fn weigh(name: &str) -> Option<Weighed> {
+/// Half of the runs teach, drawn at random within each lane by the seeds given.
+fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<Weighed> {
     let b = bridge(name, |_, fit| fit == "1")?;
     let k = b.lanes.len();
     let mut out = Weighed::default();
-    for seed in 0..20 {
+    for seed in seeds {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let (mut teach, mut test): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
         for lane in 0..k {
@@ -189,7 +190,9 @@ fn median(v: &[f64]) -> f64 {
 
 #[test]
 fn half_of_the_runs_at_ponca_teach_to_weigh_the_others_within_their_intervals() {
-    let Some(w) = weigh("ponca") else { return };
+    let Some(w) = weigh("ponca", 0..20) else {
+        return;
+    };
     let (_, sd) = mean_sd(&w.errors);
     // The limits of the protocol, over twenty splits: 95 % intervals that hold nine of ten, 9 % wide to a side, 4 % of scatter.
     assert!(
@@ -206,9 +209,30 @@ fn half_of_the_runs_at_ponca_teach_to_weigh_the_others_within_their_intervals() 
     assert!(w.wrong_lanes.is_empty(), "{:?}", w.wrong_lanes);
 }
 
+/// Sixty other splits. What the loads leave of some runs at 30 and 45 mph is far more than the calibration scatters by; their lane is to be told by
+/// what is known of the scatter all the same.
+#[test]
+fn runs_that_scatter_more_than_those_that_taught_are_weighed_in_their_lane() {
+    let Some(w) = weigh("ponca", 20..80) else {
+        return;
+    };
+    eprintln!(
+        "{} of {} held, wrong lanes {:?}",
+        w.held,
+        w.errors.len(),
+        w.wrong_lanes
+    );
+    assert!(w.held as f64 >= 0.93 * w.errors.len() as f64);
+    // Strain of R29 and R31 (30 mph, middle, going north) lies between two lanes where runs going south alone teach the middle.
+    let others = w.wrong_lanes.iter().filter(|r| *r != "R29" && *r != "R31");
+    assert!(others.count() <= 3, "{:?}", w.wrong_lanes);
+}
+
 #[test]
 fn half_of_the_runs_at_ashland_teach_to_weigh_the_others_within_their_intervals() {
-    let Some(w) = weigh("ashland") else { return };
+    let Some(w) = weigh("ashland", 0..20) else {
+        return;
+    };
     // The protocol: intervals that hold nine of ten, 20 % wide to a side, 7 % of scatter.
     assert!(
         w.held as f64 >= 0.9 * w.errors.len() as f64,
@@ -312,10 +336,114 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
             "{case}: {subjects:?}"
         );
     }
-    // A drift that ends at the peak's level and a gain on a gauge that reads next to nothing (1.3 of its own scatter) show less than healthy
-    // gauges scatter: what is asked of them is that no other gauge is blamed.
+    // Peaks do not tell two of them. Case 08 drifts by 20 microstrain over each record: at the peaks, less the zero that they are taken from,
+    // the others expect of the gauge what it reads to 1 % (-1.6 +- 7.9 microstrain). Case 09 reads .7 of what it should: .96 of what the
+    // others expect. In other cases at Ponca, where it is sound, it reads .93 to 1.47 of that. What is asked of them is that no other gauge is
+    // blamed.
     for case in ["case01", "case05", "case08", "case09", "case10"] {
         let (codes, subjects) = planted(case).unwrap();
         assert!(codes.is_empty(), "{case}: {codes:?} {subjects:?}");
+    }
+}
+
+/// A fault of one gauge or two, in the readings of runs one after the other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Planted {
+    Nothing,
+    Exchanged,
+    Turned,
+    /// It reads .7 of what it should.
+    Weak,
+    /// Its zero creeps by 20 microstrain from the first run to the last.
+    Drifting,
+    /// Noise alone from the middle run on.
+    Dead,
+}
+
+/// Half of the whole runs of a bridge teach, the others are weighed with a fault at gauges drawn among those that read a fifth of the
+/// largest: the gauges at fault, and those named.
+fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<String>) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let whole = |i: &usize| b.runs[*i].2.iter().all(|v| v.is_finite());
+    let (mut teach, mut test): (Vec<usize>, Vec<usize>) = (Vec::new(), Vec::new());
+    for lane in 0..b.lanes.len() {
+        let of_lane = |i: &usize| b.runs[*i].1 == lane && whole(i);
+        let mut list: Vec<usize> = (0..b.runs.len()).filter(of_lane).collect();
+        list.shuffle(&mut random);
+        let half = list.len().div_ceil(2);
+        teach.extend_from_slice(&list[..half]);
+        test.extend_from_slice(&list[half..]);
+    }
+    test.sort_unstable();
+    let n = b.gauges.len();
+    let size = |g: &usize| {
+        let all = b.runs.iter().map(|r| r.2[*g].abs());
+        all.filter(|v| v.is_finite()).fold(0.0, f64::max)
+    };
+    let most = (0..n).map(|g| size(&g)).fold(0.0, f64::max);
+    let mut pool: Vec<usize> = (0..n).filter(|g| size(g) > 0.2 * most).collect();
+    pool.shuffle(&mut random);
+    let (g, h) = (pool[0], pool[1]);
+    let last = (test.len() - 1) as f64;
+    let read = |(at, i): (usize, &usize)| {
+        let mut strain = b.runs[*i].2.clone();
+        match planted {
+            Planted::Nothing => {}
+            Planted::Exchanged => strain.swap(g, h),
+            Planted::Turned => strain[g] *= -1.0,
+            Planted::Weak => strain[g] *= 0.7,
+            Planted::Drifting => strain[g] += 20e-6 * at as f64 / last,
+            Planted::Dead if 2 * at >= test.len() => strain[g] = NOISE * (0.7 - (at % 3) as f64),
+            Planted::Dead => {}
+        }
+        Readings {
+            run: b.runs[*i].0.clone(),
+            strain,
+            noise_factor: 1.0,
+        }
+    };
+    let readings: Vec<Readings> = test.iter().enumerate().map(read).collect();
+    let c = calibrate(&task(b, &teach)).unwrap();
+    let errors = ErrorModel {
+        noise: NOISE,
+        model_rel: 0.0,
+    };
+    let found = recover(&c.sensitivity, &readings, errors).findings;
+    let named = found.iter().filter(|f| f.code.starts_with("gauge"));
+    let named = named.flat_map(|f| f.subject.split(", ").map(str::to_owned));
+    let faulty = match planted {
+        Planted::Nothing => Vec::new(),
+        Planted::Exchanged => vec![b.gauges[g].clone(), b.gauges[h].clone()],
+        _ => vec![b.gauges[g].clone()],
+    };
+    (faulty, named.collect())
+}
+
+/// Five of each fault a bridge and ten without; `STRAINBRIDGE_TRIALS=20` for twenty and forty.
+#[test]
+fn faults_at_gauges_drawn_at_random_are_named_and_sound_gauges_are_not() {
+    use Planted::*;
+    let asked: u64 = std::env::var("STRAINBRIDGE_TRIALS").map_or(5, |t| t.parse().unwrap());
+    for name in ["ponca", "ashland"] {
+        let Some(b) = bridge(name, |_, fit| fit == "1") else {
+            return;
+        };
+        let mut blamed = Vec::new();
+        for planted in [Nothing, Exchanged, Turned, Weak, Drifting, Dead] {
+            let trials = if planted == Nothing { 2 * asked } else { asked };
+            let mut hits = 0;
+            for seed in 0..trials {
+                let (faulty, named) = with_fault(&b, planted, 1000 + seed);
+                hits += u64::from(named.first().is_some_and(|g| faulty.contains(g)));
+                let sound = named.into_iter().filter(|g| !faulty.contains(g));
+                blamed.extend(sound.map(|g| (planted, seed, g)));
+            }
+            eprintln!("{name}, {planted:?}: {hits} of {trials} named");
+            // What a turned gauge reads is off by twice its strain, a hundred times what repeats scatter by.
+            assert!(planted != Turned || hits + 1 >= trials, "{name}: {hits}");
+        }
+        eprintln!("{name}: blamed {blamed:?}");
+        // One in a hundred of 7 x asked; more than that by a chance of one in a hundred.
+        assert!(blamed.len() as u64 <= 1 + asked / 10, "{name}: {blamed:?}");
     }
 }

@@ -3,6 +3,7 @@ mod cause;
 mod glued;
 mod labels;
 mod next;
+mod overfit;
 mod repeats;
 mod scatter;
 mod synthetic;

@@ -1,0 +1,116 @@
+//! What the scatter of few runs over many gauges says too well of itself.
+
+use super::glued::normal;
+use crate::calibrate::{KnownLoads, KnownRun, Task, calibrate, overfit};
+use crate::linalg::{Matrix, spd};
+use crate::recovery::{ErrorModel, Readings, estimate};
+use crate::sensitivity::Load;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+
+/// Without shrinking the filter is a regression on all patterns that no loads make, `n - k` of them: its errors in other runs have a variance
+/// `1 / (1 - (n - k) / dof)^2` times what it leaves in those that taught it.
+#[test]
+fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_learnt() {
+    const N: usize = 6;
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let dof = 40.0;
+    let runs: Vec<Vec<f64>> = (0..40)
+        .map(|_| {
+            let common = normal(&mut random);
+            (0..N).map(|_| 3.0 * common + normal(&mut random)).collect()
+        })
+        .collect();
+    let mut sample = vec![0.0; N * N];
+    for r in &runs {
+        spd::add_outer(&mut sample, r, 1.0 / dof);
+    }
+    for k in [1, 2, 3] {
+        let columns = Matrix::from_fn(N, k, |_, _| 1.0 + normal(&mut random));
+        let loads = |c: &[f64]| -> Matrix {
+            let c = Matrix::from_row_slice(N, N, c).try_inverse().unwrap();
+            (columns.transpose() * c * &columns).try_inverse().unwrap()
+        };
+        let added = overfit::added(&sample, (&sample, 0.0), &columns, dof).unwrap();
+        let all: Vec<f64> = sample.iter().zip(&added).map(|(a, b)| a + b).collect();
+        let times = 1.0 / (1.0 - (N - k) as f64 / dof).powi(2);
+        let apart = loads(&all) - loads(&sample) * times;
+        assert!(apart.norm() < 1e-9 * loads(&all).norm(), "{k}: {apart}");
+    }
+}
+
+/// Eight gauges whose scatter of 3 % goes together, correlation .9; runs of two loads each drawn at random; whether the intervals of one more run
+/// hold, each load and the sum.
+fn together(runs: usize, seed: u64) -> Vec<bool> {
+    const NOISE: f64 = 1e-8;
+    const N: usize = 8;
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let near = |g: usize, l: usize| if l == 0 { N - g } else { g + 1 } as f64 / N as f64;
+    let s = Matrix::from_fn(N, 2, |g, l| {
+        1e-7 * (0.2 + near(g, l)) * (1.0 + 0.1 * normal(&mut random))
+    });
+    let mut drawn = || -> (Vec<f64>, Vec<f64>) {
+        let f: Vec<f64> = (0..2).map(|_| random.random_range(60.0..330.0)).collect();
+        let clean: Vec<f64> = (0..N)
+            .map(|g| s[(g, 0)] * f[0] + s[(g, 1)] * f[1])
+            .collect();
+        let size = 0.03 * (clean.iter().map(|e| e * e).sum::<f64>() / N as f64).sqrt();
+        let common = 0.9_f64.sqrt() * normal(&mut random);
+        let read = clean.iter().map(|e| {
+            let own = 0.1_f64.sqrt() * normal(&mut random);
+            e + size * (common + own) + NOISE * normal(&mut random)
+        });
+        (read.collect(), f)
+    };
+    let known = (0..runs).map(|i| {
+        let (strain, f) = drawn();
+        KnownRun {
+            run: format!("R{i}"),
+            strain,
+            noise_factor: 1.0,
+            loads: KnownLoads::exact(f),
+            group: i,
+        }
+    });
+    let task = Task {
+        runs: known.collect(),
+        gauges: (0..N).map(|g| format!("G{g}")).collect(),
+        loads: ["west", "east"].map(Load::named).to_vec(),
+        noise: NOISE,
+        model: None,
+        sums: vec![vec![1.0; 2]],
+    };
+    let (strain, f) = drawn();
+    let readings = Readings {
+        run: "new".into(),
+        strain,
+        noise_factor: 1.0,
+    };
+    let errors = ErrorModel {
+        noise: NOISE,
+        model_rel: 0.0,
+    };
+    let s = calibrate(&task).unwrap().sensitivity;
+    let e = estimate(&s, &readings, errors).estimate;
+    let sum = e.values.iter().sum::<f64>() - f[0] - f[1];
+    let of_sum = e.covariance.iter().sum::<f64>().sqrt();
+    let each = (0..2).map(|l| (e.values[l] - f[l], e.sigma(l)));
+    let each = each.chain([(sum, of_sum)]);
+    each.map(|(off, sigma)| off.abs() <= e.coverage_factor * sigma)
+        .collect()
+}
+
+#[test]
+fn intervals_hold_where_gauges_scatter_together_and_are_many_against_the_runs() {
+    for runs in [24, 36] {
+        let trials: Vec<Vec<bool>> = (0..1200)
+            .into_par_iter()
+            .map(|seed| together(runs, seed))
+            .collect();
+        let held = trials.iter().flatten().filter(|h| **h).count() as f64 / 3600.0;
+        eprintln!("{runs} runs: {:.1} % held", 100.0 * held);
+        // Loads of a trial go together: three sd of a binomial of 1,200, 1.9 %.
+        assert!((held - 0.95).abs() < 0.019, "{runs}: {held}");
+    }
+}
