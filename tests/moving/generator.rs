@@ -284,13 +284,19 @@ fn late(x: &[f64], delay: f64) -> Vec<f64> {
         .collect()
 }
 
-/// A given gain on a given channel, clean background.
-pub fn hide_gain(layout: Layout, channel: &str, gain: f64, seed: u64) -> Case {
+/// A given gain on a given channel.
+pub fn hide_gain(
+    layout: Layout,
+    channel: &str,
+    gain: f64,
+    background: Background,
+    seed: u64,
+) -> Case {
     let exact = Exact {
         gain: Some((channel.to_owned(), gain)),
         ..Exact::default()
     };
-    hide_exactly(layout, "accel_gain", 0, Background::Clean, seed, &exact)
+    hide_exactly(layout, "accel_gain", 0, background, seed, &exact)
 }
 
 /// A given share of the body that joins or leaves, clean background.
