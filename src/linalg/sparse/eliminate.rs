@@ -119,8 +119,8 @@ pub(super) fn take_out(
     }
 }
 
-/// Multiplications of [`eliminate`] and [`take_out`] that follow each other however many threads share the matrix: of every block of columns the block
-/// itself and one tile of rows, then one strip.
+/// Multiplications of [`eliminate`] and [`take_out`] that follow each other however many threads share the matrix: of every block of
+/// columns the block itself and one tile of rows, then one strip.
 pub(super) fn longest_chain(own: usize, below: usize) -> f64 {
     let blocks = (0..own).step_by(BLOCK).map(|k| {
         let (n, tile) = (BLOCK.min(own - k), TILE.min(own + below - k));

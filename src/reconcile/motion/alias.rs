@@ -3,17 +3,19 @@
 
 use super::change::Change;
 use super::design::BinEquation;
-use super::evidence::beside_shaking;
+use super::evidence::{beside_shaking, evidence};
+use super::fit::{Effort, fit};
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::scorer::MotionScorer;
+use super::unexplained_background::of_fit;
 use crate::reconcile::search::{Scored, Scorer, settle};
 
 /// Joins to `all` the best set with each of its channel faults moved to every other channel of the kind; best first again.
 ///
-/// The background stands in the units of the equations, whose scale the gain of a channel may change; where no force fixes it, models that differ by that
-/// scale alone are alike. So each of these sets is held against the best one with the background that it leaves itself, and the lead is that of both
-/// likelihoods at their largest.
+/// The background stands in the units of the equations, whose scale the gain of a channel may change; where no force fixes it, models that
+/// differ by that scale alone are alike. So each of these sets is held against the best one with the background that it leaves itself, and
+/// the lead is that of both likelihoods at their largest.
 ///
 /// Constants of forms (the velocity below which friction fades) were found before the fault came, or with another channel at fault, and are as
 /// wrong there as the channel is. Each of these sets finds its own, so that none leads by them.
@@ -29,7 +31,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
     all.retain(|s| s.set != best.set);
     all.push(best.clone());
     let beside = |fit: &MotionFit| beside_shaking(scorer.frame, fit);
-    let of_best = scorer.with_own_background(&best).log_evidence;
+    let of_best = with_own_background(scorer, &best).log_evidence;
     for &member in &best.set {
         let own = &candidates[member];
         if !own.is_channel() {
@@ -48,7 +50,7 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
             let gain = matches!(own.shapes.first(), Some(Change::Gain { .. }));
             all.extend(scored.map(|s| {
                 let s = scorer.with_own_constants(s);
-                let own = scorer.with_own_background(&s);
+                let own = with_own_background(scorer, &s);
                 let lead = match gain && has_no_scale(scorer.frame, &best.fit) {
                     true => beside(&own.fit) - beside(&best.fit),
                     false => own.log_evidence - of_best,
@@ -63,8 +65,47 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
 }
 
-/// Whether the scale of all that was measured is free: two channels, both of motion, and neither a force nor the weight beside them. A gain of the one
-/// and the inverse gain of the other are then one and the same model of the shaken part, whatever a finite record seems to prefer.
+/// A set with the background that it leaves itself, as long as that makes its record likelier.
+fn with_own_background(scorer: &MotionScorer, of: &Scored<MotionFit>) -> Scored<MotionFit> {
+    /// Times that the background is found anew.
+    const ROUNDS: usize = 4;
+    /// A rise of the log evidence that is none.
+    const SETTLED: f64 = 0.1;
+    let mut best = of.clone();
+    if scorer.background.power.is_empty() {
+        return best;
+    }
+    for _ in 0..ROUNDS {
+        let own = of_fit(scorer.frame, &best.fit);
+        let again = fit(
+            scorer.frame,
+            scorer.candidates,
+            &scorer.frame.data,
+            best.fit.parts.clone(),
+            Some(&best.fit),
+            &own,
+            Effort::Settled,
+        );
+        let Some(fit) = again else { break };
+        let log_evidence = evidence(scorer.frame, scorer.candidates, &fit);
+        let rise = log_evidence - best.log_evidence;
+        if rise > 0.0 {
+            best = Scored {
+                log_evidence,
+                fit,
+                set: best.set,
+            };
+        }
+        if !(rise > SETTLED) {
+            break;
+        }
+    }
+    best
+}
+
+/// Whether the scale of all that was measured is free: two channels, both of motion, and neither a force nor the weight beside them. A gain
+/// of the one and the inverse gain of the other are then one and the same model of the shaken part, whatever a finite record seems to
+/// prefer.
 fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
     /// Channels of which one gain is the inverse of another.
     const PAIR: usize = 2;

@@ -13,7 +13,6 @@ use super::frame::MotionFrame;
 use super::gls::Basis;
 use super::noise::Background;
 use super::part::Part;
-use super::unexplained_background::of_fit;
 use crate::reconcile::search::{Addition, Scored, Scorer};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::stretch::slow_stretches;
@@ -120,44 +119,6 @@ impl MotionScorer<'_> {
             set: of.set,
             fit,
         }
-    }
-
-    /// A set with the background that it leaves itself, as long as that makes its record likelier.
-    pub fn with_own_background(&self, of: &Scored<MotionFit>) -> Scored<MotionFit> {
-        /// Times that the background is found anew.
-        const ROUNDS: usize = 4;
-        /// A rise of the log evidence that is none.
-        const SETTLED: f64 = 0.1;
-        let mut best = of.clone();
-        if self.background.power.is_empty() {
-            return best;
-        }
-        for _ in 0..ROUNDS {
-            let own = of_fit(self.frame, &best.fit);
-            let again = fit(
-                self.frame,
-                self.candidates,
-                &self.frame.data,
-                best.fit.parts.clone(),
-                Some(&best.fit),
-                &own,
-                Effort::Settled,
-            );
-            let Some(fit) = again else { break };
-            let log_evidence = evidence(self.frame, self.candidates, &fit);
-            let rise = log_evidence - best.log_evidence;
-            if rise > 0.0 {
-                best = Scored {
-                    log_evidence,
-                    fit,
-                    set: best.set,
-                };
-            }
-            if !(rise > SETTLED) {
-                break;
-            }
-        }
-        best
     }
 
     /// Of several forms those that leave least with everything else as it is; none where the present one does.
