@@ -52,6 +52,8 @@ impl Shared {
         }
         let mut strips = self.spare();
         strips.resize_with(picks.len(), Strip::default);
+        // Of no columns all are decoded.
+        let decoded = picks.is_empty().then(Arc::default);
         let new = Arc::new(Rows {
             unit,
             picks: picks.to_vec(),
@@ -59,7 +61,7 @@ impl Shared {
                 strips,
                 next: 0,
                 finished: 0,
-                decoded: None,
+                decoded,
                 failed: false,
                 left: pieces,
             }),
@@ -226,6 +228,13 @@ mod tests {
     fn where_a_column_fails_each_piece_is_left_to_itself() {
         let got = of_two(&Shared::default(), &|j| j != 2);
         assert!(got.iter().all(Option::is_none));
+    }
+
+    #[test]
+    fn rows_of_no_column_are_not_waited_for() {
+        let rows = Shared::default().rows(0, 2, &[], 1);
+        let strips = rows.decoded(&mut |_, _| false);
+        assert!(strips.is_some_and(|s| s.is_empty()));
     }
 
     #[test]
