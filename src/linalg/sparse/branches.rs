@@ -93,6 +93,22 @@ impl Branches {
         }
     }
 
+    /// Indices into `top` of supernodes whose children are done, level by level; `parent` of each supernode.
+    pub(super) fn levels(&self, parent: &[u32]) -> Vec<Vec<usize>> {
+        let mut level = vec![0_usize; self.top.len()];
+        let mut levels: Vec<Vec<usize>> = Vec::new();
+        for (i, s) in self.top.iter().enumerate() {
+            if levels.len() <= level[i] {
+                levels.resize(level[i] + 1, Vec::new());
+            }
+            levels[level[i]].push(i);
+            if let Ok(above) = self.top.binary_search(&(parent[*s] as usize)) {
+                level[above] = level[above].max(level[i] + 1);
+            }
+        }
+        levels
+    }
+
     /// Branches in tasks about as heavy as each other: indices into `list`. As many whatever the number of threads, so that sums over them
     /// round alike.
     pub(super) fn shared_out(&self) -> Vec<Vec<usize>> {

@@ -119,7 +119,7 @@ impl Pass<'_> {
             left[node] = Some(update);
         }
         let mut panels: Vec<Option<&mut [f64]>> = of_top.into_iter().map(Some).collect();
-        for level in self.levels() {
+        for level in branches.levels(&self.symbolic.nodes.parent) {
             let mut tasks = Vec::with_capacity(level.len());
             for i in level {
                 let children = self.children(branches.top[i], &mut left);
@@ -183,27 +183,6 @@ impl Pass<'_> {
             .collect();
         of.sort_unstable();
         of.into_iter().filter_map(|c| left[c].take()).collect()
-    }
-
-    /// Indices of supernodes of the top whose children are done, level by level.
-    fn levels(&self) -> Vec<Vec<usize>> {
-        let branches = &self.symbolic.branches;
-        let parent = &self.symbolic.nodes.parent;
-        let mut level = vec![0_usize; branches.top.len()];
-        let mut levels: Vec<Vec<usize>> = Vec::new();
-        for i in 0..branches.top.len() {
-            if levels.len() <= level[i] {
-                levels.resize(level[i] + 1, Vec::new());
-            }
-            levels[level[i]].push(i);
-            let above = branches
-                .top
-                .binary_search(&(parent[branches.top[i]] as usize));
-            if let Ok(p) = above {
-                level[p] = level[p].max(level[i] + 1);
-            }
-        }
-        levels
     }
 
     /// The values of each branch and of each supernode of the top.

@@ -4,7 +4,6 @@ use super::branches::work;
 use super::eliminate::longest_chain;
 use super::forest::NONE;
 use super::symbolic::Symbolic;
-use std::collections::BTreeMap;
 
 /// Multiplications of a factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,8 +36,7 @@ impl Symbolic {
             ends(branch.supernodes.end - 1, branch.weight, &mut chain);
         }
         for &s in &branches.top {
-            let (own, below) = (self.unknowns(s).len(), self.nodes.n_below(s));
-            all.total += work(own, below);
+            all.total += self.work_of(s);
             let longest = chain[s] + self.chain_of(s);
             ends(s, longest, &mut chain);
         }
@@ -56,26 +54,27 @@ impl Symbolic {
                 *free += self.branches.list[i].weight;
             }
         }
-        let mut levels: BTreeMap<usize, (f64, f64)> = BTreeMap::new();
-        let mut level = vec![0_usize; self.nodes.len()];
-        for &s in &self.branches.top {
-            let (own, below) = (self.unknowns(s).len(), self.nodes.n_below(s));
-            let (sum, longest) = levels.entry(level[s]).or_insert((0.0, 0.0));
-            *sum += work(own, below);
-            *longest = longest.max(self.chain_of(s));
-            if self.nodes.parent[s] != NONE {
-                let above = self.nodes.parent[s] as usize;
-                level[above] = level[above].max(level[s] + 1);
-            }
-        }
         let share = 1.0 / p as f64;
-        let of_level = |(sum, longest): &(f64, f64)| share * sum + (1.0 - share) * longest;
-        busy.iter().copied().fold(0.0, f64::max) + levels.values().map(of_level).sum::<f64>()
+        let of_level = |level: &Vec<usize>| -> f64 {
+            let (mut sum, mut longest) = (0.0, 0.0_f64);
+            for &i in level {
+                let s = self.branches.top[i];
+                sum += self.work_of(s);
+                longest = longest.max(self.chain_of(s));
+            }
+            share * sum + (1.0 - share) * longest
+        };
+        let levels = self.branches.levels(&self.nodes.parent);
+        busy.iter().copied().fold(0.0, f64::max) + levels.iter().map(of_level).sum::<f64>()
+    }
+
+    /// Multiplications of a front.
+    fn work_of(&self, s: usize) -> f64 {
+        work(self.unknowns(s).len(), self.nodes.n_below(s))
     }
 
     /// The longest chain of a front that threads share.
     fn chain_of(&self, s: usize) -> f64 {
-        let (own, below) = (self.unknowns(s).len(), self.nodes.n_below(s));
-        longest_chain(own, below).min(work(own, below))
+        longest_chain(self.unknowns(s).len(), self.nodes.n_below(s)).min(self.work_of(s))
     }
 }
