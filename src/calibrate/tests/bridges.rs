@@ -225,7 +225,12 @@ fn runs_that_scatter_more_than_those_that_taught_are_weighed_in_their_lane() {
     assert!(w.held as f64 >= 0.93 * w.errors.len() as f64);
     // Strain of R29 and R31 (30 mph, middle, going north) lies between two lanes where runs going south alone teach the middle.
     let others = w.wrong_lanes.iter().filter(|r| *r != "R29" && *r != "R31");
-    assert!(others.count() <= 3, "{:?}", w.wrong_lanes);
+    // Of the rest one in a hundred: the rate of false names that is asked for elsewhere.
+    assert!(
+        100 * others.count() <= w.errors.len(),
+        "{:?}",
+        w.wrong_lanes
+    );
 }
 
 #[test]
@@ -443,7 +448,7 @@ fn faults_at_gauges_drawn_at_random_are_named_and_sound_gauges_are_not() {
             assert!(planted != Turned || hits + 1 >= trials, "{name}: {hits}");
         }
         eprintln!("{name}: blamed {blamed:?}");
-        // One in a hundred of 7 x asked; more than that by a chance of one in a hundred.
+        // One in a hundred of 7 x asked; more than this by a chance of one in twenty.
         assert!(blamed.len() as u64 <= 1 + asked / 10, "{name}: {blamed:?}");
     }
 }

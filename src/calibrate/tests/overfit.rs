@@ -1,10 +1,9 @@
 //! What the scatter of few runs over many gauges says too well of itself.
 
 use super::glued::normal;
+use super::repeats::{lanes, task, weighed};
 use crate::calibrate::{KnownLoads, KnownRun, Task, calibrate, overfit};
 use crate::linalg::{Matrix, spd};
-use crate::recovery::{ErrorModel, Readings, estimate};
-use crate::sensitivity::Load;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
@@ -46,10 +45,7 @@ fn together(runs: usize, seed: u64) -> Vec<bool> {
     const NOISE: f64 = 1e-8;
     const N: usize = 8;
     let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let near = |g: usize, l: usize| if l == 0 { N - g } else { g + 1 } as f64 / N as f64;
-    let s = Matrix::from_fn(N, 2, |g, l| {
-        1e-7 * (0.2 + near(g, l)) * (1.0 + 0.1 * normal(&mut random))
-    });
+    let s = lanes(&mut random);
     let mut drawn = || -> (Vec<f64>, Vec<f64>) {
         let f: Vec<f64> = (0..2).map(|_| random.random_range(60.0..330.0)).collect();
         let clean: Vec<f64> = (0..N)
@@ -74,30 +70,14 @@ fn together(runs: usize, seed: u64) -> Vec<bool> {
         }
     });
     let task = Task {
-        runs: known.collect(),
-        gauges: (0..N).map(|g| format!("G{g}")).collect(),
-        loads: ["west", "east"].map(Load::named).to_vec(),
         noise: NOISE,
-        model: None,
-        sums: vec![vec![1.0; 2]],
+        ..task(2, known.collect(), None)
     };
     let (strain, f) = drawn();
-    let readings = Readings {
-        run: "new".into(),
-        strain,
-        noise_factor: 1.0,
-    };
-    let errors = ErrorModel {
-        noise: NOISE,
-        model_rel: 0.0,
-    };
-    let s = calibrate(&task).unwrap().sensitivity;
-    let e = estimate(&s, &readings, errors).estimate;
-    let sum = e.values.iter().sum::<f64>() - f[0] - f[1];
-    let of_sum = e.covariance.iter().sum::<f64>().sqrt();
-    let each = (0..2).map(|l| (e.values[l] - f[l], e.sigma(l)));
-    let each = each.chain([(sum, of_sum)]);
-    each.map(|(off, sigma)| off.abs() <= e.coverage_factor * sigma)
+    let found = weighed(&calibrate(&task).unwrap().sensitivity, strain, NOISE);
+    let truth = [f[0], f[1], f[0] + f[1]];
+    let each = found.iter().zip(truth);
+    each.map(|([value, _, half], f)| (value - f).abs() <= *half)
         .collect()
 }
 

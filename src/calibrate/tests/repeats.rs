@@ -13,14 +13,14 @@ const NOISE: f64 = 0.1e-6;
 const GAUGES: usize = 8;
 
 /// Two lanes of a bridge: strain of each gauge a kN.
-fn lanes(random: &mut ChaCha8Rng) -> Matrix {
+pub(super) fn lanes(random: &mut ChaCha8Rng) -> Matrix {
     Matrix::from_fn(GAUGES, 2, |g, l| {
         let near = if l == 0 { GAUGES - g } else { g + 1 };
         1e-7 * (0.2 + near as f64 / GAUGES as f64) * (1.0 + 0.1 * normal(random))
     })
 }
 
-fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> Task {
+pub(super) fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> Task {
     Task {
         gauges: (0..GAUGES).map(|g| format!("G{g}")).collect(),
         loads: (0..k).map(|l| Load::named(format!("L{l}"))).collect(),
@@ -32,14 +32,14 @@ fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> Task {
 }
 
 /// Values of one more run with their sigma and the half width of the interval: each load, then the sum.
-fn weighed(s: &Sensitivity, strain: Vec<f64>) -> Vec<[f64; 3]> {
+pub(super) fn weighed(s: &Sensitivity, strain: Vec<f64>, noise: f64) -> Vec<[f64; 3]> {
     let readings = Readings {
         run: "new".into(),
         strain,
         noise_factor: 1.0,
     };
     let errors = ErrorModel {
-        noise: NOISE,
+        noise,
         model_rel: 0.0,
     };
     let e = estimate(s, &readings, errors).estimate;
@@ -109,7 +109,7 @@ fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
     let read = strain(f, off, &mut random);
     let c = calibrate(&task(2, runs, None)).unwrap();
     let truth = [f[0], f[1], weight];
-    let found = weighed(&c.sensitivity, read);
+    let found = weighed(&c.sensitivity, read, NOISE);
     found
         .iter()
         .zip(truth)
@@ -226,7 +226,7 @@ fn by_sums(apart: Apart, seed: u64) -> Vec<[f64; 3]> {
     let untold = if apart == Apart::Runs { 0 } else { 2 };
     assert_eq!(c.undetermined.len(), untold, "{apart:?}");
     let f = draw(&mut random);
-    let found = weighed(&c.sensitivity, read(f, &mut random));
+    let found = weighed(&c.sensitivity, read(f, &mut random), NOISE);
     let truth = [f[0], f[1], f[2], f.iter().sum()];
     let each = found.iter().zip(truth);
     let mut out: Vec<[f64; 3]> = each
