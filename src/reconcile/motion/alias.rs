@@ -47,17 +47,16 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
             let known = all.iter().position(|s| s.set == set);
             let scored = known.map(|at| all.swap_remove(at));
             let scored = scored.or_else(|| scorer.score(&set, Some((&best, None))));
-            let gain = matches!(own.shapes.first(), Some(Change::Gain { .. }));
             all.extend(scored.map(|s| {
-                let s = scorer.with_own_constants(s);
-                let own = with_own_background(scorer, &s);
-                let lead = match gain && has_no_scale(scorer.frame, &best.fit) {
-                    true => beside(&own.fit) - beside(&best.fit),
-                    false => own.log_evidence - of_best,
+                let alias = with_own_background(scorer, &scorer.with_own_constants(s));
+                let free = has_no_scale(scorer.frame, &best.fit);
+                let lead = match free && is_inverse((&best.fit, member), (&alias.fit, c)) {
+                    true => beside(&alias.fit) - beside(&best.fit),
+                    false => alias.log_evidence - of_best,
                 };
                 Scored {
                     log_evidence: best.log_evidence + lead,
-                    ..own
+                    ..alias
                 }
             }));
         }
@@ -118,4 +117,19 @@ fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
         && fit.rest.is_none()
         && fit.design.channels.len() == PAIR
         && !equations.iter().any(driven)
+}
+
+/// Whether the gain that one fit finds by a candidate is the inverse of what the other finds by another, within 3.3 standard deviations of
+/// both (one in a thousand): with something else in the set that has a size of its own it need not be.
+fn is_inverse(one: (&MotionFit, usize), other: (&MotionFit, usize)) -> bool {
+    const DEVIATIONS: f64 = 3.3;
+    let gain = |(fit, candidate): (&MotionFit, usize)| -> Option<[f64; 2]> {
+        let at = fit.parts.iter().position(|p| p.candidate == candidate)?;
+        let is_gain = matches!(fit.parts.get(at)?.shape, Change::Gain { .. });
+        fit.sizes.get(at)?.first().copied().filter(|_| is_gain)
+    };
+    let (Some([a, of_a]), Some([b, of_b])) = (gain(one), gain(other)) else {
+        return false;
+    };
+    (a * b).ln().abs() <= DEVIATIONS * (of_a / a).hypot(of_b / b)
 }
