@@ -1,9 +1,10 @@
 //! Days that are not alike: their order by the calendar, other units, other rates, a vehicle that stands.
 
-use super::command::{GAUGES, findings_of, fleet, folder, table_of};
+use super::command::{GAUGES, S, findings_of, fleet, folder, table_of};
 use super::drawn::Splitmix;
 use super::program::JOB;
 use serde_json::Value;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The job of these tests, with the noise that its records have.
@@ -129,6 +130,53 @@ fn a_day_in_another_unit_is_read_in_it_where_it_says_so_and_is_an_error_where_no
             "{message}"
         );
     }
+}
+
+/// A day of slow loads of this size, forty seconds, with noise of 1 microstrain in each reading, wronged by `change`.
+fn slow(day: usize, size: f64, mut change: impl FnMut(&mut [f64; GAUGES])) -> String {
+    let mut numbers = Splitmix(300 + day as u64);
+    let mut text = String::from("time");
+    (0..GAUGES).for_each(|g| write!(text, ",G{g} [um/m]").unwrap());
+    for i in 0..4_000 {
+        let t = f64::from(i) * 0.01;
+        let f = [(0.2 * t + day as f64).sin(), (0.31 * t).cos()].map(|f| size * f);
+        let mut y = S.map(|row| row[0] * f[0] + row[1] * f[1] + normal(&mut numbers));
+        change(&mut y);
+        write!(text, "\n{t:.2}").unwrap();
+        y.iter().for_each(|v| write!(text, ",{v:.6}").unwrap());
+    }
+    text
+}
+
+#[test]
+fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day_is_not() {
+    let dir = noisy("scale");
+    let as_it_is = |_: &mut [f64; GAUGES]| ();
+    let files: Vec<String> = (1..=5)
+        .map(|day| write(&dir, &format!("A_{day}.csv"), &slow(day, 50.0, as_it_is)))
+        .collect();
+    let told = |third: &str| -> Vec<String> {
+        write(&dir, "A_3.csv", third);
+        let (_, result) = fleet(&dir, "out", &files, &[]);
+        let found = findings_of(&result, &["warning"]).into_iter();
+        let found = found.filter(|f| f[0] == "fleet-day-scale");
+        found.map(|f| f[2].clone()).collect()
+    };
+    assert!(told(&slow(3, 50.0, as_it_is)).is_empty());
+    for factor in [0.5, 1.3, 2.0] {
+        let found = told(&slow(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= factor)));
+        let [message] = found.as_slice() else {
+            panic!("{factor}: {found:?}");
+        };
+        let before = message.split(" on 3: ").next().unwrap();
+        let said: f64 = before.rsplit(' ').next().unwrap().parse().unwrap();
+        // Second differences of 4,000 readings tell noise to 1.5 %, the median of five gauges to half of that; three sigmas.
+        assert!((said / factor - 1.0).abs() < 0.03, "{message}");
+    }
+    // Twice the loads with the noise of every day; half of the gauges twice as noisy.
+    assert!(told(&slow(3, 100.0, as_it_is)).is_empty());
+    let half = slow(3, 50.0, |y| y.iter_mut().step_by(2).for_each(|v| *v *= 2.0));
+    assert!(told(&half).is_empty());
 }
 
 #[test]

@@ -20,6 +20,7 @@ pub mod kernel;
 pub mod merge;
 mod mission;
 pub mod name;
+mod other_scale;
 mod other_unit;
 mod outcome;
 mod prepared;
@@ -50,6 +51,7 @@ use kept::{KeptDays, digest};
 use kernel::Kernel;
 use merge::{Status, sorted, vehicle};
 use name::{NameForm, Shard};
+use other_scale::in_other_scale;
 use other_unit::in_other_units;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -136,9 +138,10 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         .extend(answer.findings(&files, &status, days_in));
     work.findings
         .extend(in_other_units(&answer.vehicles, &kernel.errors));
-    let drifts = answer.vehicles.iter();
-    work.findings
-        .extend(drifts.filter_map(|v| drift(v, &kernel.errors)));
+    for v in &answer.vehicles {
+        work.findings.extend(drift(v, &kernel.errors));
+        work.findings.extend(in_other_scale(v, &kernel.errors));
+    }
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 

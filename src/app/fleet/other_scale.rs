@@ -1,0 +1,96 @@
+//! Days on which the noise of all gauges is the same factor of what it is on the vehicle's other days: a bridge factor, a gain or a range that changed for
+//! all channels, by which the readings are wrong as well.
+
+use super::outcome::VehicleAnswer;
+use crate::finding::{Finding, Severity, few};
+use crate::recovery::ErrorModel;
+use crate::units::MICROSTRAIN;
+
+/// From which factor. Of the factors that are mixed up (quarter, half and full bridge, Poisson's 1 + nu, steps of gain) the least is 1.3; temperature
+/// changes the noise of amplifiers by some per cent.
+const FROM: f64 = 1.25;
+/// How far the factor of a gauge may be from that of the others: white noise of a thousand readings is known to 3 % (Gaussian, second differences).
+const ALIKE: f64 = 1.06;
+/// Share of the gauges that have the factor: others may be dead, or exchanged, on that day.
+const SHARE: f64 = 0.75;
+/// Fewer gauges are alike by chance.
+const GAUGES: usize = 4;
+/// Days with noise from which one is told from the others.
+const DAYS: usize = 4;
+/// How many times the stated noise that of other days may be, or the other way round: beyond, it is vibration, which rough roads raise in all gauges.
+const OF_STATED: f64 = 1.5;
+/// How many times the scatter of the readings may change otherwise: what a vehicle does changes it.
+const DRIVEN: f64 = 2.0;
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied()
+}
+
+/// By gauge and day the natural log of a number over its median; `None` where one of them is missing.
+fn logs<'a>(of: impl Iterator<Item = &'a Vec<Option<f64>>>) -> Vec<Vec<Option<f64>>> {
+    let of_gauge = |days: &Vec<Option<f64>>| {
+        let usual = median(days.iter().flatten().copied().collect());
+        let log = |v: &Option<f64>| Some((v.filter(|v| *v > 0.0)? / usual?).ln());
+        days.iter().map(log).collect()
+    };
+    of.map(of_gauge).collect()
+}
+
+/// The factor of a day's noise, where nearly all gauges have it.
+fn common(logs: &[Vec<Option<f64>>], day: usize) -> Option<f64> {
+    let known: Vec<f64> = logs.iter().filter_map(|g| *g.get(day)?).collect();
+    let middle = median(known.clone())?;
+    let alike = |v: &&f64| (**v - middle).abs() < ALIKE.ln();
+    let n = known.iter().filter(alike).count();
+    (n >= GAUGES && n as f64 >= SHARE * logs.len() as f64).then_some(middle)
+}
+
+/// One finding a vehicle that has such days.
+pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
+    let stated = errors.noise / MICROSTRAIN;
+    let usual = v
+        .gauges
+        .iter()
+        .filter_map(|g| median(g.noise.iter().flatten().copied().collect()));
+    let usual = median(usual.collect())?;
+    if !(usual < OF_STATED * stated && stated < OF_STATED * usual) {
+        return None;
+    }
+    let noise = logs(v.gauges.iter().map(|g| &g.noise));
+    let scatter = logs(v.gauges.iter().map(|g| &g.sd));
+    let factors: Vec<Option<f64>> = (0..v.days.len()).map(|day| common(&noise, day)).collect();
+    // On most days the noise is what it usually is.
+    let quiet = factors
+        .iter()
+        .flatten()
+        .filter(|f| f.abs() < ALIKE.ln())
+        .count();
+    if quiet < DAYS - 1 || 2 * quiet < v.days.len() {
+        return None;
+    }
+    let odd = |(day, factor): (usize, &Option<f64>)| {
+        let factor = factor.filter(|f| f.abs() > FROM.ln())?;
+        let own = median(scatter.iter().filter_map(|g| *g.get(day)?).collect())?;
+        ((own - factor).abs() < DRIVEN.ln()).then_some((v.days.get(day)?, factor.exp()))
+    };
+    let days: Vec<(&String, f64)> = factors.iter().enumerate().filter_map(odd).collect();
+    let (first, times) = days.first()?;
+    let names: Vec<&String> = days.iter().map(|d| d.0).collect();
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "fleet-day-scale",
+            &v.name,
+            format!(
+                "on {} of {} days ({}) the noise of nearly all gauges is the same factor of what it is on the other days, {times:.2} on {first}: noise is that of \
+                 the electronics, so that the readings of these days may be {times:.2} times what they should be, and damage that to the power of the slope",
+                days.len(),
+                v.days.len(),
+                few(&names),
+            ),
+            "see whether the bridge factor, the gain or the filter of the logger was another one; put the records right with [[correction]], or leave them out",
+        )
+        .with_numbers(*times, FROM),
+    )
+}
