@@ -132,12 +132,12 @@ pub(super) fn lowest(
         }
         u
     };
-    let apply = |forces: &[Field]| -> Result<Vec<Field>, FeError> {
+    let apply = |forces: Vec<Field>| -> Result<Vec<Field>, FeError> {
         let mut columns = vec![0.0; n * forces.len()];
         columns
             .par_chunks_exact_mut(n.max(1))
             .zip(forces)
-            .try_for_each(|(column, f)| system.pack(prepared, f.clone(), column))?;
+            .try_for_each(|(column, f)| system.pack(prepared, f, column))?;
         factor.solve(&mut columns);
         Ok(columns.par_chunks_exact(n.max(1)).map(field).collect())
     };
@@ -146,13 +146,15 @@ pub(super) fn lowest(
         .map(|c| field(&start_values(n, c)))
         .collect();
     // One step on random values: what has no mass is gone.
-    let mut block = apply(&mass_times(mass, &start))?;
+    let mut block = apply(mass_times(mass, &start))?;
     drop(start);
-    let (mut basis, mut forces): (Vec<Field>, Vec<Field>) = (Vec::new(), Vec::new());
-    // Q' M A Q, row and column by basis vector.
+    let mut basis: Vec<Field> = Vec::new();
+    let mut masses = mass_times(mass, &block);
+    // Q' M A Q, row and column by basis vector, and of it what the last block brought.
     let mut projected = DMatrix::<f64>::zeros(0, 0);
+    let mut along = DMatrix::zeros(0, block.len());
     let found = loop {
-        let (q, f, kept) = orthonormal(mass, &basis, &forces, block);
+        let (q, f, kept) = orthonormal(mass, &basis, block, (masses, &along));
         let before = basis.len();
         let size = before + q.len();
         // Entries that tie the new vectors to the last ones are those of `kept`, found while they were made orthogonal.
@@ -173,19 +175,19 @@ pub(super) fn lowest(
         if wanted.stop.is_asked() {
             return Err(FeError::Stopped);
         }
-        block = apply(&f)?;
+        block = apply(f)?;
         basis.extend(q);
-        forces.extend(f);
         // <q_i, A q_j> for all i and the new j.
-        let columns = gram(&forces, &block);
+        masses = mass_times(mass, &block);
+        along = gram(&basis, &masses);
         let mut grown = DMatrix::zeros(size, size);
         grown
             .view_mut((0, 0), (before, before))
             .copy_from(&projected);
         for i in 0..size {
             for j in before..size {
-                grown[(i, j)] = columns[(i, j - before)];
-                grown[(j, i)] = columns[(i, j - before)];
+                grown[(i, j)] = along[(i, j - before)];
+                grown[(j, i)] = along[(i, j - before)];
             }
         }
         projected = grown;
@@ -230,23 +232,23 @@ fn mass_times(mass: &Mass, fields: &[Field]) -> Vec<Field> {
 }
 
 /// A block made orthonormal in M to the basis and in itself: vectors, M times them, and the factor R of `block = basis part + Q R`.
-/// Directions that are left with nothing are dropped.
+/// Directions that are left with nothing are dropped. `masses` is M times the block and `along` the basis's dots with that.
 fn orthonormal(
     mass: &Mass,
     basis: &[Field],
-    forces: &[Field],
     mut block: Vec<Field>,
+    (masses, along): (Vec<Field>, &DMatrix<f64>),
 ) -> (Vec<Field>, Vec<Field>, DMatrix<f64>) {
-    let first = gram(&block, &mass_times(mass, &block));
-    let scale: Vec<f64> = (0..block.len())
-        .map(|i| first[(i, i)].max(0.0).sqrt())
-        .collect();
-    // A step of Lanczos ties a block to the last two alone: they are taken out first, then what rounding leaves along all.
-    for first in [basis.len().saturating_sub(2 * BLOCK), 0] {
-        if !basis.is_empty() {
-            let along = gram(&forces[first..], &block);
-            subtract(&mut block, &basis[first..], &along);
-        }
+    let square = |(u, m): (&Field, &Field)| dot(u, m).max(0.0);
+    let scale = block.iter().zip(&masses).map(square).fold(0.0, f64::max);
+    drop(masses);
+    if !basis.is_empty() {
+        // A step of Lanczos ties a block to the last two alone: they are taken out first, then what rounding leaves along all.
+        let first = basis.len().saturating_sub(2 * BLOCK);
+        let tied = along.rows(first, basis.len() - first).into_owned();
+        subtract(&mut block, &basis[first..], &tied);
+        let left = gram(basis, &mass_times(mass, &block));
+        subtract(&mut block, basis, &left);
     }
     let mut factor = DMatrix::identity(block.len(), block.len());
     // Twice: the second round repairs what rounding leaves of the first.
@@ -257,9 +259,8 @@ fn orthonormal(
             break;
         }
         let eigen = weight.symmetric_eigen();
-        let largest = scale.iter().fold(0.0_f64, |a, s| a.max(s * s));
         let kept: Vec<usize> = (0..n)
-            .filter(|&i| eigen.eigenvalues[i] > 1e-24 * largest.max(f64::MIN_POSITIVE))
+            .filter(|&i| eigen.eigenvalues[i] > 1e-24 * scale.max(f64::MIN_POSITIVE))
             .collect();
         let step = DMatrix::from_fn(kept.len(), n, |r, c| {
             eigen.eigenvalues[kept[r]].sqrt() * eigen.eigenvectors[(c, kept[r])]

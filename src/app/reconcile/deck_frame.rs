@@ -13,11 +13,12 @@ use super::signature_table::TableColumn;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadActs, LoadRole};
 use crate::app::solved::{support_of_job, unit_loads_kept};
-use crate::app::strain::{Fields, Prepared, lay_gauges, prepare};
+use crate::app::strain::{Fields, Prepared, lay_gauges, prepare_beside};
 use crate::app::work::Work;
 use crate::fe::UnitLoad;
 use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
+use crate::model::Model;
 use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
 use crate::stop::Stop;
 use crate::units::KILO;
@@ -41,12 +42,13 @@ pub(super) fn read(
     job: &Job,
     channels: &[String],
 ) -> Result<(ModelPart, DeckFrame), Faults> {
+    let columns = |model: &Model| Ok(SignatureLoads::of(job, &Heated::of(job, model)?)?.columns);
     let Prepared {
         sensitivity,
-        fields: Some(fields),
+        fields: Some(mut fields),
         gauges,
         ..
-    } = prepare(work, job)?
+    } = prepare_beside(work, job, Some(&columns))?
     else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -89,9 +91,12 @@ pub(super) fn read(
         None => laid,
     };
     let [mut table, at_45, at_90] = seen.map(|g| influence(job, model, g, &solution, n_c));
-    let own = work.stage("solve signatures", |w| {
-        unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.columns)
-    })?;
+    let own = match fields.beside.take() {
+        Some(solved) => solved,
+        None => work.stage("solve signatures", |w| {
+            unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.columns)
+        })?,
+    };
     let by_solver = influence(job, model, &gauges, &own, n_c);
     let base = with_s(&by_solver, &s, n_c);
     let from_results = job.model.as_ref().is_some_and(|m| !m.results.is_empty());

@@ -7,10 +7,10 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, LoadRole, Reference};
 use crate::app::job_deck::read_deck;
 use crate::app::named_results::results_fault;
-use crate::app::solved::{MODES, cases_of_job, solve_kept};
+use crate::app::solved::{MODES, cases_of_job, solve_kept, support_of_job};
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
-use crate::fe::{CaseResult, Solution, SolveOptions};
+use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad};
 use crate::gauge::CornerRows;
 use crate::model::Model;
 use crate::sensitivity::{Load, LoadCaseOf};
@@ -27,9 +27,15 @@ pub struct Fields {
     of_load: Vec<(usize, usize)>,
     /// The mesh error that was taken out of `solutions`, by load of the job. `None` where that was not computed.
     pub mesh_error: Option<MeshError>,
-    /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it.
+    /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it, and
+    /// beside other loads.
     pub first_mode: Option<f64>,
+    /// What was solved beside the loads of the job; `None` where nothing was, as another program solved them.
+    pub beside: Option<Solution>,
 }
+
+/// Loads on a model that are solved for beside those of a job.
+pub type Beside<'a> = &'a dyn Fn(&Model) -> Result<Vec<UnitLoad>, Faults>;
 
 impl Fields {
     /// The model.
@@ -98,6 +104,19 @@ fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<L
 /// # Errors
 /// Faults of the deck, unreadable results, loads without a case.
 pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, Faults> {
+    read_fields_beside(work, job, at, None)
+}
+
+/// As [`read_fields`], and solves for the loads `beside` with the same factor, without the elastic modes, which who has more loads does not ask for.
+///
+/// # Errors
+/// As [`read_fields`]; those of `beside`.
+pub(super) fn read_fields_beside(
+    work: &mut Work,
+    job: &Job,
+    at: WantedAt,
+    beside: Option<Beside<'_>>,
+) -> Result<Fields, Faults> {
     let Some(files) = &job.model else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -116,17 +135,30 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
     }
     let deck = work.stage("read model", |s| read_deck(s, job, files))?;
     if files.results.is_empty() {
-        let cases = cases_of_job(job, &deck)?;
-        let (mut solved, report) = solve_kept(
-            work,
-            &deck,
-            &cases,
-            SolveOptions {
-                modes: MODES,
-                ..SolveOptions::default()
-            },
-        )?;
+        let mut cases = cases_of_job(job, &deck)?;
+        let of_job = cases.len();
+        if let Some(beside) = beside {
+            let support = support_of_job(job, &deck.model)?;
+            let more = support.unit_cases(&deck.model, &beside(&deck.model)?);
+            let first = cases.iter().map(|c| c.subcase + 1).max().unwrap_or(1);
+            let numbered = |(subcase, case)| LoadCase { subcase, ..case };
+            cases.extend((first..).zip(more).map(numbered));
+        }
+        let options = SolveOptions {
+            modes: if beside.is_some() { 0 } else { MODES },
+            ..SolveOptions::default()
+        };
+        let (mut solved, report) = solve_kept(work, &deck, &cases, options)?;
+        // What is said of a load that nobody asked for is said to nobody.
+        let unasked = |c: &LoadCase| format!("subcase {}", c.subcase);
+        let unasked: BTreeSet<String> = cases.iter().skip(of_job).map(unasked).collect();
+        solved.findings.retain(|f| !unasked.contains(&f.subject));
         work.findings.extend(solved.findings.iter().cloned());
+        let beside = beside.map(|_| Solution {
+            cases: solved.cases.split_off(of_job),
+            findings: Vec::new(),
+            source: solved.source.clone(),
+        });
         let mesh_error = take_out(work, job, &deck, (&mut solved, at));
         work.go_on()?;
         let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
@@ -136,6 +168,7 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
             of_load,
             mesh_error,
             first_mode: report.modes.first().copied(),
+            beside,
         });
     }
     if files.mesh_error {
@@ -178,6 +211,7 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
         of_load,
         mesh_error: None,
         first_mode: None,
+        beside: None,
     })
 }
 

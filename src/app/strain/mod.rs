@@ -10,7 +10,8 @@ mod unit_loads;
 mod units;
 
 pub use covariance::{covariance_bytes, read_covariance};
-pub use fields::{Fields, read_fields};
+use fields::read_fields_beside;
+pub use fields::{Beside, Fields, read_fields};
 pub use gauges::{lay_gauges, not_laid, off_their_elements, without_strain};
 pub use given::read_given;
 pub use mesh::{
@@ -51,13 +52,25 @@ pub struct Prepared {
 /// # Errors
 /// Every fault on the way.
 pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    prepare_beside(work, job, None)
+}
+
+/// As [`prepare`], and solves the model for the loads `beside` where the built-in solver makes S ([`Fields::beside`]).
+///
+/// # Errors
+/// As [`prepare`]; those of `beside`.
+pub fn prepare_beside(
+    work: &mut Work,
+    job: &Job,
+    beside: Option<Beside<'_>>,
+) -> Result<Prepared, Faults> {
     work.findings.extend(noted(job));
     let prepared = if job.sensitivity.is_some() {
         let sensitivity = given_as_asked(work, job)?;
         // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
-                let fields = read_fields(work, job, WantedAt::Gauges)?;
+                let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
                 let gauges = lay_gauges(work, job, &fields)?;
                 (Some(fields), gauges)
             }
@@ -73,7 +86,7 @@ pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
             mesh_error: Vec::new(),
         }
     } else {
-        let fields = read_fields(work, job, WantedAt::Gauges)?;
+        let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
         let gauges = lay_gauges(work, job, &fields)?;
         let mut sensitivity = from_cases(&gauges, &fields.load_cases(job))
             .map_err(|missing| without_strain(job, &missing))?;
