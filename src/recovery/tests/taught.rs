@@ -33,14 +33,16 @@ fn taught(one_by_one: bool) -> Uncertainty {
     Uncertainty {
         dof: 20.0,
         one_by_one,
+        mean_square: (0..9).map(|i| if i % 4 == 0 { 1.0 } else { 0.0 }).collect(),
         ..Uncertainty::of_model(&Matrix::zeros(4, 3), 0.0, (&Matrix::zeros(4, 3), 0.0))
     }
 }
 
 /// Independent loads of equal sigma: the largest alone is nearest, and the others' squares are the distance from it. For two loads beside it and 20
-/// degrees of freedom `F = 9.95` has a chance of a thousandth (tables of F), so that `4^2 + 2^2` is within it and `4^2 + 3^2` is not.
+/// degrees of freedom `F = 9.95` has a chance of a thousandth (tables of F), so that `3.5^2 + 1.5^2` is within it and `4^2 + 3^2` is not. Where their
+/// strains are at right angles and equal, the two nearest alone are the two largest as they are told.
 #[test]
-fn a_run_with_several_loads_is_widened_until_one_alone_is_a_sigma_away() {
+fn a_run_with_several_loads_is_widened_until_either_of_two_alone_is_a_sigma_away() {
     let within = told("one", [10.0, 3.5, 1.5]);
     let beyond = told("two", [10.0, -4.0, 3.0]);
     let mut runs = [within.clone(), beyond];
@@ -51,7 +53,8 @@ fn a_run_with_several_loads_is_widened_until_one_alone_is_a_sigma_away() {
         .collect();
     assert_eq!(named, [("two", CODE, Severity::Warning)]);
     assert_eq!(runs[0].estimate.covariance, within.estimate.covariance);
-    let expected = [1.0, 0.0, 0.0, 0.0, 17.0, -12.0, 0.0, -12.0, 10.0];
+    // I, the outer square of (0, -4, 3), and that of (10, 0, 3).
+    let expected = [101.0, 0.0, 30.0, 0.0, 17.0, -12.0, 30.0, -12.0, 19.0];
     for (c, e) in runs[1].estimate.covariance.iter().zip(expected) {
         assert!((c - e).abs() < 1e-12, "{:?}", runs[1].estimate.covariance);
     }
