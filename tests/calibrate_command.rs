@@ -92,6 +92,49 @@ fn trucks_that_nobody_weighed_are_weighed_by_the_bridge_within_their_intervals()
     }
 }
 
+/// A truck between two lanes strains as the mean of its strain in both: two loads of half its weight, each with the narrow interval of its lane.
+#[test]
+fn a_truck_between_two_lanes_is_named_and_its_intervals_hold_one_lane_too() {
+    let folder = scratch("calibrate-between");
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bridge");
+    for file in ["calibrate.toml", "runs.csv"] {
+        std::fs::copy(from.join(file), folder.join(file)).unwrap();
+    }
+    let mut strain = std::fs::read_to_string(from.join("strain.csv")).unwrap();
+    let row = |run: &str| -> Vec<f64> {
+        let line = strain.lines().find(|l| l.starts_with(run)).unwrap();
+        let numbers = line.split(',').skip(1);
+        numbers.map(|v| v.parse().unwrap()).collect()
+    };
+    let (west, middle) = (row("R01"), row("R05"));
+    let mean: Vec<String> = (west.iter().zip(&middle))
+        .map(|(a, b)| format!("{:.3}", 0.5 * (a + b)))
+        .collect();
+    let _ = writeln!(strain, "BETWEEN,{}", mean.join(","));
+    std::fs::write(folder.join("strain.csv"), strain).unwrap();
+    let job = folder.join("calibrate.toml");
+    let (code, _, said) = run("calibrate", &job, &folder.join("cal"));
+    assert_eq!(code, Some(0), "{said}");
+    let calibrated = folder.join("cal/calibrated.toml");
+    let (code, result, said) = run("recover", &calibrated, &folder.join("loads"));
+    assert_eq!(code, Some(0), "{said}");
+    let findings = result["findings"].as_array().unwrap();
+    let named: Vec<&Value> = findings
+        .iter()
+        .filter(|f| f["code"] == "loads-unlike-known-runs")
+        .collect();
+    // The three trucks in one lane each are not named.
+    assert_eq!(named.len(), 1, "{named:?}");
+    assert_eq!(named[0]["subject"], "BETWEEN");
+    assert_eq!(named[0]["severity"], "warning");
+    for lane in ["west", "middle"] {
+        let (value, sigma) = load(&result, "BETWEEN", lane);
+        assert!((value - 110.0).abs() < 30.0, "{lane}: {value}");
+        // Either lane alone, 220 kN there and nothing here, within 95 %: two sigma.
+        assert!(2.0 * sigma > 110.0, "{lane}: {sigma}");
+    }
+}
+
 /// Loads in kilograms read as kilonewtons, without a model: nothing contradicts them, so that a person has to see how large they are.
 #[test]
 fn the_largest_known_load_is_stated_where_no_model_checks_its_unit() {

@@ -14,10 +14,9 @@ pub(super) struct RowPrior {
 /// Standard deviation of an entry without a model over the largest strain measured: knows nothing, and still inverts.
 const DIFFUSE: f64 = 100.0;
 /// Share of a row's root mean square below which an entry's error no longer falls with the entry. The first where errors go with the entries
-/// themselves, as those of a stiffness do: an entry that is zero in the model is not known exactly. The second where they go with all the strain
-/// around the gauge, as what a mesh leaves does: of entries that scatter like a Gaussian one in twelve lies below the first floor and near half
-/// lie below the second, whose errors are then alike.
-pub(super) const FLOORS: [f64; 2] = [0.1, 0.6];
+/// themselves, as those of a stiffness do: an entry that is zero in the model is not known exactly. The second, the root mean square itself, where
+/// they go with all the strain around the gauge, as what a mesh leaves does: the errors of all entries below it are alike.
+pub(super) const FLOORS: [f64; 2] = [0.1, 1.0];
 /// A row's root mean square below this share of that of all rows says nothing of how near to zero its entries are.
 const SMALL_ROW: f64 = 0.1;
 

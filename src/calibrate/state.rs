@@ -124,7 +124,21 @@ impl State {
 
     /// S with its uncertainty, in job units of load.
     pub fn sensitivity(&self, task: &Task, factor: f64) -> Sensitivity {
-        sensitivity_of(task, &self.scales, &self.posterior, &self.scatter, factor)
+        let mut s = sensitivity_of(task, &self.scales, &self.posterior, &self.scatter, factor);
+        if let Some(uncertainty) = &mut s.uncertainty {
+            uncertainty.one_by_one = self.is_one_by_one(task);
+        }
+        s
+    }
+
+    /// Whether runs that scatter, each of one load alone, are all that teaches.
+    fn is_one_by_one(&self, task: &Task) -> bool {
+        let k = task.loads.len();
+        let acts = |run: &KnownRun, l: usize| {
+            run.loads.mean[l] != 0.0 || run.loads.covariance[l * k + l] > 0.0
+        };
+        let alone = |r: &usize| (0..k).filter(|&l| acts(&task.runs[*r], l)).count() <= 1;
+        task.model.is_none() && self.scatter.dof.is_finite() && self.used.iter().all(alone)
     }
 }
 
@@ -156,6 +170,7 @@ pub(super) fn sensitivity_of(
             scale: factor,
             dof: scatter.dof,
             dof_outside: scatter.dof_outside,
+            one_by_one: false,
         }),
         values,
     }

@@ -1,16 +1,17 @@
-//! All runs by a calibrated S: gauges that contradict the others named and left out, runs that no loads explain estimated loosely.
+//! All runs by a calibrated S: gauges that contradict the others named and left out, runs that no loads explain estimated loosely, runs of
+//! another kind than taught widened.
 
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
 use super::types::{Readings, RunEstimate};
 use super::verdict::NOT_SOLVABLE;
-use super::{suspects, unlike};
+use super::{suspects, taught, unlike};
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
 /// Every run, and findings. Gauges that contradict the others are named and left out; a run that no loads explain is estimated loosely
-/// ([`unlike::estimate_loosely`]).
+/// ([`unlike::estimate_loosely`]); one that tells several loads at once where known runs had one each is widened ([`taught::check`]).
 pub(super) fn recover(
     s: &Sensitivity,
     readings: &[Readings],
@@ -28,6 +29,7 @@ pub(super) fn recover(
             *run = unlike::estimate_loosely(s, r, errors, known);
         }
     }
+    findings.extend(taught::check(&mut runs, known));
     let unsolved = runs.iter().filter(|r| r.rank < s.loads.len());
     findings.extend(unsolved.map(|r| {
         Finding::new(

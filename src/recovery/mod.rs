@@ -4,7 +4,8 @@
 //! and records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no
 //! load can make, across the runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and
 //! [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead. [`calibrated`] is the same
-//! for a calibrated S, [`suspects`] and [`unlike`] its judges. [`dynamic`] turns readings of a structure that vibrates into those at rest.
+//! for a calibrated S, [`suspects`], [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates into those at
+//! rest.
 
 mod by_calibration;
 pub mod calibrated;
@@ -29,6 +30,7 @@ mod solved;
 pub mod stuck;
 mod sums;
 mod suspects;
+mod taught;
 mod types;
 pub mod unlike;
 pub mod verdict;

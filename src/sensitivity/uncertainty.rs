@@ -19,6 +19,8 @@ pub struct Uncertainty {
     /// Those behind the scatter in a pattern over the gauges that no loads make, such as a fault of one gauge; more than `dof`, as the
     /// scatter of all such patterns was estimated together.
     pub dof_outside: f64,
+    /// Whether runs of one load alone, without a model, are all that taught it.
+    pub one_by_one: bool,
 }
 
 impl Uncertainty {
@@ -49,6 +51,7 @@ impl Uncertainty {
             scale: 1.0,
             dof: f64::INFINITY,
             dof_outside: f64::INFINITY,
+            one_by_one: false,
         }
     }
 
@@ -136,6 +139,7 @@ impl Uncertainty {
             scale: self.scale,
             dof: self.dof,
             dof_outside: self.dof_outside,
+            one_by_one: self.one_by_one,
         }
     }
 
@@ -152,6 +156,7 @@ impl Uncertainty {
             scale: self.scale,
             dof: self.dof,
             dof_outside: self.dof_outside,
+            one_by_one: self.one_by_one,
         }
     }
 

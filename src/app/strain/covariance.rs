@@ -1,7 +1,8 @@
 //! `calibration.bin`: what stands behind the intervals of a calibrated S.
 //!
-//! Eight bytes `SBCALIB1`, the length of a JSON header (u32), the header (names of gauges and loads, scale, degrees of freedom), then
-//! little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by rows; mean squares of S.
+//! Eight bytes `SBCALIB1`, the length of a JSON header (u32), the header (names of gauges and loads, scale, degrees of freedom, whether
+//! loads were taught one by one), then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by
+//! rows; mean squares of S.
 
 use crate::app::fault::{Fault, Faults};
 use crate::sensitivity::{Sensitivity, Uncertainty};
@@ -18,6 +19,8 @@ struct Header {
     dof: Option<f64>,
     #[serde(default)]
     dof_outside: Option<f64>,
+    #[serde(default)]
+    one_by_one: bool,
 }
 
 /// The file of a calibrated S; `None` where it has no uncertainty.
@@ -29,6 +32,7 @@ pub fn covariance_bytes(s: &Sensitivity) -> Option<Vec<u8>> {
         scale: u.scale,
         dof: u.dof.is_finite().then_some(u.dof),
         dof_outside: u.dof_outside.is_finite().then_some(u.dof_outside),
+        one_by_one: u.one_by_one,
     };
     let header = serde_json::to_vec(&header).ok()?;
     let mut out = MAGIC.to_vec();
@@ -110,6 +114,7 @@ pub fn read_covariance(
         scale: header.scale,
         dof: header.dof.unwrap_or(f64::INFINITY),
         dof_outside: header.dof_outside.or(header.dof).unwrap_or(f64::INFINITY),
+        one_by_one: header.one_by_one,
     };
     let order: Vec<usize> = places.into_iter().flatten().collect();
     Ok(all.of_gauges(&order))

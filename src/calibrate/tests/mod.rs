@@ -7,6 +7,7 @@ mod overfit;
 mod repeats;
 mod scatter;
 mod synthetic;
+mod taught;
 mod wrong;
 
 use super::Calibration;

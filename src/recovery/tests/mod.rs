@@ -1,6 +1,7 @@
 mod coverage;
 mod records;
 mod residual;
+mod taught;
 
 use super::*;
 use crate::finding::{Finding, Severity};

@@ -1,0 +1,129 @@
+//! Runs whose loads are of no kind that the calibration was taught: several at once, where each known run had one load alone.
+//!
+//! One load whose strain is not as taught (a truck between two lanes, another direction or speed) comes out as a combination of several, each with
+//! the narrow interval that the scatter of the known runs gives: their strain is the same, so that the residual says nothing.
+
+use super::types::RunEstimate;
+use super::unlike::chance_estimated;
+use crate::finding::{Finding, Severity};
+use crate::linalg::spd;
+use crate::sensitivity::Uncertainty;
+
+/// Code of runs whose loads act together as none were taught.
+pub const CODE: &str = "loads-unlike-known-runs";
+
+/// Chance under which several loads count as more than what scatter makes of one.
+const SIGNIFICANT: f64 = 1e-3;
+/// So many runs with several loads, when most have them, are how the loads are used: of runs with one load one in a hundred looks so.
+const USUAL: usize = 3;
+
+/// Squared distance of a run's loads `f` from the nearest load alone, in units of their covariance `C`: with `G = C^-1`, load `l` alone is at
+/// `f' G f - (G f)_l^2 / G_ll`. `None` where the covariance is not positive definite.
+fn distance(run: &RunEstimate) -> Option<f64> {
+    let f = &run.estimate.values;
+    let k = f.len();
+    let covariance = &run.estimate.covariance;
+    let sd: Vec<f64> = (0..k).map(|l| covariance[l * k + l].sqrt()).collect();
+    let even = covariance.iter().enumerate();
+    let even: Vec<f64> = even.map(|(i, c)| c / (sd[i / k] * sd[i % k])).collect();
+    let information = spd::gram_of_lower(&spd::inverse_lower(&spd::cholesky(&even, k)?, k), k);
+    let z: Vec<f64> = f.iter().zip(&sd).map(|(f, s)| f / s).collect();
+    let mut weighed = vec![0.0; k];
+    spd::times(&information, &z, &mut weighed);
+    let alone = (0..k).map(|l| weighed[l] * weighed[l] / information[l * k + l]);
+    Some((spd::dot(&z, &weighed) - alone.fold(0.0, f64::max)).max(0.0))
+}
+
+/// A load alone, of the size that comes nearest to the strain of all loads `f` of a run.
+struct Alone {
+    load: usize,
+    /// Its part of their mean square strain: the more, the nearer.
+    part: f64,
+    /// `f` less that load alone.
+    apart: Vec<f64>,
+}
+
+/// Each load alone, the nearest first: with `M = S' S / n` load `l` is `(M f)_l / M_ll`, its part `(M f)_l^2 / M_ll`.
+fn each_alone(f: &[f64], known: &Uncertainty) -> Vec<Alone> {
+    let k = f.len();
+    let mut strain = vec![0.0; k];
+    spd::times(&known.mean_square, f, &mut strain);
+    let one = |load: usize| {
+        let own = known.mean_square[load * k + load];
+        let mut apart = f.to_vec();
+        apart[load] -= strain[load] / own;
+        Alone {
+            load,
+            part: strain[load] * strain[load] / own,
+            apart,
+        }
+    };
+    let mut out: Vec<Alone> = (0..k).map(one).collect();
+    out.sort_by(|a, b| b.part.total_cmp(&a.part));
+    out
+}
+
+/// Runs that tell several loads at once beyond what scatter makes of one (Hotelling's T-squared), where no known run had several. Their loads are
+/// given so much more error that each of the two nearest loads alone is one sigma away, unless most of at least [`USUAL`] runs are such.
+///
+/// # Reference
+/// H. Hotelling, Ann. Math. Stat. 2 (1931) 360.
+pub(super) fn check(runs: &mut [RunEstimate], known: &Uncertainty) -> Vec<Finding> {
+    if !known.one_by_one {
+        return Vec::new();
+    }
+    let several = |run: &RunEstimate| {
+        let free = run.estimate.values.len().saturating_sub(1);
+        let found = distance(run).filter(|_| run.rank == free + 1 && free > 0)?;
+        (chance_estimated(found, free, known.dof) < SIGNIFICANT).then_some(found)
+    };
+    let found: Vec<(usize, f64)> = runs
+        .iter()
+        .enumerate()
+        .filter_map(|(i, run)| Some((i, several(run)?)))
+        .collect();
+    if found.len() >= USUAL && 2 * found.len() > runs.len() {
+        return vec![Finding::new(
+            Severity::Info,
+            CODE,
+            "runs",
+            format!(
+                "{} of {} runs have several loads at once, the known runs of the calibration one each: that the strain of several is the sum of theirs was not taught",
+                found.len(),
+                runs.len()
+            ),
+            "calibrate with a run in which several known loads act at once",
+        )];
+    }
+    found
+        .into_iter()
+        .map(|(i, distance)| widen(&mut runs[i], distance, known))
+        .collect()
+}
+
+/// Adds `apart apart'` of the two nearest loads alone to the covariance, and says so.
+fn widen(run: &mut RunEstimate, distance: f64, known: &Uncertainty) -> Finding {
+    let nearest = each_alone(&run.estimate.values, known);
+    let between = &nearest[..nearest.len().min(2)];
+    for alone in between {
+        spd::add_outer(&mut run.estimate.covariance, &alone.apart, 1.0);
+    }
+    let sigmas = (distance / (nearest.len() - 1) as f64).sqrt();
+    let name = &run.estimate.run;
+    let alone: Vec<String> = (between.iter())
+        .map(|a| format!("`{}`", run.estimate.names[a.load]))
+        .collect();
+    let alone = alone.join(" or ");
+    Finding::new(
+        Severity::Warning,
+        CODE,
+        name,
+        format!(
+            "run `{name}` tells several loads at once, where each known run of the calibration had one alone; the nearest load alone is {sigmas:.1} times farther \
+             off than scatter makes. Its strain is either of several loads, or of one whose strain is not as taught: between two places, in another direction or at another \
+             speed. The intervals of its loads hold both, {alone} alone too"
+        ),
+        "look which it was; calibrate with such runs too: one load as it acted here, or several known loads at once",
+    )
+    .with_numbers(sigmas, 1.0)
+}
