@@ -1,5 +1,5 @@
-//! Days on which the noise of all gauges is the same factor of what it is on the vehicle's other days: a bridge factor, a gain or a range that changed for
-//! all channels, by which the readings are wrong as well.
+//! Days on which the noise of all gauges is the same factor of what it is on the vehicle's other days: a bridge factor, a gain or a range that
+//! changed for all channels, by which the readings are wrong as well.
 
 use super::outcome::VehicleAnswer;
 use crate::finding::{Finding, Severity, few};
@@ -9,15 +9,16 @@ use crate::units::MICROSTRAIN;
 /// From which factor. Of the factors that are mixed up (quarter, half and full bridge, Poisson's 1 + nu, steps of gain) the least is 1.3; temperature
 /// changes the noise of amplifiers by some per cent.
 const FROM: f64 = 1.25;
-/// How far the factor of a gauge may be from that of the others: white noise of a thousand readings is known to 3 % (Gaussian, second differences).
+/// How far the factor of a gauge may be from that of the others: second differences of a thousand readings tell white noise to 3 %.
 const ALIKE: f64 = 1.06;
-/// Share of the gauges that have the factor: others may be dead, or exchanged, on that day.
+/// Share of the gauges that have the factor: others may be dead or exchanged on that day.
 const SHARE: f64 = 0.75;
 /// Fewer gauges are alike by chance.
 const GAUGES: usize = 4;
 /// Days with noise from which one is told from the others.
 const DAYS: usize = 4;
-/// How many times the stated noise that of other days may be, or the other way round: beyond, it is vibration, which rough roads raise in all gauges.
+/// How many times the stated noise that of other days may be, or the other way round: beyond, it is vibration, which rough roads raise in all
+/// gauges.
 const OF_STATED: f64 = 1.5;
 /// How many times the scatter of the readings may change otherwise: what a vehicle does changes it.
 const DRIVEN: f64 = 2.0;

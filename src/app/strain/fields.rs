@@ -107,11 +107,11 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
     read_fields_beside(work, job, at, None)
 }
 
-/// As [`read_fields`], and solves for the loads `beside` with the same factor, without the elastic modes, which who has more loads does not ask for.
+/// As [`read_fields`], and solves for the loads `beside` with the same factor; elastic modes are then left out, which nobody asks for there.
 ///
 /// # Errors
 /// As [`read_fields`]; those of `beside`.
-pub(super) fn read_fields_beside(
+pub fn read_fields_beside(
     work: &mut Work,
     job: &Job,
     at: WantedAt,

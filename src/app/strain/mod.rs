@@ -10,8 +10,7 @@ mod unit_loads;
 mod units;
 
 pub use covariance::{covariance_bytes, read_covariance};
-use fields::read_fields_beside;
-pub use fields::{Beside, Fields, read_fields};
+pub use fields::{Beside, Fields, read_fields, read_fields_beside};
 pub use gauges::{lay_gauges, not_laid, off_their_elements, without_strain};
 pub use given::read_given;
 pub use mesh::{
