@@ -173,7 +173,9 @@ fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day
         // Second differences of 4,000 readings tell noise to 1.5 %, the median of five gauges to half of that; three sigmas.
         assert!((said / factor - 1.0).abs() < 0.03, "{message}");
     }
-    // Twice the loads with the noise of every day; half of the gauges twice as noisy.
+    // A thousandth is another unit, which is told as such; twice the loads with the noise of every day; half of the gauges twice as noisy.
+    let unit = slow(3, 50.0, |y| y.iter_mut().for_each(|v| *v *= 1e-3));
+    assert!(told(&unit).is_empty());
     assert!(told(&slow(3, 100.0, as_it_is)).is_empty());
     let half = slow(3, 50.0, |y| y.iter_mut().step_by(2).for_each(|v| *v *= 2.0));
     assert!(told(&half).is_empty());

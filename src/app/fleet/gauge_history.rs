@@ -70,7 +70,8 @@ fn typical(days: &[GaugeDay]) -> f64 {
     median(sds.collect()).unwrap_or(0.0)
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
+/// The middle one; `None` of none.
+pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }

@@ -1,6 +1,7 @@
 //! Days on which the noise of all gauges is the same factor of what it is on the vehicle's other days: a bridge factor, a gain or a range that
 //! changed for all channels, by which the readings are wrong as well.
 
+use super::gauge_history::median;
 use super::outcome::VehicleAnswer;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::ErrorModel;
@@ -9,6 +10,8 @@ use crate::units::MICROSTRAIN;
 /// From which factor. Of the factors that are mixed up (quarter, half and full bridge, Poisson's 1 + nu, steps of gain) the least is 1.3; temperature
 /// changes the noise of amplifiers by some per cent.
 const FROM: f64 = 1.25;
+/// Up to which factor: beyond, it is another unit, which has a name of its own.
+const TO: f64 = 100.0;
 /// How far the factor of a gauge may be from that of the others: second differences of a thousand readings tell white noise to 3 %.
 const ALIKE: f64 = 1.06;
 /// Share of the gauges that have the factor: others may be dead or exchanged on that day.
@@ -22,11 +25,6 @@ const DAYS: usize = 4;
 const OF_STATED: f64 = 1.5;
 /// How many times the scatter of the readings may change otherwise: what a vehicle does changes it.
 const DRIVEN: f64 = 2.0;
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
-}
 
 /// By gauge and day the natural log of a number over its median; `None` where one of them is missing.
 fn logs<'a>(of: impl Iterator<Item = &'a Vec<Option<f64>>>) -> Vec<Vec<Option<f64>>> {
@@ -71,7 +69,7 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
         return None;
     }
     let odd = |(day, factor): (usize, &Option<f64>)| {
-        let factor = factor.filter(|f| f.abs() > FROM.ln())?;
+        let factor = factor.filter(|f| f.abs() > FROM.ln() && f.abs() < TO.ln())?;
         let own = median(scatter.iter().filter_map(|g| *g.get(day)?).collect())?;
         ((own - factor).abs() < DRIVEN.ln()).then_some((v.days.get(day)?, factor.exp()))
     };

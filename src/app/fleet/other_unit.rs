@@ -1,5 +1,6 @@
 //! Days whose readings are so many times larger or smaller than those of the fleet's other days, noise and all, that their unit must be another one.
 
+use super::gauge_history::median;
 use super::outcome::VehicleAnswer;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::ErrorModel;
@@ -15,11 +16,6 @@ const OF_STATED: f64 = 0.3;
 
 /// Scatter and noise of a gauge on a day.
 type Sizes = [Option<f64>; 2];
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
-}
 
 /// One finding a vehicle that has such days; the units of loads and damage of these days are wrong by the power of the factor.
 pub(super) fn in_other_units(vehicles: &[VehicleAnswer], errors: &ErrorModel) -> Vec<Finding> {
