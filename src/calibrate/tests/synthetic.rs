@@ -134,16 +134,15 @@ fn model_and_runs_together_beat_either_and_their_intervals_hold() {
         );
         assert!(both < before, "more runs tell more");
         before = both;
-        // Errors of six loads of a trial go together: three sd of a binomial of 95 % with a third as many, 6 % of 60 trials, 1 % of 2,000.
-        let apart = 3.0 * (0.95 * 0.05 * 3.0 / intervals).sqrt();
-        // What chance does not excuse is allowed to one side alone, that of caution: these rows all err alike, and with fewer runs than loads
-        // it can't be known that none is far worse. The protocol's two per cent, and as much of sigma as moves 95 % to 97 %: 1.96 / 2.17.
-        let (more, wider) = if m < k { (0.02, 0.1) } else { (0.0, 0.0) };
-        assert!(
-            held > 0.95 - apart && held < 0.95 + f64::max(apart, more),
-            "{m} runs: {held}"
-        );
-        // Numbers whose sizes differ from trial to trial: of 360, six a trial, a fifth is three standard errors.
+        // The protocol's two per cent of 2,000 trials; of 60, chance: errors of six loads of a trial go together, so three sd of a binomial
+        // of 95 % with a third as many.
+        let apart = f64::max(0.02, 3.0 * (0.95 * 0.05 * 3.0 / intervals).sqrt());
+        println!("{m} runs: held {held}, error {both}, stated {sigma}");
+        assert!((held - 0.95).abs() < apart, "{m} runs: {held}");
+        // Numbers whose sizes differ from trial to trial: of 360, six a trial, a fifth is three standard errors. To the side of caution a
+        // fifth with 2,000 as well, where runs are fewer than loads: what a few runs say of the rows' error differs from trial to trial, and
+        // so does sigma, whose square mean the wide ones make, while the coverage above is that of all.
+        let wider = if m < k { 0.2 } else { 0.1 };
         let apart = 0.2 * (60.0 / trials.len() as f64).sqrt();
         let ratio = both / sigma;
         assert!(
