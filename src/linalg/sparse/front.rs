@@ -23,21 +23,32 @@ pub(super) struct Update {
     values: Vec<f64>,
 }
 
-/// Memory of updates that were used up.
+/// Memory that was used up: of updates, and of the columns of a front.
 #[derive(Debug, Default)]
-pub(super) struct Spare(Vec<Vec<f64>>);
+pub(super) struct Spare {
+    updates: Vec<Vec<f64>>,
+    columns: Vec<f64>,
+}
 
 impl Spare {
     pub(super) fn take_back(&mut self, update: Update) {
-        self.0.push(update.values);
+        self.updates.push(update.values);
     }
 
-    /// `n` values or more of whatever they were.
-    fn hand_out(&mut self, n: usize) -> Vec<f64> {
-        let mut values = self.0.pop().unwrap_or_default();
+    /// An update of `n` values or more, whatever they were.
+    fn update(&mut self, n: usize) -> Vec<f64> {
+        let mut values = self.updates.pop().unwrap_or_default();
         if values.len() < n {
             values.resize(n, 0.0);
         }
+        values
+    }
+
+    /// Columns of a front, zero.
+    fn columns(&mut self, n: usize) -> Vec<f64> {
+        let mut values = std::mem::take(&mut self.columns);
+        values.clear();
+        values.resize(n, 0.0);
         values
     }
 }
@@ -90,7 +101,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Eliminates the supernode: its columns of the factor into `panel`, which is zero, and what is left for its parent.
+    /// Eliminates the supernode: its columns of the factor, each from its diagonal down, into `packed`, and what is left for its parent.
     ///
     /// A lost pivot is held by a spring, and the front formed anew: only for structures that are refused anyway.
     ///
@@ -98,12 +109,14 @@ impl<'a> Front<'a> {
     /// A pivot that is not a number, or stays negative though a spring holds it.
     pub(super) fn eliminated(
         &self,
-        panel: &mut [f64],
+        packed: &mut [f64],
         children: &[Update],
         spare: &mut Spare,
         tiles: Tiles,
     ) -> Result<Eliminated, FactorError> {
         let (own, rows) = (self.own, self.own + self.below);
+        let mut columns = spare.columns(own * rows);
+        let panel = columns.as_mut_slice();
         let first = self.symbolic.unknowns(self.node).start;
         let runs: Vec<Vec<Run>> = children.iter().map(|c| self.runs(c.node)).collect();
         let mut lost: Vec<usize> = Vec::new();
@@ -118,8 +131,8 @@ impl<'a> Front<'a> {
                     panel[i * rows + i] += 1.0;
                 }
             }
-            let columns = MatMut::from_column_major_slice_mut(&mut *panel, rows, own);
-            let done = eliminate(columns, tiles);
+            let matrix = MatMut::from_column_major_slice_mut(&mut *panel, rows, own);
+            let done = eliminate(matrix, tiles);
             let pivot = |i: usize| panel[i * rows + i].powi(2);
             let bad = match done {
                 Ok(()) => (0..own).find(|&i| !(pivot(i) > TINY_PIVOT)),
@@ -137,7 +150,7 @@ impl<'a> Front<'a> {
             all_held = lost.len() > MOST_LOST;
             panel.fill(0.0);
         };
-        let mut left = spare.hand_out(self.below * self.below);
+        let mut left = spare.update(self.below * self.below);
         let square = &mut left[..self.below * self.below];
         let begin = if children.is_empty() {
             Accum::Replace
@@ -146,10 +159,12 @@ impl<'a> Front<'a> {
             Accum::Add
         };
         if self.below > 0 {
-            let columns = MatRef::from_column_major_slice(&*panel, rows, own);
+            let factor = MatRef::from_column_major_slice(&*panel, rows, own);
             let update = MatMut::from_column_major_slice_mut(square, self.below, self.below);
-            take_out(update, begin, columns.subrows(own, self.below), tiles);
+            take_out(update, begin, factor.subrows(own, self.below), tiles);
         }
+        pack(panel, rows, packed);
+        spare.columns = columns;
         Ok(Eliminated {
             update: Update {
                 node: self.node,
@@ -246,6 +261,16 @@ impl<'a> Front<'a> {
                 columns.enumerate().for_each(add);
             }
         }
+    }
+}
+
+/// The columns of a front, each from its diagonal down.
+fn pack(panel: &[f64], rows: usize, packed: &mut [f64]) {
+    let mut rest = packed;
+    for (j, column) in panel.chunks_exact(rows.max(1)).enumerate() {
+        let (to, tail) = rest.split_at_mut(rows - j);
+        to.copy_from_slice(&column[j..]);
+        rest = tail;
     }
 }
 

@@ -7,7 +7,7 @@ const TOGETHER: usize = 4;
 /// A supernode's columns of the factor.
 #[derive(Clone, Copy)]
 pub(super) struct Panel<'a> {
-    /// By columns.
+    /// By columns, each from its diagonal down.
     pub(super) values: &'a [f64],
     /// Rows: its own and those below.
     pub(super) rows: usize,
@@ -65,10 +65,21 @@ impl Panel<'_> {
         pulp::Arch::new().dispatch(Backward(self, work));
     }
 
-    /// `N` columns from the `j`th, from the row of the first down.
+    /// `N` columns from the `j`th, each from its diagonal down.
     #[inline(always)]
     fn columns<const N: usize>(&self, j: usize) -> [&[f64]; N] {
-        std::array::from_fn(|a| &self.values[(j + a) * self.rows + j..(j + a + 1) * self.rows])
+        std::array::from_fn(|a| {
+            let column = j + a;
+            // Those before have all rows but as many as stand above their diagonals: 0, 1 .. column - 1.
+            let from = column * self.rows - column * column.saturating_sub(1) / 2;
+            &self.values[from..][..self.rows - column]
+        })
+    }
+
+    /// What of these columns stands below the rows of all `N`.
+    #[inline(always)]
+    fn lower<'a, const N: usize>(columns: &[&'a [f64]; N], below: usize) -> [&'a [f64]; N] {
+        std::array::from_fn(|a| &columns[a][N - a..][..below])
     }
 
     #[inline(always)]
@@ -80,20 +91,20 @@ impl Panel<'_> {
             let mut v = own[a];
             for b in 0..a {
                 for m in 0..K {
-                    v[m] -= columns[b][a] * x[b][m];
+                    v[m] -= columns[b][a - b] * x[b][m];
                 }
             }
-            let inverse = 1.0 / columns[a][a];
+            let inverse = 1.0 / columns[a][0];
             for m in 0..K {
                 x[a][m] = v[m] * inverse;
             }
         }
         own.copy_from_slice(&x);
-        let columns = columns.map(|c| &c[N..][..below.len()]);
+        let lower = Self::lower(&columns, below.len());
         for i in 0..below.len() {
             let mut sum = below[i];
             for a in 0..N {
-                let l = columns[a][i];
+                let l = lower[a][i];
                 for m in 0..K {
                     sum[m] -= l * x[a][m];
                 }
@@ -106,7 +117,7 @@ impl Panel<'_> {
     fn backward_columns<const N: usize, const K: usize>(&self, j: usize, work: &mut [[f64; K]]) {
         let columns = self.columns::<N>(j);
         let (own, below) = work[j..self.rows].split_at_mut(N);
-        let lower = columns.map(|c| &c[N..][..below.len()]);
+        let lower = Self::lower(&columns, below.len());
         let mut sums = [[0.0; K]; N];
         for i in 0..below.len() {
             let y = below[i];
@@ -124,10 +135,10 @@ impl Panel<'_> {
             }
             for b in a + 1..N {
                 for m in 0..K {
-                    v[m] -= columns[a][b] * own[b][m];
+                    v[m] -= columns[a][b - a] * own[b][m];
                 }
             }
-            let inverse = 1.0 / columns[a][a];
+            let inverse = 1.0 / columns[a][0];
             for m in 0..K {
                 own[a][m] = v[m] * inverse;
             }

@@ -68,7 +68,7 @@ impl Supernodes {
         self.value_start[s.start]..self.value_start[s.end]
     }
 
-    /// Values of the factor.
+    /// Values of the factor, explicit zeros of merged supernodes included.
     pub(super) fn n_values(&self) -> usize {
         self.value_start.last().copied().unwrap_or(0)
     }
@@ -100,7 +100,7 @@ impl Supernodes {
             let unknowns = |g: usize| usize::from(sizes[order[g] as usize]);
             let own: usize = groups.map(unknowns).sum();
             let below: usize = rows.iter().map(|g| unknowns(*g as usize)).sum();
-            values += own * (own + below);
+            values += own * (own + 1) / 2 + own * below;
             self.rows.extend(rows);
             self.row_start.push(self.rows.len());
             self.below.push(below as u32);
