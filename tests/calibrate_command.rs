@@ -811,6 +811,53 @@ fn legs_of_a_rosette_teach_where_no_model_stands_behind_s() {
     assert_eq!(names, ["C1", "R1.a", "R1.b", "R1.c"]);
 }
 
+/// Findings of a code.
+fn of_code<'a>(result: &'a Value, code: &str) -> Vec<&'a Value> {
+    let findings = result["findings"].as_array().unwrap().iter();
+    findings.filter(|f| f["code"] == code).collect()
+}
+
+#[test]
+fn a_gauge_without_a_column_is_said_so_and_is_not_dead() {
+    let folder = scratch("calibrate-no-column");
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"jack\"\n\
+               [[gauge]]\nname = \"C1\"\nelement = 1\n[[gauge]]\nname = \"C2\"\nelement = 2\n[[gauge]]\nname = \"C3\"\nelement = 3\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    let strain = "run,C1,C2\nA,10.1,20.2\nB,20.1,40.3\nC,30.2,60.1\n";
+    let job = write_job(&folder, job, "run,jack\nA,10\nB,20\nC,30\n", strain);
+    for command in ["calibrate", "check"] {
+        let (code, result, said) = run(command, &job, &folder.join(command));
+        assert_eq!(code, Some(0), "{said}");
+        let missing = of_code(&result, "gauge-without-strain");
+        assert_eq!(missing.len(), 1, "{command}: {said}");
+        assert_eq!(missing[0]["subject"], "C3");
+        assert!(of_code(&result, "gauge-dead").is_empty(), "{said}");
+    }
+    let (_, result, _) = run("calibrate", &job, &folder.join("calibrate"));
+    let gauges = result["calibration"]["gauges"].as_array().unwrap();
+    let names: Vec<&str> = gauges.iter().map(|g| g["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["C1", "C2"]);
+}
+
+/// The same jack on two places, the second noted in N where kN are read.
+#[test]
+fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
+    let folder = scratch("calibrate-uneven");
+    let job = "units = \"m-kg-s\"\nreport_units = { force = \"kN\" }\n[[load]]\nname = \"left\"\n[[load]]\nname = \"right\"\n\
+               [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[runs]\nfile = \"runs.csv\"\n";
+    let strain = "run,C1,C2\nA,10.1,2.1\nB,20.3,4.0\nC,2.2,9.8\nD,4.1,20.2\n";
+    for (factor, named) in [(1000.0, 1), (1.0, 0)] {
+        let [c, d] = [10.0 * factor, 20.0 * factor];
+        let runs = format!("run,left,right\nA,10,0\nB,20,0\nC,0,{c}\nD,0,{d}\n");
+        let job = write_job(&folder, job, &runs, strain);
+        let (code, result, said) = run("calibrate", &job, &folder.join("out"));
+        assert_eq!(code, Some(0), "{said}");
+        let found = of_code(&result, "known-loads-uneven");
+        assert_eq!(found.len(), named, "{said}");
+        assert!(found.iter().all(|f| f["subject"] == "right"), "{said}");
+    }
+}
+
 /// Strain of a lift: microstrain a kN and a kN m about y, four gauges.
 fn lift(kg: f64, x: f64, wiggle: f64) -> String {
     const ROWS: [[f64; 2]; 4] = [[12.0, 3.0], [9.0, -4.0], [11.0, 1.5], [10.0, -2.5]];

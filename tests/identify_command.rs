@@ -251,3 +251,29 @@ fn a_model_that_leaves_most_of_a_channel_is_an_error_where_no_noise_is_declared(
         assert_eq!(told, lost, "{name}: {said}");
     }
 }
+
+#[test]
+fn a_channel_whose_name_is_misspelt_is_named_and_not_taken_for_one_that_was_not_measured() {
+    let Some(job) = support::shared("hidden_effects/dynamics/dev-d1/job.toml") else {
+        return;
+    };
+    let here = folder("identify_misspelt");
+    for entry in std::fs::read_dir(job.parent().unwrap()).unwrap() {
+        let from = entry.unwrap().path();
+        if from.is_file() {
+            let text = std::fs::read(&from).unwrap();
+            let text = String::from_utf8_lossy(&text).into_owned();
+            let text = match from.extension().is_some_and(|e| e == "csv") {
+                true => text.replacen("f_wheel", "f_whel", 1),
+                false => text,
+            };
+            std::fs::write(here.join(from.file_name().unwrap()), text).unwrap();
+        }
+    }
+    let output = run(&here.join("job.toml"), &here.join("out"));
+    let result: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let findings = result["findings"].as_array().unwrap();
+    let found = findings.iter().find(|f| f["code"] == "channel-misspelt");
+    let message = found.expect("a finding")["message"].as_str().unwrap();
+    assert!(message.contains("`f_whel` for `f_wheel`"), "{message}");
+}

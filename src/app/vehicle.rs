@@ -1,6 +1,7 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
 use super::fault::{Fault, FaultList, Faults};
+use super::job::suggest::closest;
 use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use super::words::short;
 use super::work::Work;
@@ -14,7 +15,7 @@ use crate::series::{Channels, SeriesError};
 use crate::units::{Quantity, find_unit};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::identify::IdentifyTask;
-use crate::vehicle::layout::MassStep;
+use crate::vehicle::layout::{MassStep, Vehicle};
 use crate::vehicle::motion::VehicleError;
 use crate::vehicle::preset::{PresetError, PresetRequest, vehicle};
 use crate::vehicle::term::UnitNames;
@@ -113,6 +114,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
                 }
             };
             possible(&named.given, record, |name| used(name) != Kind::Other)?;
+            work.findings.extend(misspelt(&named.given, record, &model));
             let findings = check_channels(record, gravity, used);
             work.findings.extend(findings.into_iter().map(|f| Finding {
                 subject: format!("{}: {}", named.given, f.subject),
@@ -140,6 +142,30 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
         task,
         data,
         hold_out,
+    })
+}
+
+/// A warning of channels of the model that the record lacks beside columns whose names come close to theirs: a wheel force whose name is misspelt
+/// would be taken as not measured.
+fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
+    let wheels = model.wheels.iter().map(|w| w.channel.as_str());
+    let all: Vec<&str> = wheels
+        .chain(model.sensors.iter().map(|s| s.channel.as_str()))
+        .collect();
+    let others = record.list.iter().map(|c| c.name.as_str());
+    let others: Vec<&str> = others.filter(|c| !all.contains(c)).collect();
+    let missing = all.iter().filter(|c| !record.has(c));
+    let pairs: Vec<String> = missing
+        .filter_map(|c| closest(c, others.iter().copied()).map(|o| format!("`{o}` for `{c}`")))
+        .collect();
+    (!pairs.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "channel-misspelt",
+            file,
+            format!("did you mean {}? What has another name is taken as not measured", pairs.join(", ")),
+            "Name the columns after the model's channels, or say with `columns` of [vehicle] which is which.",
+        )
     })
 }
 

@@ -5,10 +5,10 @@
 //! row to row is seen between them, and the readings count with that much more noise.
 
 use super::fault::{Fault, FaultList, Faults};
-use super::job::strain::{StrainRows, StrainTable, read_strain, wanted_columns};
+use super::job::strain::{StrainRows, StrainTable, read_strain, wanted_columns, without_column};
 use super::job::strain_means::is_long_record;
 use super::job::{HoldOut, Job, Measured, NamedFile};
-use super::recover::zero_of;
+use super::recover::{gauges_without_strain, zero_of};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::{ErrorModel, Readings, plausible};
@@ -71,6 +71,12 @@ pub(super) fn read_zeroed(
     }
     let wanted = wanted_columns(&mut work.inputs, job);
     let mut table = read_strain(&mut work.inputs, job, named, &wanted)?;
+    let silent = without_column(&mut work.inputs, job, &table.gauges);
+    let silent: Vec<&str> = silent.iter().map(String::as_str).collect();
+    let unknown = table.gauges.iter().filter(|g| !wanted.contains(g));
+    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
+    let finding = gauges_without_strain(named, &silent, &unknown);
+    work.findings.extend(finding);
     let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
     let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
     let rows = zeros_by_row(work, job, measured, &table)?;

@@ -95,8 +95,7 @@ pub(super) fn check(task: &Task, state: &State) -> Vec<GaugeShift> {
     let mut words: Vec<Option<ShiftWord>> = vec![None; n];
     for (g, row) in rows.iter().enumerate() {
         let expected = row.model.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
-        let silent = largest(task, g) < LIVE * task.noise;
-        if silent && expected > LIVE * LIVE * task.noise {
+        if silent(task, g) && expected > LIVE * LIVE * task.noise {
             words[g] = Some(ShiftWord::Dead);
         }
     }
@@ -179,7 +178,7 @@ fn without_model(task: &Task) -> Vec<GaugeShift> {
         name: name.clone(),
         shift: 0.0,
         scale: 1.0,
-        word: match largest(task, g) < LIVE * task.noise {
+        word: match silent(task, g) {
             true => ShiftWord::Dead,
             false => ShiftWord::None,
         },
@@ -187,11 +186,11 @@ fn without_model(task: &Task) -> Vec<GaugeShift> {
     task.gauges.iter().enumerate().map(one).collect()
 }
 
-/// Largest reading of a gauge in any run.
-fn largest(task: &Task, g: usize) -> f64 {
+/// Whether a gauge was read, and read nothing in any run.
+fn silent(task: &Task, g: usize) -> bool {
     let readings = task.runs.iter().filter_map(|r| r.strain.get(g));
-    let readings = readings.filter(|v| v.is_finite());
-    readings.fold(0.0, |a, v| a.max(v.abs()))
+    let mut readings = readings.filter(|v| v.is_finite()).peekable();
+    readings.peek().is_some() && readings.all(|v| v.abs() < LIVE * task.noise)
 }
 
 /// Pairs of gauges whose calibrated rows are each other's model rows, the clearest first.

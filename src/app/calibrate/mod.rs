@@ -78,6 +78,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         })?;
     work.findings.extend(found.findings.iter().cloned());
     work.findings.extend(said::unchecked(&task, &listed));
+    work.findings.extend(said::uneven(&task, &found, &listed));
     let units = &listed.units[..task.loads.len()];
     let next = work.stage("next run", |_| said::next_run(&task, &found, units));
     let dependence = known
@@ -254,13 +255,14 @@ fn prior(
     Ok((prepared, None))
 }
 
-/// Gauges and loads that the job states, gauges of the strain file where it states none; S is not known.
+/// Gauges and loads that the job states, gauges of the strain file where it states none; S is not known. Of a gauge that the file has no column
+/// of nothing can be learnt.
 fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
-    let stated = stated_readings(job);
-    let gauges = match stated.is_empty() {
-        true => table.gauges.clone(),
-        false => stated,
-    };
+    let mut gauges = stated_readings(job);
+    match gauges.is_empty() {
+        true => gauges.clone_from(&table.gauges),
+        false => gauges.retain(|g| table.gauges.contains(g)),
+    }
     let load = |l: &JobLoad| Load {
         expected: l.expected,
         wanted: l.role == LoadRole::Wanted,

@@ -77,6 +77,48 @@ pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
     })
 }
 
+/// How many times less strain than another load of its unit a load may make: between vertical and lateral forces on one structure lies a tenth
+/// of that, between units that are mixed up (kN and N) three times as much.
+const UNEVEN: f64 = 300.0;
+
+/// A load that by the runs makes far less strain than others of its unit, where there is no model that says so too.
+pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Option<Finding> {
+    if task.model.is_some() {
+        return None;
+    }
+    let values = &found.sensitivity.values;
+    let size = |l: usize| {
+        values
+            .column(l)
+            .iter()
+            .fold(0.0, |a: f64, v| a.max(v.abs()))
+    };
+    let all = 0..task.loads.len();
+    let odd = all.clone().find_map(|a| {
+        let others = all
+            .clone()
+            .filter(|&b| listed.units[b].name == listed.units[a].name);
+        let most = others.max_by(|b, c| size(*b).total_cmp(&size(*c)))?;
+        let times = size(most) / size(a);
+        (size(a) > 0.0 && times > UNEVEN).then_some((a, most, times))
+    });
+    odd.map(|(a, most, times)| {
+        Finding::new(
+            Severity::Warning,
+            "known-loads-uneven",
+            listed.names[a].clone(),
+            format!(
+                "by the runs {} of it makes {} times less strain than of `{}`: is it noted in the same unit?",
+                listed.units[a].name,
+                number(times),
+                listed.names[most]
+            ),
+            "look at the known loads of both in the runs file, and at [runs] units",
+        )
+        .with_numbers(times, UNEVEN)
+    })
+}
+
 /// The best next run.
 pub(super) fn next_run(
     task: &Task,

@@ -56,6 +56,22 @@ pub fn stated_readings(job: &Job) -> Vec<String> {
     job.gauges.iter().flat_map(readings_of).collect()
 }
 
+/// Gauges of the job that a strain file has no column of: a rosette where it has neither its own name nor a leg's, else the legs it lacks.
+pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec<String> {
+    let has = |name: &String| columns.contains(name);
+    if job.gauges.is_empty() {
+        let mut names = gauge_names(inputs, job);
+        names.retain(|n| !has(n));
+        return names;
+    }
+    let of_gauge = |g: &JobGauge| {
+        let mut legs = readings_of(g);
+        legs.retain(|leg| !has(leg) && !has(&g.name));
+        legs
+    };
+    job.gauges.iter().flat_map(of_gauge).collect()
+}
+
 /// What the readings of a gauge are called: those of a rosette by its legs.
 pub fn readings_of(g: &JobGauge) -> Vec<String> {
     let leg = |leg: &str| format!("{}.{leg}", g.name);

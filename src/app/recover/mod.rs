@@ -34,7 +34,7 @@ pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use task::{reference_strain, strain_without_gauge, zero_of};
+pub(super) use task::{gauges_without_strain, reference_strain, strain_without_gauge, zero_of};
 pub use trace::{Span, Spans};
 
 use super::context::Context;

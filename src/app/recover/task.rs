@@ -113,20 +113,29 @@ pub(super) fn columns_of(
     let silent = gauges.iter().zip(&columns).filter(|(_, c)| c.is_none());
     let silent: Vec<&str> = silent.map(|(g, _)| g.as_str()).collect();
     let unknown = unknown_columns(header, gauges);
-    let remedy = suggest::column_remedy(&silent, &unknown);
-    if !silent.is_empty() {
-        work.findings.push(Finding::new(
-            Severity::Warning,
-            "gauge-without-strain",
-            few(&silent),
-            format!("`{}`: gauges without a column are left out", named.given),
-            remedy,
-        ));
-    }
+    work.findings
+        .extend(gauges_without_strain(named, &silent, &unknown));
     let of_file = format!("`{}`: ", named.given);
     work.findings
         .extend(strain_without_gauge(&of_file, header, gauges));
     columns
+}
+
+/// A warning of gauges that a file of strain has no column of; `unknown` are its columns that belong to no gauge.
+pub(in crate::app) fn gauges_without_strain(
+    named: &NamedFile,
+    silent: &[&str],
+    unknown: &[&str],
+) -> Option<Finding> {
+    (!silent.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "gauge-without-strain",
+            few(silent),
+            format!("`{}`: gauges without a column are left out", named.given),
+            suggest::column_remedy(silent, unknown),
+        )
+    })
 }
 
 fn unknown_columns<'a>(header: &'a [String], gauges: &[String]) -> Vec<&'a str> {
