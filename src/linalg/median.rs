@@ -1,4 +1,13 @@
-//! The median of values that count unequally.
+//! Medians of values that count alike or unequally.
+
+/// Half of the values are smaller; of an even number the upper one of the middle. `None` of none.
+pub fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        return None;
+    }
+    Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
 
 /// Value at which half of the weight is reached, of values with their weights; sorts them. `None` of none.
 pub fn weighted_median(values: &mut [(f64, f64)]) -> Option<f64> {
@@ -15,6 +24,13 @@ pub fn weighted_median(values: &mut [(f64, f64)]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn half_of_the_values_are_smaller() {
+        assert_eq!(median(Vec::new()), None);
+        assert_eq!(median(vec![3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median(vec![4.0, 1.0, 3.0, 2.0]), Some(3.0));
+    }
 
     #[test]
     fn half_of_the_weight_lies_on_either_side() {

@@ -2,6 +2,7 @@
 
 use super::day::{DayFinding, GaugeDay};
 use crate::finding::{Finding, Severity};
+use crate::linalg::median::median;
 use serde::Serialize;
 
 /// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
@@ -68,12 +69,6 @@ pub(super) struct GainChange {
 fn typical(days: &[GaugeDay]) -> f64 {
     let sds = days.iter().map(|d| d.sd).filter(|s| s.is_finite());
     median(sds.collect()).unwrap_or(0.0)
-}
-
-/// The middle one; `None` of none.
-pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }
 
 /// On which days a vehicle moves, by the gauges that read on each.

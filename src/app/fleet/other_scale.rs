@@ -1,17 +1,16 @@
 //! Days on which the noise of all gauges is the same factor of what it is on the vehicle's other days: a bridge factor, a gain or a range that
 //! changed for all channels, by which the readings are wrong as well.
 
-use super::gauge_history::median;
+use super::other_unit;
 use super::outcome::VehicleAnswer;
 use crate::finding::{Finding, Severity, few};
+use crate::linalg::median::median;
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 
 /// From which factor. Of the factors that are mixed up (quarter, half and full bridge, Poisson's 1 + nu, steps of gain) the least is 1.3; temperature
 /// changes the noise of amplifiers by some per cent.
 const FROM: f64 = 1.25;
-/// Up to which factor: beyond, it is another unit, which has a name of its own.
-const TO: f64 = 100.0;
 /// How far the factor of a gauge may be from that of the others: second differences of a thousand readings tell white noise to 3 %.
 const ALIKE: f64 = 1.06;
 /// Share of the gauges that have the factor: others may be dead or exchanged on that day.
@@ -69,7 +68,8 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
         return None;
     }
     let odd = |(day, factor): (usize, &Option<f64>)| {
-        let factor = factor.filter(|f| f.abs() > FROM.ln() && f.abs() < TO.ln())?;
+        // Beyond, it is another unit, which has a name of its own.
+        let factor = factor.filter(|f| f.abs() > FROM.ln() && f.abs() < other_unit::TIMES.ln())?;
         let own = median(scatter.iter().filter_map(|g| *g.get(day)?).collect())?;
         ((own - factor).abs() < DRIVEN.ln()).then_some((v.days.get(day)?, factor.exp()))
     };

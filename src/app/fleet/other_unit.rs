@@ -1,14 +1,14 @@
 //! Days whose readings are so many times larger or smaller than those of the fleet's other days, noise and all, that their unit must be another one.
 
-use super::gauge_history::median;
 use super::outcome::VehicleAnswer;
 use crate::finding::{Finding, Severity, few};
+use crate::linalg::median::median;
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 use std::collections::BTreeMap;
 
 /// How many times larger or smaller. What a vehicle does changes the scatter of its readings as much; their noise is that of the electronics.
-const TIMES: f64 = 100.0;
+pub(super) const TIMES: f64 = 100.0;
 /// How many times the change of the noise may be that of the scatter, or the other way round.
 const ALIKE: f64 = 5.0;
 /// Share of the stated noise below which no reading's noise falls.

@@ -2,6 +2,7 @@
 
 use super::deck_frame::DeckFrame;
 use super::region::Region;
+use crate::linalg::median::median;
 use crate::model::{Model, Shell, Vec3};
 use crate::reconcile::strain::StrainFrame;
 
@@ -45,13 +46,13 @@ impl<'a> Ground<'a> {
             let far = among.iter().map(|p| (p - to).norm()).filter(|d| *d > least);
             far.min_by(f64::total_cmp)
         };
-        let element = median(off.iter().filter_map(|p| {
+        let own = off.iter().filter_map(|p| {
             let own = closest(&middles, p)?;
             nearest(middles.get(own)?, &middles, 0.0)
-        }))?;
-        let apart = median(places.iter().filter_map(|p| nearest(p, &places, element)))
-            .unwrap_or(element)
-            .max(3.0 * element);
+        });
+        let element = median(own.collect())?;
+        let next = places.iter().filter_map(|p| nearest(p, &places, element));
+        let apart = median(next.collect()).unwrap_or(element).max(3.0 * element);
         Some(Self {
             model,
             middles,
@@ -185,10 +186,4 @@ fn closest(places: &[Vec3], to: &Vec3) -> Option<usize> {
             .map_or(f64::INFINITY, |p| (p - to).norm_squared())
     };
     (0..places.len()).min_by(|a, b| far(a).total_cmp(&far(b)))
-}
-
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut all: Vec<f64> = values.collect();
-    all.sort_by(f64::total_cmp);
-    all.get(all.len() / 2).copied()
 }
