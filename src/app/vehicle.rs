@@ -146,7 +146,7 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
 }
 
 /// A warning of channels of the model that the record lacks beside columns whose names come close to theirs: a wheel force whose name is misspelt
-/// would be taken as not measured.
+/// would be taken as not measured. What begins with another letter is another quantity: `a_wheel` is not meant for `f_wheel`.
 fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
     let wheels = model.wheels.iter().map(|w| w.channel.as_str());
     let all: Vec<&str> = wheels
@@ -156,7 +156,11 @@ fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
     let others: Vec<&str> = others.filter(|c| !all.contains(c)).collect();
     let missing = all.iter().filter(|c| !record.has(c));
     let pairs: Vec<String> = missing
-        .filter_map(|c| closest(c, others.iter().copied()).map(|o| format!("`{o}` for `{c}`")))
+        .filter_map(|c| {
+            let first = |name: &str| name.chars().next().map(|f| f.to_ascii_lowercase());
+            let alike = others.iter().filter(|o| first(o) == first(c));
+            closest(c, alike.copied()).map(|o| format!("`{o}` for `{c}`"))
+        })
         .collect();
     (!pairs.is_empty()).then(|| {
         Finding::new(
