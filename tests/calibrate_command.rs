@@ -856,6 +856,12 @@ fn loads_of_one_unit_that_make_a_thousand_times_less_strain_are_named() {
         assert_eq!(found.len(), named, "{said}");
         assert!(found.iter().all(|f| f["subject"] == "right"), "{said}");
     }
+    // A load that the gauges don't feel is no load in another unit: they read noise.
+    let strain = "run,C1,C2\nA,1010.1,210.3\nB,2019.8,420.1\nC,0.2,-0.3\nD,0.4,0.1\n";
+    let runs = "run,left,right\nA,10,0\nB,20,0\nC,0,10\nD,0,20\n";
+    let job = write_job(&folder, job, runs, strain);
+    let (_, result, said) = run("calibrate", &job, &folder.join("out"));
+    assert!(of_code(&result, "known-loads-uneven").is_empty(), "{said}");
 }
 
 /// Strain of a lift: microstrain a kN and a kN m about y, four gauges.

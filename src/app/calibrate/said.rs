@@ -77,11 +77,19 @@ pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
     })
 }
 
-/// How many times less strain than another load of its unit a load may make: between vertical and lateral forces on one structure lies a tenth
-/// of that, between units that are mixed up (kN and N) three times as much.
+/// How many times less strain than another load of its unit a load may make: the largest strain of vertical, lateral and longitudinal wheel
+/// forces on the frames of nine trucks differs by 8 to 20 times; units that are mixed up (kN and N) by 1,000.
 const UNEVEN: f64 = 300.0;
+/// In units of the noise: less strain than this is no sign of a load.
+const CLEAR: f64 = 6.0;
 
-/// A load that by the runs makes far less strain than others of its unit, where there is no model that says so too.
+/// The largest known size of a load; 0 of one that no run has.
+fn largest(task: &Task, l: usize) -> f64 {
+    let known = task.runs.iter().map(|r| r.loads.mean[l].abs());
+    known.fold(0.0, f64::max)
+}
+
+/// A load that by the runs makes far less strain than others of its unit, and still strain that is read, where there is no model that says so too.
 pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Option<Finding> {
     if task.model.is_some() {
         return None;
@@ -100,7 +108,8 @@ pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Optio
             .filter(|&b| listed.units[b].name == listed.units[a].name);
         let most = others.max_by(|b, c| size(*b).total_cmp(&size(*c)))?;
         let times = size(most) / size(a);
-        (size(a) > 0.0 && times > UNEVEN).then_some((a, most, times))
+        let read = size(a) * largest(task, a) > CLEAR * task.noise;
+        (read && times > UNEVEN).then_some((a, most, times))
     });
     odd.map(|(a, most, times)| {
         Finding::new(
@@ -125,14 +134,9 @@ pub(super) fn next_run(
     found: &Calibration,
     units: &[LoadUnits],
 ) -> Option<NextRunSummary> {
-    let size = |l: usize| {
-        let known = task.runs.iter().map(|r| r.loads.mean[l].abs());
-        let largest = known.fold(0.0, f64::max);
-        if largest > 0.0 {
-            Some(largest)
-        } else {
-            task.loads[l].expected
-        }
+    let size = |l: usize| match largest(task, l) {
+        known if known > 0.0 => Some(known),
+        _ => task.loads[l].expected,
     };
     let sizes: Vec<Option<f64>> = (0..task.loads.len()).map(size).collect();
     let other = sizes.iter().flatten().copied().fold(0.0, f64::max);
