@@ -56,7 +56,7 @@ pub fn stated_readings(job: &Job) -> Vec<String> {
     job.gauges.iter().flat_map(readings_of).collect()
 }
 
-/// Gauges of the job that a strain file has no column of: a rosette where it has neither its own name nor a leg's, else the legs it lacks.
+/// Readings of the job's gauges that a strain file has no column of. A rosette may have one column of its own name in place of its legs.
 pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec<String> {
     let has = |name: &String| columns.contains(name);
     if job.gauges.is_empty() {

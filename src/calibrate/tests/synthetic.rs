@@ -139,9 +139,9 @@ fn model_and_runs_together_beat_either_and_their_intervals_hold() {
         let apart = f64::max(0.02, 3.0 * (0.95 * 0.05 * 3.0 / intervals).sqrt());
         println!("{m} runs: held {held}, error {both}, stated {sigma}");
         assert!((held - 0.95).abs() < apart, "{m} runs: {held}");
-        // Numbers whose sizes differ from trial to trial: of 360, six a trial, a fifth is three standard errors. To the side of caution a
-        // fifth with 2,000 as well, where runs are fewer than loads: what a few runs say of the rows' error differs from trial to trial, and
-        // so does sigma, whose square mean the wide ones make, while the coverage above is that of all.
+        // Numbers whose sizes differ from trial to trial: of 360, six a trial, a fifth is three standard errors. To the side of caution more, with
+        // 2,000 as well: what a few runs say of the rows' error differs from trial to trial, and so does sigma, whose square mean the wide ones
+        // make, while the coverage above is that of all. A fifth where runs are fewer than loads, a tenth where they are as many or more.
         let wider = if m < k { 0.2 } else { 0.1 };
         let apart = 0.2 * (60.0 / trials.len() as f64).sqrt();
         let ratio = both / sigma;
