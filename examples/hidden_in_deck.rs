@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use strainbridge::fe::strain_tensor::Surface;
 use strainbridge::fe::{SolveOptions, UnitLoad, solve_unit_loads};
-use strainbridge::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
+use strainbridge::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, Pair, build, on_refined, reading};
 use strainbridge::model::{Model, Vec3};
 use strainbridge::reconcile::Observations;
 use strainbridge::reconcile::strain::{
@@ -130,7 +130,7 @@ fn laid(model: &Model, g: &Glued, degrees: f64) -> Gauge {
         },
         pair: g
             .other
-            .map(|(e, s)| (model.shell_ix(e).expect("the element"), s)),
+            .map(|(e, s)| Pair::parallel(model.shell_ix(e).expect("the element"), s)),
         ..GaugeSpec::on(g.name.clone(), shell)
     };
     let built = build(model, &spec, CornerRows::Absent).expect("a gauge");

@@ -133,30 +133,6 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
 }
 
 #[test]
-fn s_is_linear_in_the_size_of_the_unit_load() {
-    let files = files().with(
-        "doubled.toml",
-        JOB.replace("expected", "applied = 2.0\nexpected"),
-    );
-    let ask = |name: &str| {
-        let job = Job::read(name, &files).unwrap();
-        sensitivity(&job, &Context::new(&files)).unwrap()
-    };
-    let (one, two) = (ask("job.toml"), ask("doubled.toml"));
-    let (a, b) = (
-        &one.prepared.sensitivity.values,
-        &two.prepared.sensitivity.values,
-    );
-    let largest = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    // S is per unit of the load: rounding of one factor and two substitutions.
-    assert!(
-        a.iter()
-            .zip(b.iter())
-            .all(|(x, y)| (x - y).abs() < 1e-12 * largest)
-    );
-}
-
-#[test]
 fn faults_come_with_file_line_and_remedy() {
     let files = InMemory::default().with("job.toml", "units = \"furlong\"\n");
     let faults = Job::read("job.toml", &files).unwrap_err();

@@ -429,6 +429,7 @@ fn a_mesh_divided_round_a_gauge_says_what_one_divided_everywhere_says() {
     let support = Support {
         spc: Some(1),
         relief: strainbridge::fe::Relief::None,
+        by_springs: 0,
     };
     let loads: Vec<UnitLoad> = LOADS
         .into_iter()

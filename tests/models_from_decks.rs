@@ -380,17 +380,6 @@ fn non_structural_mass_that_differs_between_subcases_is_refused() {
     }
 }
 
-#[test]
-fn non_structural_mass_by_element_is_refused_by_name() {
-    let (model, _) = model_of("NSM = 5", &format!("{PLATES}NSM1,5,ELEMENT,4.,1"));
-    let refused: Vec<_> = model
-        .unsupported_cards
-        .iter()
-        .map(|c| (c.card.as_str(), c.id))
-        .collect();
-    assert_eq!(refused, [("NSM of ELEMENT", Some(5))]);
-}
-
 /// RBAR1 is the RBE2 from A to B, RTRPLT the RBE1 of its three grids.
 #[test]
 fn rigid_bars_and_triangles_are_those_of_older_cards() {

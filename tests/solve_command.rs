@@ -616,6 +616,26 @@ fn the_unit_load_deck_keeps_the_support_and_asks_for_no_relief() {
     );
 }
 
+/// E halves at 100 degrees: gauges read twice the strain, and the unit-load deck selects the same temperatures and masses.
+#[test]
+fn a_job_takes_materials_at_the_temperatures_that_its_deck_selects() {
+    let job = on_support("hot_job", "");
+    let cold = sensitivity_of(&job);
+    let selected = "  LOAD = 1\n  TEMP(MATERIAL) = 3\n  NSM = 8\n";
+    let cards = "MATT1,1,9\nTABLEM1,9\n,0.,210000.,100.,105000.,ENDT\nTEMPD,3,100.\nNSM1,8,ELEMENT,1.-9,1\nENDDATA\n";
+    let deck = cantilever("SPC = 1\n")
+        .replace("  LOAD = 1\n", selected)
+        .replace("ENDDATA\n", cards);
+    std::fs::write(job.with_file_name("canti.bdf"), deck).unwrap();
+    let hot = sensitivity_of(&job);
+    // The table holds six digits.
+    assert!((hot / cold - 2.0).abs() < 1e-5, "{hot} {cold}");
+    json_of("cases", &job);
+    let deck = std::fs::read_to_string(job.with_file_name("job.out/unit_loads.bdf")).unwrap();
+    assert!(deck.contains("TEMPERATURE(MATERIAL) = 3"), "{deck}");
+    assert!(deck.contains("NSM = 8"), "{deck}");
+}
+
 #[test]
 fn modes_of_a_held_deck_of_sol_103_are_those_of_the_clamped_beam() {
     let dir = folder("modes_deck");

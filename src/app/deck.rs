@@ -2,8 +2,12 @@
 
 use super::fault::{Fault, FaultList};
 use super::files::{Inputs, why_unreadable};
+use super::not_solved::not_solved;
+use super::what_is::binary_kind;
+pub use super::what_is::looks_like_op2;
 use crate::finding::{Finding, Severity};
 use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault, Vec3};
+use crate::series::record::format_of;
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
 use nastran::op2::Op2;
 use std::path::{Component, Path, PathBuf};
@@ -30,6 +34,9 @@ pub struct DeckModel {
 /// A fault where the file can't be read at all. What is wrong inside is in [`DeckModel::faults`].
 pub fn read_model(inputs: &mut Inputs, base: &Path, given: &str) -> Result<DeckModel, Fault> {
     let bytes = inputs.read(base, given)?;
+    if let Some(fault) = no_deck(given, &bytes) {
+        return Err(fault);
+    }
     if looks_like_op2(&bytes) {
         let mut read = model_of_op2(given, &bytes)?;
         read.files = vec![base.join(given)];
@@ -39,9 +46,21 @@ pub fn read_model(inputs: &mut Inputs, base: &Path, given: &str) -> Result<DeckM
     }
 }
 
-/// Whether a file is an OP2: its first record mark is 4 or 8 in either byte order.
-pub fn looks_like_op2(bytes: &[u8]) -> bool {
-    matches!(bytes.get(..4), Some([4 | 8, 0, 0, 0] | [0, 0, 0, 4 | 8]))
+/// The fault of a file that is neither a deck nor an OP2.
+pub(super) fn no_deck(given: &str, bytes: &[u8]) -> Option<Fault> {
+    let kind = binary_kind(bytes).filter(|_| !looks_like_op2(bytes))?;
+    let remedy = match format_of(bytes) {
+        Some(_) => {
+            "name a Nastran deck; a record belongs to a job, as `[measured] strain` or `[vehicle] data`"
+        }
+        None => "name a Nastran deck (text) or an OP2 that holds the mesh",
+    };
+    Some(Fault::of(
+        given,
+        "deck",
+        format!("it is {kind}, no Nastran deck"),
+        remedy,
+    ))
 }
 
 /// The deck, and the files it was read from.
@@ -70,6 +89,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     let file_of = |f: &ModelFault| deck.path(f.at).to_owned();
     sort_out(&model_faults, &file_of, &mut faults, &mut findings, given);
     faults.extend(mass_beyond(&model, given));
+    findings.extend(not_solved(&deck, &model, given));
     DeckModel {
         given: given.to_owned(),
         deck,
@@ -143,17 +163,24 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
     })
 }
 
-/// What the reader noted, one finding a deck: superelements that are kept and not read, a missing ENDDATA.
+/// What the reader noted, one finding a deck: superelements that are kept and not read, a missing ENDDATA, an INCLUDE of two meanings.
 fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
-    let Some(first) = deck.notes.first() else {
+    /// Notes that the message holds.
+    const SHOWN: usize = 3;
+    if deck.notes.is_empty() {
         return Vec::new();
-    };
-    let more = match deck.notes.len() - 1 {
+    }
+    let more = match deck.notes.len().saturating_sub(SHOWN) {
         0 => String::new(),
         n => format!(" (and {n} more)"),
     };
-    let place = format!("`{}` line {}", deck.path(first.at), first.at.line);
-    let message = format!("{place}: {}{more}", first.text);
+    let shown: Vec<String> = deck
+        .notes
+        .iter()
+        .take(SHOWN)
+        .map(|n| format!("`{}` line {}: {}", deck.path(n.at), n.at.line, n.text))
+        .collect();
+    let message = format!("{}{more}", shown.join("; "));
     let remedy = "see that nothing of the deck is missing";
     let finding = Finding::new(Severity::Info, "deck-note", given, message, remedy);
     vec![finding.with_numbers(deck.notes.len() as f64, 0.0)]
@@ -233,7 +260,10 @@ fn sort_out(
         ));
     }
     let notes = |pick: fn(&FaultKind) -> bool| -> Vec<&ModelFault> {
-        model_faults.iter().filter(|f| pick(&f.kind)).collect()
+        model_faults
+            .iter()
+            .filter(|f| f.weight() == FaultWeight::Note && pick(&f.kind))
+            .collect()
     };
     for (code, list) in [
         (
@@ -292,15 +322,27 @@ impl Loader for FileLoader<'_, '_> {
             format!("the symbol `{s}` has no value: define it as an environment variable")
         })?;
         let mut why = "no such file".to_owned();
-        for path in paths {
-            let path = without_dots(Path::new(&path));
+        let mut paths: Vec<PathBuf> = paths.iter().map(|p| without_dots(Path::new(p))).collect();
+        paths.dedup();
+        for (k, path) in paths.iter().enumerate() {
             let name = path.display().to_string();
-            match self.inputs.load(&path) {
+            match self.inputs.load(path) {
+                Ok(bytes) if let Some(kind) = binary_kind(&bytes) => {
+                    return Err(format!("it is {kind}"));
+                }
                 Ok(bytes) => {
                     self.files.push(path.clone());
-                    self.inputs.record(&name, path, &bytes);
-                    let bytes = bytes.to_vec();
-                    return Ok(Loaded { path: name, bytes });
+                    self.inputs.record(&name, path.clone(), &bytes);
+                    let others = paths.iter().skip(k + 1).filter(|p| *p != path);
+                    let differs = |p: &&PathBuf| self.inputs.load(p).is_ok_and(|b| *b != *bytes);
+                    return Ok(Loaded {
+                        rival: others
+                            .into_iter()
+                            .find(differs)
+                            .map(|p| p.display().to_string()),
+                        path: name,
+                        bytes: bytes.to_vec(),
+                    });
                 }
                 Err(e) if e.kind() == std::io::ErrorKind::NotFound => {}
                 Err(e) => why = why_unreadable(&e).0,

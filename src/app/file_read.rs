@@ -1,10 +1,10 @@
 //! A file that was read.
 
-use crate::finding::Severity;
+use crate::finding::{Finding, Severity};
 use std::path::PathBuf;
 
 /// A file that was read, with where it was found.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct FileRead {
     /// Path as given, by the user or by the job.
     pub given: String,
@@ -14,4 +14,6 @@ pub struct FileRead {
     pub sha256: String,
     /// How much a table whose last line may be cut matters; `None`: its end is sound.
     pub unsure: Option<Severity>,
+    /// What is to be known of a table beyond that.
+    pub noted: Vec<Finding>,
 }

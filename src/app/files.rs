@@ -5,10 +5,13 @@ use super::fault::Fault;
 use super::file_read::FileRead;
 use super::job::{Job, NamedFile};
 use super::sheet::{csv_of_sheet, is_sheet};
+use super::what_is::no_table;
 pub use super::whole_file::{FileBytes, Opened, Stamp};
 use crate::finding::{Finding, Severity};
 use crate::series::record::csv::{Layout, is_cut, unsure_end};
-use crate::series::record::is_format;
+#[cfg(feature = "parquet")]
+use crate::series::record::{Format, runs_of_parquet};
+use crate::series::record::{format_of, is_format};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -29,6 +32,8 @@ pub struct Inputs<'a> {
     entries: Vec<(String, PathBuf, Hashing)>,
     /// Tables named by the job whose last line may be cut.
     unsure: BTreeMap<String, Severity>,
+    /// What is to be known of tables, by the table.
+    noted: Vec<(String, Finding)>,
     /// Tables that were read, so that a question that comes back to one reads what it read before.
     kept: BTreeMap<PathBuf, FileBytes>,
 }
@@ -60,6 +65,7 @@ impl<'a> Inputs<'a> {
             files,
             entries: Vec::new(),
             unsure: BTreeMap::new(),
+            noted: Vec::new(),
             kept: BTreeMap::new(),
         }
     }
@@ -70,6 +76,11 @@ impl<'a> Inputs<'a> {
             let done = Hashing::Done(f.sha256.clone());
             (f.given.clone(), f.path.clone(), done)
         };
+        let noted = |f: &FileRead| {
+            let findings = f.noted.clone().into_iter();
+            let given = f.given.clone();
+            findings.map(move |finding| (given.clone(), finding))
+        };
         let unsure = read
             .iter()
             .filter_map(|f| Some((f.given.clone(), f.unsure?)));
@@ -77,6 +88,7 @@ impl<'a> Inputs<'a> {
             files,
             entries: read.iter().map(entry).collect(),
             unsure: unsure.collect(),
+            noted: read.iter().flat_map(noted).collect(),
             kept: BTreeMap::new(),
         }
     }
@@ -90,6 +102,7 @@ impl<'a> Inputs<'a> {
                 path: path.clone(),
                 sha256: hashing.finish(),
                 unsure: self.unsure.get(given).copied(),
+                noted: of_table(&self.noted, given),
             })
             .collect()
     }
@@ -132,11 +145,15 @@ impl<'a> Inputs<'a> {
     /// # Errors
     /// A fault where it can't be read or isn't UTF-8.
     pub fn read_text(&mut self, base: &Path, given: &str) -> Result<String, Fault> {
-        let bytes = self.read(base, given)?;
-        if is_sheet(&bytes) {
-            return csv_of_sheet(&bytes).map_err(|wrong| {
-                Fault::of(given, "sheet", wrong, "save the sheet as CSV (UTF-8)")
-            });
+        let bytes = as_table(given, self.read(base, given)?)?;
+        if let Some(format) = format_of(&bytes) {
+            let remedy = "name a table of text or a spreadsheet";
+            return Err(Fault::of(
+                given,
+                "file",
+                format!("it is {}, no table", format.words()),
+                remedy,
+            ));
         }
         match std::str::from_utf8(&bytes) {
             Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()),
@@ -154,12 +171,20 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Bytes of a file that a job names.
+    /// Bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet with a column `run` that of its table.
     ///
     /// # Errors
     /// A fault at the line of the job that names it.
     pub fn read_named(&mut self, job: &Job, named: &NamedFile) -> Result<FileBytes, Fault> {
         let read = self.read(&job.folder, &named.given);
+        // Results and covariances have forms of their own.
+        let is_table = !["model.", "load.result", "sensitivity.covariance"]
+            .iter()
+            .any(|key| named.key.starts_with(key));
+        let read = match is_table {
+            true => read.and_then(|bytes| as_table(&named.given, bytes)),
+            false => read,
+        };
         self.note_end(&named.given, read.as_ref().ok());
         read.map_err(|f| at_job_line(job, named, f))
     }
@@ -190,11 +215,21 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// A finding for each table whose last line may be cut.
+    /// Adds a finding on a table, once.
+    pub fn note(&mut self, table: &str, finding: Finding) {
+        let entry = (table.to_owned(), finding);
+        if !self.noted.contains(&entry) {
+            self.noted.push(entry);
+        }
+    }
+
+    /// A finding for each table whose last line may be cut; what was noted of tables.
     pub fn findings(&self) -> Vec<Finding> {
         let unsure = self.unsure.iter();
+        let noted = self.noted.iter().map(|n| n.1.clone());
         unsure
             .map(|(file, severity)| may_be_cut(file, *severity))
+            .chain(noted)
             .collect()
     }
 
@@ -234,6 +269,53 @@ impl<'a> Inputs<'a> {
             })
             .collect()
     }
+}
+
+/// The bytes of a table or a record; of a spreadsheet the CSV text of its first sheet.
+///
+/// # Errors
+/// A fault of a file that is neither.
+pub(super) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault> {
+    if let Some(kind) = no_table(&bytes) {
+        let wrong = format!("it is {kind}, no table and no record");
+        let remedy =
+            "name a CSV or XLSX table, or a record (CSV, RPC III, Parquet, TDMS, UFF, MDF4)";
+        return Err(Fault::of(given, "file", wrong, remedy));
+    }
+    if let Some(text) = runs_in_parquet(given, &bytes)? {
+        return Ok(text.into_bytes().into());
+    }
+    if !is_sheet(&bytes) {
+        return Ok(bytes);
+    }
+    let text = csv_of_sheet(&bytes);
+    text.map(|text| text.into_bytes().into())
+        .map_err(|wrong| Fault::of(given, "sheet", wrong, "save the sheet as CSV (UTF-8)"))
+}
+
+/// The table of runs in a Parquet file, as CSV text; `None` where the file is none.
+#[cfg(feature = "parquet")]
+fn runs_in_parquet(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fault> {
+    if format_of(bytes) != Some(Format::Parquet) {
+        return Ok(None);
+    }
+    let read = runs_of_parquet(std::sync::Arc::new(bytes.clone()));
+    read.map_err(|e| {
+        let (wrong, remedy) = e.parts();
+        Fault::of(given, "record", wrong, remedy)
+    })
+}
+
+/// The table of runs in a Parquet file: none is read.
+#[cfg(not(feature = "parquet"))]
+fn runs_in_parquet(_: &str, _: &FileBytes) -> Result<Option<String>, Fault> {
+    Ok(None)
+}
+
+/// Returns what was noted of a table.
+fn of_table(noted: &[(String, Finding)], given: &str) -> Vec<Finding> {
+    let of = noted.iter().filter(|n| n.0 == given);
+    of.map(|n| n.1.clone()).collect()
 }
 
 /// Whether a file is a table of text, by its name.
@@ -308,7 +390,7 @@ pub(super) fn why_unreadable(e: &std::io::Error) -> (String, &'static str) {
     }
 }
 
-fn sha256_hex(bytes: &[u8]) -> String {
+pub(super) fn sha256_hex(bytes: &[u8]) -> String {
     Sha256::digest(bytes)
         .iter()
         .map(|b| format!("{b:02x}"))

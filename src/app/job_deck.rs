@@ -3,7 +3,9 @@
 use super::deck::{DeckModel, moduli_and_densities, read_model};
 use super::fault::Faults;
 use super::job::{Job, ModelFiles};
+use super::not_solved::NOT_SOLVED;
 use super::work::Work;
+use crate::fe::suport_without_inrel;
 use crate::finding::Finding;
 use crate::model::Model;
 use crate::units::check_units;
@@ -18,7 +20,15 @@ pub(super) fn read_deck(
     files: &ModelFiles,
 ) -> Result<DeckModel, Faults> {
     let read = read_model(&mut work.inputs, &job.folder, &files.deck.given)?;
-    work.findings.extend(read.findings.iter().cloned());
+    let solves = files.results.is_empty();
+    // The solver itself refuses what acts on its answer.
+    let of_results = |f: &&Finding| f.code != NOT_SOLVED || !solves;
+    let findings = read.findings.iter().filter(of_results);
+    work.findings.extend(findings.cloned());
+    if solves {
+        work.findings
+            .extend(suport_without_inrel(&read.model, read.deck.sol));
+    }
     Faults::check(read.faults.clone())?;
     work.findings.extend(against_units(job, &read.model));
     Ok(read)

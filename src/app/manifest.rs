@@ -1,7 +1,8 @@
 //! Which files of a folder which command wrote, so that its next run removes those that it no longer writes.
 //!
-//! `.strainbridge` in the folder: a line a file, the command, a tab, the name. Files of other commands are left alone, for one command's
-//! tables are often another's input. A file that is not listed is nobody's to write over.
+//! `.strainbridge` in the folder: a line a file: the command, a tab, the name and, of a file that a person may edit, a tab and the SHA-256 of
+//! its bytes. Files of other commands are left alone, for one command's tables are often another's input. A file that is not listed, or that was
+//! changed since, is nobody's to write over.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
@@ -11,35 +12,56 @@ pub(super) const NAME: &str = ".strainbridge";
 
 /// Command and name of each file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Manifest(BTreeSet<(String, String)>);
+pub(super) struct Manifest {
+    entries: BTreeSet<(String, String)>,
+    /// By name, SHA-256 of the bytes as they were written.
+    digests: BTreeMap<String, String>,
+}
 
 impl Manifest {
     /// The manifest of a folder; empty where there is none.
     pub(super) fn read(folder: &Path) -> Self {
         let text = std::fs::read_to_string(folder.join(NAME)).unwrap_or_default();
-        let entry = |line: &str| {
-            let (command, name) = line.split_once('\t')?;
-            is_plain(name).then(|| (command.to_owned(), name.to_owned()))
-        };
-        Self(text.lines().filter_map(entry).collect())
+        let mut out = Self::default();
+        for line in text.lines() {
+            let mut fields = line.split('\t');
+            if let (Some(command), Some(name)) = (fields.next(), fields.next())
+                && is_plain(name)
+            {
+                out.entries.insert((command.to_owned(), name.to_owned()));
+                let digest = fields.next().map(|d| (name.to_owned(), d.to_owned()));
+                out.digests.extend(digest);
+            }
+        }
+        out
+    }
+
+    /// Returns the SHA-256 of a file as it was written; `None` where that is not known.
+    pub(super) fn digest(&self, name: &str) -> Option<&str> {
+        self.digests.get(name).map(String::as_str)
+    }
+
+    /// States the SHA-256 of files as they are written.
+    pub(super) fn state_digests(&mut self, digests: impl IntoIterator<Item = (String, String)>) {
+        self.digests.extend(digests);
     }
 
     /// The files of a command.
     pub(super) fn names_of(&self, command: &str) -> BTreeSet<String> {
-        let own = self.0.iter().filter(|e| e.0 == command);
+        let own = self.entries.iter().filter(|e| e.0 == command);
         own.map(|e| e.1.clone()).collect()
     }
 
     /// Whether a command wrote a file of this name.
     pub(super) fn holds(&self, name: &str) -> bool {
-        self.0.iter().any(|e| e.1 == name)
+        self.entries.iter().any(|e| e.1 == name)
     }
 
     /// The files of every other command. What a command writes before its answer stands under its name, a blank and a word.
     pub(super) fn of_others(&self, command: &str) -> BTreeMap<&str, Vec<&str>> {
         let of_other = |by: &str| by.split(' ').next() != Some(command);
         let mut out: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-        for (by, name) in self.0.iter().filter(|e| of_other(&e.0)) {
+        for (by, name) in self.entries.iter().filter(|e| of_other(&e.0)) {
             out.entry(by).or_default().push(name);
         }
         out
@@ -47,17 +69,18 @@ impl Manifest {
 
     /// Adds files to those of a command.
     pub(super) fn add(&mut self, command: &str, names: &[String]) {
-        self.0.retain(|e| !names.contains(&e.1));
+        self.entries.retain(|e| !names.contains(&e.1));
+        self.digests.retain(|name, _| !names.contains(name));
         let added = names.iter().map(|n| (command.to_owned(), n.clone()));
-        self.0.extend(added);
+        self.entries.extend(added);
     }
 
     /// Puts what a command writes now in place of what it wrote before; files that it wrote and that nobody writes now.
     pub(super) fn replace(&mut self, command: &str, names: &[String]) -> Vec<PathBuf> {
-        let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.0)
+        let (before, others): (BTreeSet<_>, BTreeSet<_>) = std::mem::take(&mut self.entries)
             .into_iter()
             .partition(|e| e.0 == command);
-        self.0 = others;
+        self.entries = others;
         // A file that another command wrote before belongs to whoever wrote it last.
         self.add(command, names);
         let gone = before.into_iter().map(|e| e.1);
@@ -66,8 +89,11 @@ impl Manifest {
 
     /// As text.
     pub(super) fn text(&self) -> String {
-        let line = |(command, name): &(String, String)| format!("{command}\t{name}\n");
-        self.0.iter().map(line).collect()
+        let line = |(command, name): &(String, String)| match self.digest(name) {
+            Some(digest) => format!("{command}\t{name}\t{digest}\n"),
+            None => format!("{command}\t{name}\n"),
+        };
+        self.entries.iter().map(line).collect()
     }
 }
 

@@ -178,9 +178,10 @@ fn solved(
     };
     Ok(Modes {
         modes,
-        support: match support.is_held() {
-            true => format!("held by SPC set {}", support.spc.unwrap_or_default()),
-            false => "free".to_owned(),
+        support: match (support.spc, support.by_springs, support.is_held()) {
+            (None, 0, false) => "free".to_owned(),
+            (Some(set), ..) => format!("held by SPC set {set}"),
+            (None, ..) => support.words(),
         },
         rigid_motions: solution.rigid_motions,
         gauges: gauges.into_iter().map(|g| g.name).collect(),

@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, FaultList, Faults};
 use super::files::unreadable_at;
-use super::job::{Job, NamedFile};
+use super::job::{HoldOut, Job, NamedFile};
 use super::work::Work;
 use nastran::results::{ResultsError, ResultsFile};
 
@@ -50,4 +50,28 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
         format!("`{}`: {e}", named.given),
         RESULTS_REMEDY,
     )
+}
+
+/// Refuses tables that the job names and that are not there: runs, zero, held-out runs, covariance and signatures, whether or not the command
+/// reads them. They don't count as read.
+///
+/// # Errors
+/// A fault for each.
+pub fn check_tables(work: &Work, job: &Job) -> Result<(), Faults> {
+    let mut named: Vec<&NamedFile> = job.runs.iter().map(|r| &r.file).collect();
+    if let Some(measured) = &job.measured {
+        named.extend(&measured.zero);
+        if let HoldOut::File(file) = &measured.hold_out {
+            named.push(file);
+        }
+    }
+    if let Some(given) = &job.sensitivity {
+        named.extend(&given.covariance);
+        named.extend(given.signatures.files());
+    }
+    let missing = |n: &&NamedFile| match work.inputs.load(&job.folder.join(&n.given)) {
+        Err(e) => Some(unreadable_at(job, n, &e)),
+        Ok(_) => None,
+    };
+    Faults::check(named.iter().filter_map(missing).collect())
 }

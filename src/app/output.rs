@@ -1,11 +1,13 @@
 //! Writing: files appear under their names only when all of them are complete, and never in place of a file that no command wrote.
 
 use super::fault::{Fault, Faults};
+use super::files::sha256_hex;
 use super::half_written;
 use super::manifest::{self, Manifest};
 use super::outcome::Tables;
 use super::whole_file::{FileBytes, load};
 use crate::finding::few;
+use nastran::op2::WriteError;
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -33,6 +35,7 @@ impl Output {
     /// A fault where it can't be created.
     pub fn begin(folder: &Path) -> Result<Self, Fault> {
         std::fs::create_dir_all(folder).map_err(|e| unwritable(folder, &e))?;
+        half_written::remove_stale(folder);
         Ok(Self {
             folder: folder.to_owned(),
             pending: Vec::new(),
@@ -104,8 +107,7 @@ impl Output {
     /// A temporary name that no other run into the folder has.
     fn part(&self, name: &str) -> PathBuf {
         let n = PARTS.fetch_add(1, Ordering::Relaxed);
-        self.folder
-            .join(format!(".{name}.{}-{n}.part", std::process::id()))
+        self.folder.join(half_written::name_of_part(name, n))
     }
 
     /// A fault for a file of this folder that could not be written on.
@@ -204,13 +206,16 @@ impl Output {
         self.check_spared(sources)?;
         let sources = stored(sources);
         let mut written = Manifest::read(&self.folder);
+        let before = written.clone();
         let gone = written.replace(command, &self.names());
-        self.list_first(&written)?;
+        self.list_first(&mut written)?;
         self.rename_all()?;
         for name in gone {
             let path = self.folder.join(name);
-            // One that is gone already is no loss.
-            if std::fs::canonicalize(&path).is_ok_and(|p| !sources.contains(&p)) {
+            // One that is gone already is no loss; one that was changed is its user's.
+            if !is_changed(&before, &path)
+                && std::fs::canonicalize(&path).is_ok_and(|p| !sources.contains(&p))
+            {
                 let _ = std::fs::remove_file(path);
             }
         }
@@ -226,7 +231,7 @@ impl Output {
         self.check_spared(&[])?;
         let mut written = Manifest::read(&self.folder);
         written.add(command, &self.names());
-        self.list_first(&written)?;
+        self.list_first(&mut written)?;
         Ok(self.rename_all()?)
     }
 
@@ -237,7 +242,12 @@ impl Output {
     }
 
     /// Writes the list of the folder, to be renamed before the files that it lists: none of ours ever stands there unlisted.
-    fn list_first(&mut self, written: &Manifest) -> Result<(), Fault> {
+    fn list_first(&mut self, written: &mut Manifest) -> Result<(), Fault> {
+        let digest = |(part, target): &(PathBuf, PathBuf)| {
+            let name = target.file_name()?.to_string_lossy().into_owned();
+            Some((name, digest_of(part, target)?))
+        };
+        written.state_digests(self.pending.iter().filter_map(digest));
         self.write_bytes(manifest::NAME, written.text().as_bytes())?;
         self.pending.rotate_right(1);
         Ok(())
@@ -288,6 +298,14 @@ pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
 /// The fault of a file that no command wrote; `None` where one did.
 fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
     let name = target.file_name()?.to_string_lossy();
+    if is_changed(ours, target) {
+        return Some(Fault::of(
+            target.display().to_string(),
+            "output",
+            "this file was changed after strainbridge wrote it, and would be written over",
+            "choose another folder with `--out`, or give the changed file another name",
+        ));
+    }
     (!ours.holds(&name)).then(|| {
         Fault::of(
             target.display().to_string(),
@@ -299,6 +317,29 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
             "choose another folder with `--out`, or move the file away",
         )
     })
+}
+
+/// Returns the SHA-256 of a file, where it goes to a name that a person may edit.
+fn digest_of(file: &Path, name: &Path) -> Option<String> {
+    /// Names of tables and jobs end so.
+    const EDITED: [&str; 5] = ["csv", "toml", "md", "bdf", "txt"];
+    /// Bytes of what is edited by hand at most.
+    const LARGEST: u64 = 16 << 20;
+    let kind = name.extension()?.to_str()?;
+    let size = std::fs::metadata(file).ok()?.len();
+    if !EDITED.contains(&kind) || size > LARGEST {
+        return None;
+    }
+    load(file).ok().map(|bytes| sha256_hex(&bytes))
+}
+
+/// Whether a file that a command wrote has other bytes now.
+fn is_changed(ours: &Manifest, target: &Path) -> bool {
+    let name = target.file_name().map(|n| n.to_string_lossy());
+    let written = name.and_then(|n| ours.digest(&n).map(str::to_owned));
+    let now = written.as_ref().and_then(|_| digest_of(target, target));
+    // One that grew beyond what has a digest was changed too.
+    written.is_some_and(|w| target.is_file() && now != Some(w))
 }
 
 /// Keeps other runs from the folder while its list is read and written: two that end at once would each lose what the other listed. A system
@@ -331,10 +372,49 @@ fn fill_file(
 }
 
 fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
-    Fault::of(
-        path.display().to_string(),
-        "output",
-        format!("can't be written ({e})"),
-        "choose another folder with `--out`",
-    )
+    let of_format = e.get_ref().and_then(|e| e.downcast_ref::<WriteError>());
+    let remedy = match of_format {
+        Some(WriteError::Id(_)) => {
+            "renumber the grid or element in the deck: its id must be below 214748365"
+        }
+        Some(WriteError::Unsupported { .. }) => "leave these elements out of the deck",
+        _ => "choose another folder with `--out`",
+    };
+    let wrong = format!("can't be written ({e})");
+    Fault::of(path.display().to_string(), "output", wrong, remedy)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(folder: &Path, text: &str) -> Result<(), Faults> {
+        let mut out = Output::begin(folder)?;
+        out.write_bytes("gauges.csv", text.as_bytes())?;
+        out.commit("place", &[])
+    }
+
+    #[test]
+    fn a_table_that_was_changed_by_hand_is_not_written_over_nor_removed() {
+        let folder =
+            std::env::temp_dir().join(format!("strainbridge-changed-{}", std::process::id()));
+        let table = folder.join("gauges.csv");
+        written(&folder, "a").unwrap();
+        written(&folder, "b").unwrap();
+        std::fs::write(&table, "corrected").unwrap();
+        let faults = written(&folder, "c").unwrap_err();
+        assert!(
+            faults.iter().any(|f| f.wrong.contains("was changed")),
+            "{faults:?}"
+        );
+        let early = Output::check_free(&folder, &["gauges.csv"]).unwrap_err();
+        assert_eq!(early.iter().count(), 1);
+        assert_eq!(std::fs::read_to_string(&table).unwrap(), "corrected");
+        // A run that no longer writes the table leaves it.
+        let mut out = Output::begin(&folder).unwrap();
+        out.write_bytes("other.csv", b"d").unwrap();
+        out.commit("place", &[]).unwrap();
+        assert_eq!(std::fs::read_to_string(&table).unwrap(), "corrected");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
 }

@@ -89,7 +89,8 @@ fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
         AngleStep::Continuous => 15.0,
     };
     let steps = (180.0 / step).ceil() as usize;
-    let mut gauges: Vec<Gauge> = Vec::new();
+    let corners = fields.corner_rows(job);
+    let (mut gauges, mut left_out): (Vec<Gauge>, usize) = (Vec::new(), 0);
     for (shell, surface) in allowed_sites(job, &fields, &common)? {
         for i in 0..steps {
             let angle = step * i as f64;
@@ -97,12 +98,19 @@ fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
             let spec = GaugeSpec {
                 surface: Some(surface),
                 angle_rad: angle.to_radians(),
+                grid_length: job.candidates.grid_length,
                 ..GaugeSpec::on(format!("{id}.{}.{angle}", surface.word()), shell)
             };
-            if let Ok((g, _)) = build(fields.model(), &spec, crate::gauge::CornerRows::Absent) {
-                gauges.extend(g);
+            match build(fields.model(), &spec, corners) {
+                Ok((g, _)) => gauges.extend(g),
+                Err(_) => left_out += 1,
             }
         }
+    }
+    if left_out > 0 {
+        work.notes.push(format!(
+            "{left_out} candidates are left out: the part is shorter than `grid_length` there, or the element has no area"
+        ));
     }
     gauges.extend(lay_gauges(work, job, &fields)?);
     let sensitivity =

@@ -44,7 +44,7 @@ pub(super) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
             DataRef::String(s) => s.clone(),
             DataRef::SharedString(s) => (*s).to_owned(),
             DataRef::Bool(b) => b.to_string(),
-            DataRef::DateTime(t) => t.to_string(),
+            DataRef::DateTime(t) => moment(t),
             DataRef::DateTimeIso(t) | DataRef::DurationIso(t) => t.clone(),
             DataRef::Error(_) | DataRef::Empty => continue,
         };
@@ -52,6 +52,32 @@ pub(super) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     }
     lines.end(0)?;
     Ok(lines.text)
+}
+
+/// A cell formatted as a date or a time as text: date and time of day, or the time of day alone where the cell holds less than two days.
+/// A number of days would be read as a number of whatever its column is.
+#[cfg(feature = "xlsx")]
+fn moment(cell: &calamine::ExcelDateTime) -> String {
+    const MICROSECONDS: f64 = 86_400e6;
+    /// Days of which programs show the time of day alone.
+    const OF_DAY: f64 = 2.0;
+    let days = cell.as_f64();
+    let (whole, of_day) = (days.floor(), days - days.floor());
+    let us = (of_day * MICROSECONDS).round();
+    let (whole, us) = match us < MICROSECONDS {
+        true => (whole, us as u64),
+        false => (whole + 1.0, 0),
+    };
+    let (seconds, us) = (us / 1_000_000, us % 1_000_000);
+    let (hour, minute, second) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    let time = format!("{hour:02}:{minute:02}:{second:02}.{us:06}");
+    if cell.is_duration() || (0.0..OF_DAY).contains(&days) {
+        return time;
+    }
+    let at_noon =
+        calamine::ExcelDateTime::new(whole + 0.5, calamine::ExcelDateTimeType::DateTime, false);
+    let (year, month, day, ..) = at_noon.to_ymd_hms_milli();
+    format!("{year:04}-{month:02}-{day:02} {time}")
 }
 
 /// As above.
@@ -159,6 +185,22 @@ fn unpacked_size(bytes: &[u8]) -> Option<u64> {
 #[cfg(all(test, feature = "xlsx"))]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_of_dates_and_times_are_text() {
+        use calamine::{ExcelDateTime, ExcelDateTimeType as Kind};
+        // 1 May 2026 is day 46,143 of spreadsheets; 12:00:00.25 is .500002893518.. of a day.
+        let quarter = 46_143.5 + 0.25 / 86_400.0;
+        for (days, kind, expected) in [
+            (quarter, Kind::DateTime, "2026-05-01 12:00:00.250000"),
+            (46_143.0, Kind::DateTime, "2026-05-01 00:00:00.000000"),
+            (0.999_988_425_926, Kind::DateTime, "23:59:59.000000"),
+            (1.0, Kind::DateTime, "00:00:00.000000"),
+            (0.5, Kind::TimeDelta, "12:00:00.000000"),
+        ] {
+            assert_eq!(moment(&ExcelDateTime::new(days, kind, false)), expected);
+        }
+    }
 
     #[test]
     fn cells_beyond_the_last_row_or_column_are_refused() {

@@ -1,5 +1,8 @@
 //! `solve`: the built-in solver on a job's unit loads or on a deck's own static subcases.
 
+use super::combined_subcases::{
+    CombinedSubcase, add_combinations, is_combination, read_combination,
+};
 use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
@@ -8,17 +11,20 @@ use super::job_deck::read_deck;
 use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 pub use super::solved::MODES;
-use super::solved::{cases_of_job, solve_kept, support_of_job};
+use super::solved::{
+    case_of_subcase, cases_of_job, faults_of, has_enforced, relief_of_job, solve_kept,
+    support_of_job,
+};
 use super::work::Work;
 use crate::fe::{
-    Balance, Corners, LoadCase, Reactions, Solution, SolveOptions, SolveReport, Support,
-    assumed_relief, loads_of_subcase, relief_of,
+    Balance, Corners, LoadCase, Reactions, Relief, Solution, SolveOptions, SolveReport, Support,
+    SupportChoice, loads_of_subcase, refuse, relief_finding, suport_without_inrel,
 };
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::{Model, Shell};
 use crate::units::UnitSystem;
-use nastran::bdf::Request;
+use nastran::bdf::{Request, Subcase};
 use nastran::cards::ShellShape;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -91,6 +97,8 @@ struct Task {
     cases: Vec<LoadCase>,
     /// Where strain is wanted.
     corners: Corners,
+    /// Combinations of them.
+    combined: Vec<CombinedSubcase>,
     /// Why a subcase of the deck is left out.
     left_out: Vec<String>,
     /// What holds the structure of a job.
@@ -142,7 +150,8 @@ fn solved(
 ) -> Result<SolvedCases, Faults> {
     let Task {
         read,
-        cases,
+        mut cases,
+        combined,
         corners,
         left_out,
         support,
@@ -157,7 +166,8 @@ fn solved(
             "solve it with Nastran",
         ));
     }
-    let (solution, report) = solve_kept(work, &read, &cases, options)?;
+    let (mut solution, mut report) = solve_kept(work, &read, &cases, options)?;
+    add_combinations(&read, &combined, &mut cases, (&mut solution, &mut report))?;
     work.findings.extend(solution.findings.iter().cloned());
     Ok(SolvedCases {
         grids: report.grids,
@@ -199,9 +209,11 @@ fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
     let read = read_deck(work, job, files)?;
     let support = support_of_job(job, &read.model)?;
     let cases = cases_of_job(job, &read)?;
+    work.findings.extend(relief_of_job(job, &read.model)?);
     Ok(Task {
         read,
         cases,
+        combined: Vec::new(),
         corners: Corners::Compute,
         left_out: Vec::new(),
         support: Some(support.words()),
@@ -214,36 +226,47 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     let read = read_model(&mut work.inputs, &base, &given)?;
     work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
+    refuse(&read.model, &[]).map_err(|e| faults_of(&e, &read))?;
+    work.findings
+        .extend(suport_without_inrel(&read.model, read.deck.sol));
+    work.findings.extend(other_sequence(&read));
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
+    let mut combined = Vec::new();
     let mut corners = corners_always_written(&read.model);
-    for s in read.deck.case_control.effective_subcases() {
-        let loads = loads_of_subcase(&s);
-        if s.deform.is_some() {
-            left_out.push(format!("subcase {}: DEFORM is not carried", s.id));
-        } else if loads.is_empty() && !has_enforced(&read.model, s.spc) {
-            left_out.push(format!("subcase {}: no LOAD", s.id));
-        } else {
-            if s.request("STRAIN").is_none_or(asks_for_corners) {
-                corners = Corners::Compute;
-            }
-            cases.push(LoadCase {
-                subcase: s.id,
-                label: s.label.clone().or(s.subtitle.clone()).unwrap_or_default(),
-                loads,
-                spc: s.spc,
-                mpc: s.mpc,
-                relief: relief_of(&read.model, s.spc, s.suport1),
-            });
+    let subcases = read.deck.case_control.effective_subcases();
+    let mut solved = Vec::new();
+    for (i, s) in subcases.iter().enumerate() {
+        if is_combination(s) {
+            let at = cases.len() + combined.len();
+            let above = (solved.as_slice(), at);
+            combined.push(read_combination(&read, &subcases[..=i], above)?);
+            solved.push(None);
+            continue;
         }
+        let loads = loads_of_subcase(s);
+        let why = not_static(s).or_else(|| {
+            let idle = loads.is_empty() && !has_enforced(&read.model, s.spc);
+            idle.then(|| "no LOAD".to_owned())
+        });
+        if let Some(why) = why {
+            left_out.push(format!("subcase {}: {why}", s.id));
+            solved.push(None);
+            continue;
+        }
+        if s.request("STRAIN").is_none_or(asks_for_corners) {
+            corners = Corners::Compute;
+        }
+        solved.push(Some(cases.len()));
+        cases.push(case_of_subcase(&read.model, s));
     }
     let relieved = cases.iter().find(|c| c.spc.is_none());
     work.findings.extend(relieved.and_then(|c| {
-        let support = Support {
-            spc: c.spc,
-            relief: c.relief,
+        let support = match c.relief {
+            Relief::None => return None,
+            _ => Support::free(&read.model),
         };
-        assumed_relief(&read.model, support)
+        relief_finding(&read.model, support, SupportChoice::Deck)
     }));
     if cases.is_empty() {
         return Err(Faults::from(Fault::of(
@@ -256,10 +279,33 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     Ok(Task {
         read,
         cases,
+        combined,
         corners,
         left_out,
         support: None,
     })
+}
+
+/// Why a subcase is not one of statics: what its ANALYSIS states.
+fn not_static(s: &Subcase) -> Option<String> {
+    let analysis = s.analysis.as_ref()?;
+    (!analysis.starts_with("STAT")).then(|| format!("ANALYSIS = {analysis} is not statics"))
+}
+
+/// States that loads of a deck for another linear analysis are solved as statics.
+fn other_sequence(read: &DeckModel) -> Option<Finding> {
+    /// Sequences with static subcases: statics, inertia relief, buckling, optimisation.
+    const STATICS: [u32; 9] = [1, 2, 5, 24, 61, 65, 101, 105, 200];
+    let sequence = read.deck.sol.filter(|s| !STATICS.contains(s))?;
+    Some(Finding::new(
+        Severity::Info,
+        "solution-sequence",
+        &read.given,
+        format!(
+            "SOL {sequence} has no static subcases: the loads that its subcases select are solved as linear statics"
+        ),
+        "write SOL 101 if statics is meant",
+    ))
 }
 
 /// Whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
@@ -278,13 +324,6 @@ fn corners_always_written(model: &Model) -> Corners {
     } else {
         Corners::Leave
     }
-}
-
-fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
-    model
-        .spcs
-        .iter()
-        .any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
 }
 
 /// Largest resident memory of this process so far, bytes; `None` where the system does not tell.

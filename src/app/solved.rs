@@ -8,10 +8,13 @@ use super::store::{Key, read_solution, write_solution};
 use super::work::{Work, stopped};
 use crate::fe::{
     Corners, FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport, Solved, Support,
-    SupportChoice, UnitLoad, solution_of, solve_displacements, solve_modes, support_of,
+    SupportChoice, UnitLoad, loads_of_subcase, relief_finding, relief_of, solution_of,
+    solve_displacements, solve_modes, support_of,
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
+use nastran::bdf::Subcase;
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
 /// Elastic modes that are computed beside the strain where nothing else is asked for.
@@ -50,6 +53,21 @@ fn moved_by(model: &Model, support: Support) -> Option<(u32, u32, f64)> {
     Some((set.sid, model.grids.get(grid.us())?.id, *by))
 }
 
+/// Returns what is to be said of the inertia relief of a job: assumed, or limited by springs to ground.
+///
+/// # Errors
+/// As [`support_of_job`].
+pub fn relief_of_job(job: &Job, model: &Model) -> Result<Option<Finding>, Faults> {
+    let wanted = job
+        .model
+        .as_ref()
+        .map_or(SupportChoice::Deck, |m| m.support);
+    let support = support_of_job(job, model)?;
+    // A job without PARAM,INREL in its deck is free by the contract of its keys.
+    let limited = |f: &Finding| f.code == "tied-to-ground" || support.by_springs > 0;
+    Ok(relief_finding(model, support, wanted).filter(limited))
+}
+
 /// Which support it is, for `check` and `init`.
 pub fn support_finding(deck: &str, support: Support) -> Finding {
     Finding::new(
@@ -64,7 +82,7 @@ pub fn support_finding(deck: &str, support: Support) -> Finding {
 /// Refuses what only a structure on its wheels can answer, where supports hold it.
 ///
 /// # Errors
-/// A structure that an SPC set holds.
+/// A structure that an SPC set or springs to ground hold.
 pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faults> {
     let support = support_of_job(job, model)?;
     if !support.is_held() {
@@ -79,7 +97,10 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
             "{what} takes a structure that stands on its wheels, and this one is {}",
             support.words()
         ),
-        "write support = \"free\" where wheels carry it",
+        match support.spc {
+            Some(_) => "write support = \"free\" where wheels carry it",
+            None => "remove what holds its grids to ground, so that wheels carry it",
+        },
     )))
 }
 
@@ -88,6 +109,7 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
 /// # Errors
 /// Grids and coordinate systems that the deck lacks.
 pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults> {
+    check_mpc_sets(read)?;
     let support = support_of_job(job, &read.model)?;
     let loads = super::strain::unit_loads(job, &read.model)?;
     Ok(job
@@ -103,6 +125,53 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
             relief: support.relief,
         })
         .collect())
+}
+
+/// Refuses a deck whose subcases select different MPC sets: the structure under unit loads has one.
+///
+/// # Errors
+/// The sets.
+fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
+    let subcases = read.deck.case_control.effective_subcases();
+    let sets: BTreeSet<u32> = subcases.iter().map(|s| s.mpc.unwrap_or(0)).collect();
+    if sets.len() < 2 {
+        return Ok(());
+    }
+    let word = |sid: &u32| match sid {
+        0 => "none".to_owned(),
+        n => n.to_string(),
+    };
+    let words: Vec<String> = sets.iter().map(word).collect();
+    let wrong = format!(
+        "the deck's subcases select different MPC sets ({}): unit loads need one",
+        words.join(", ")
+    );
+    let remedy = "select the MPC set of the structure above the subcases alone";
+    Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
+}
+
+/// Returns what people call a subcase: its label, or its subtitle.
+pub fn label_of(s: &Subcase) -> String {
+    s.label.clone().or(s.subtitle.clone()).unwrap_or_default()
+}
+
+/// Returns a static subcase of a deck as a load case.
+pub fn case_of_subcase(model: &Model, subcase: &Subcase) -> LoadCase {
+    LoadCase {
+        subcase: subcase.id,
+        label: label_of(subcase),
+        loads: loads_of_subcase(subcase),
+        spc: subcase.spc,
+        mpc: subcase.mpc,
+        relief: relief_of(model, subcase.spc, subcase.suport1),
+    }
+}
+
+pub fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
+    model
+        .spcs
+        .iter()
+        .any(|s| Some(s.sid) == spc && s.terms.iter().any(|t| t.2 != 0.0))
 }
 
 /// Solves load cases on the model of a deck, with its elastic modes, or takes the kept solution.

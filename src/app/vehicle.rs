@@ -6,12 +6,12 @@ use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use super::words::short;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::series::csv::read_csv;
-use crate::series::foreign::{Foreign, read_foreign};
+use crate::recovery::clock;
+use crate::series::Channels;
+use crate::series::even_record::open_even;
 use crate::series::quality::{Kind, check_channels};
-use crate::series::rpc::{is_rpc, read_rpc};
+use crate::series::record::{Options, read_channels};
 use crate::series::spectrum::Band;
-use crate::series::{Channels, SeriesError};
 use crate::units::{Quantity, find_unit};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::identify::IdentifyTask;
@@ -19,6 +19,7 @@ use crate::vehicle::layout::{MassStep, Vehicle};
 use crate::vehicle::motion::VehicleError;
 use crate::vehicle::preset::{PresetError, PresetRequest, vehicle};
 use crate::vehicle::term::UnitNames;
+use std::sync::Arc;
 
 /// Band where the job names none, Hz: rigid-body and axle motion of a truck.
 const DEFAULT_BAND_HZ: [f64; 2] = [0.7, 20.0];
@@ -272,13 +273,20 @@ fn read_record(
     named: &NamedFile,
 ) -> Result<Channels, Faults> {
     let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
-    let read = if is_rpc(&bytes) {
-        read_rpc_at(&bytes, section.sample_rate)
-    } else if let Some(kind) = Foreign::of(&bytes) {
-        read_foreign(kind, &bytes, section.sample_rate, &[])
-    } else {
-        read_csv(&bytes, section.sample_rate)
+    let options = Options {
+        declared_hz: section.sample_rate,
+        ..Options::default()
     };
+    let read = open_even(Arc::new(bytes), &options).and_then(|record| {
+        let rate_hz = record.clock.rate_hz;
+        let unit = record.clock.unit;
+        let recognised = unit.map(|unit| clock::recognised(&named.given, unit, rate_hz));
+        // A rate that the job states confirms the unit.
+        let is_open = !record.is_time_unit_stated() && section.sample_rate.is_none();
+        let doubtful = is_open.then(|| clock::check_rate(rate_hz)).flatten();
+        work.findings.extend(recognised.into_iter().chain(doubtful));
+        read_channels(&record)
+    });
     let mut record = read.map_err(|e| {
         let (wrong, remedy) = e.parts();
         match &e {
@@ -314,22 +322,6 @@ fn read_record(
     }
     Faults::check(faults)?;
     Ok(record)
-}
-
-/// An RPC III record, its rate held against the one that the job declares.
-fn read_rpc_at(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, SeriesError> {
-    /// Largest relative departure of both rates.
-    const RATE_TOLERANCE: f64 = 1e-3;
-    let record = read_rpc(bytes)?;
-    match declared_hz {
-        Some(declared) if (record.rate_hz / declared - 1.0).abs() > RATE_TOLERANCE => {
-            Err(SeriesError::Rate {
-                found_hz: record.rate_hz,
-                declared_hz: declared,
-            })
-        }
-        _ => Ok(record),
-    }
 }
 
 /// What a number in that unit is multiplied by to be in the job's units.

@@ -5,7 +5,7 @@ use super::job::{Job, JobLoad, LoadActs};
 use super::work::stopped;
 use crate::fe::FeError;
 use crate::fe::floor::FloorError;
-use crate::model::{GridIx, Model};
+use crate::model::{GridIx, Model, Vec3};
 
 /// Vertical loads of a job that are no payload.
 pub struct Wheels {
@@ -27,8 +27,10 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
         LoadActs::AtGrid {
             grid,
             component,
-            cid: 0,
-        } if component.is_force() && Some(grid) != payload => Some((grid, component.dof())),
+            cid,
+        } if component.is_force() && Some(grid) != payload => {
+            Some((grid, basic_axis(model, grid, component.dof(), cid)?))
+        }
         _ => None,
     };
     let wanted: Vec<(usize, u32, usize)> = job
@@ -86,6 +88,21 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     }
     Faults::check(faults)?;
     Ok(out)
+}
+
+/// Returns the basic axis whose positive direction is that of a force along axis `dof` of a coordinate system at a grid; `None` where it
+/// points elsewhere.
+fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
+    /// Cosine from which two directions are the same: half a thousandth of a degree.
+    const ALIGNED: f64 = 1.0 - 1e-10;
+    if cid == 0 {
+        return Some(dof);
+    }
+    let frame = model.frames.get(model.frame_ix(cid)?.us())?;
+    let at = model.grids.get(model.grid_ix(grid)?.us())?.x;
+    let along = Vec3::from_fn(|axis, _| f64::from(u8::from(axis == dof)));
+    let direction = frame.vector_to_basic(along.into(), at);
+    (0..3).find(|axis| direction[*axis] > ALIGNED)
 }
 
 /// A floor that can't be had, as faults of the job's model.

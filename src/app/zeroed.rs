@@ -5,10 +5,12 @@
 //! row to row is seen between them, and the readings count with that much more noise.
 
 use super::fault::{Fault, FaultList, Faults};
-use super::job::strain::{StrainRows, StrainTable, read_strain, wanted_columns, without_column};
+use super::job::strain::{
+    StrainRows, StrainTable, gauge_names, read_strain, wanted_columns, without_column,
+};
 use super::job::strain_means::is_long_record;
 use super::job::{HoldOut, Job, Measured, NamedFile};
-use super::recover::{gauges_without_strain, zero_of};
+use super::recover::{gauges_without_strain, strain_without_gauge, zero_of};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::{ErrorModel, Readings, plausible};
@@ -77,6 +79,7 @@ pub(super) fn read_zeroed(
     let unknown: Vec<&str> = unknown.map(String::as_str).collect();
     let finding = gauges_without_strain(named, &silent, &unknown);
     work.findings.extend(finding);
+    without_gauge(work, job, named, &table.gauges);
     let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
     let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
     let rows = zeros_by_row(work, job, measured, &table)?;
@@ -94,6 +97,18 @@ pub(super) fn read_zeroed(
         table,
         noise_factor,
     })
+}
+
+/// Adds a warning of columns that belong to no gauge, of a job that says which gauges it has.
+pub(super) fn without_gauge(work: &mut Work, job: &Job, named: &NamedFile, columns: &[String]) {
+    let gauges = gauge_names(&mut work.inputs, job);
+    if gauges.is_empty() {
+        return;
+    }
+    let of_file = format!("`{}`: ", named.given);
+    let finding = strain_without_gauge(&of_file, columns, &gauges);
+    let new = finding.filter(|f| !work.findings.contains(f));
+    work.findings.extend(new);
 }
 
 /// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so, once of the

@@ -6,6 +6,7 @@ use super::grid_frames::{to_basic, to_local};
 use super::prepared::Prepared;
 use super::scalar_points::carry_to_grids;
 use crate::model::{ElementRef, GridIx, Model};
+use std::collections::BTreeMap;
 
 /// What joins a grid to ground.
 #[derive(Clone, Copy, Debug)]
@@ -16,19 +17,40 @@ pub(super) enum Ground {
     Bush(usize),
 }
 
-/// All of them. A scalar point that a constraint or a spring of its own holds to ground is ground to the springs between it and grids.
-pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
-    let scalar = |g: GridIx| model.grids[g.us()].is_scalar();
-    let mut anchored = vec![false; model.grids.len()];
+/// Whether each grid is a scalar point that a constraint, a spring of its own, or a chain of springs over other scalar points holds to ground.
+pub(super) fn grounded_points(model: &Model, reduction: &Reduction) -> Vec<bool> {
+    let state = |g: GridIx| reduction.state[6 * g.us()];
+    let point =
+        |g: GridIx| model.grids[g.us()].is_scalar() && !matches!(state(g), State::Dependent(_));
+    let mut grounded = vec![false; model.grids.len()];
+    let mut next: Vec<GridIx> = Vec::new();
+    let mut links: BTreeMap<GridIx, Vec<GridIx>> = BTreeMap::new();
     for s in model.springs.iter().filter(|s| s.k != 0.0) {
-        if let [Some((g, _)), None] | [None, Some((g, _))] = s.ends {
-            anchored[g.us()] = true;
+        match s.ends {
+            [Some((g, _)), None] | [None, Some((g, _))] if point(g) => next.push(g),
+            [Some((a, _)), Some((b, _))] if point(a) && point(b) => {
+                links.entry(a).or_default().push(b);
+                links.entry(b).or_default().push(a);
+            }
+            _ => {}
         }
     }
+    let all = (0..model.grids.len() as u32).map(GridIx);
+    next.extend(all.filter(|g| point(*g) && state(*g) == State::Held));
+    while let Some(g) = next.pop() {
+        if !std::mem::replace(&mut grounded[g.us()], true) {
+            next.extend(links.get(&g).into_iter().flatten());
+        }
+    }
+    grounded
+}
+
+/// Returns every spring and bush to ground. A grounded scalar point is ground to the springs between it and grids.
+pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
+    let scalar = |g: GridIx| model.grids[g.us()].is_scalar();
     let state = |g: GridIx| reduction.state[6 * g.us()];
-    let is_ground = |g: GridIx| {
-        scalar(g) && (state(g) == State::Held || (state(g) == State::Free && anchored[g.us()]))
-    };
+    let grounded = grounded_points(model, reduction);
+    let is_ground = |g: GridIx| grounded[g.us()];
     let mut all = Vec::new();
     for (i, s) in model.springs.iter().enumerate() {
         if s.k == 0.0 {
@@ -50,6 +72,61 @@ pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     }
     let bushes = model.bushes.iter().enumerate();
     let bushes = bushes.filter(|(_, b)| b.grids.1.is_none() && b.k.iter().any(|k| *k != 0.0));
+    all.extend(bushes.map(|(i, _)| Ground::Bush(i)));
+    all
+}
+
+/// Held grids that springs and bushes alone join to the structure: they stand for ground, and are no part of what moves.
+pub(super) fn anchors(model: &Model, reduction: &Reduction) -> Vec<bool> {
+    if model.springs.is_empty() && model.bushes.is_empty() {
+        return vec![false; model.grids.len()];
+    }
+    let held = |g: usize, i: usize| reduction.state[6 * g + i] == State::Held;
+    let mut anchors: Vec<bool> = (0..model.grids.len())
+        .map(|g| !model.grids[g].is_scalar() && (0..6).any(|i| held(g, i)))
+        .collect();
+    for element in model.elements() {
+        let springs_alone = |g: &GridIx| match element {
+            ElementRef::Spring(_) => true,
+            ElementRef::Bush(_) => (0..6).all(|i| held(g.us(), i)),
+            _ => false,
+        };
+        for g in model.element_grids(element) {
+            anchors[g.us()] &= springs_alone(&g);
+        }
+    }
+    for row in &reduction.rows {
+        for (dof, _) in &row.held {
+            anchors[(*dof / 6) as usize] = false;
+        }
+    }
+    anchors
+}
+
+/// Springs and bushes between the structure and an anchor.
+pub(super) fn to_anchors(model: &Model, reduction: &Reduction) -> Vec<Ground> {
+    let anchors = anchors(model, reduction);
+    let is_anchor = |g: GridIx| anchors[g.us()];
+    let mut all = Vec::new();
+    for (i, s) in model.springs.iter().enumerate().filter(|s| s.1.k != 0.0) {
+        let [Some((a, a_dof)), Some((b, b_dof))] = s.ends else {
+            continue;
+        };
+        let held = |g: GridIx, dof: u8| {
+            is_anchor(g) && reduction.state[6 * g.us() + usize::from(dof).min(5)] == State::Held
+        };
+        match (held(a, a_dof), held(b, b_dof)) {
+            (false, true) => all.push(Ground::Spring(i, 0, None)),
+            (true, false) => all.push(Ground::Spring(i, 1, None)),
+            _ => {}
+        }
+    }
+    let bushes = model.bushes.iter().enumerate();
+    let bushes = bushes.filter(|(_, b)| {
+        b.grids
+            .1
+            .is_some_and(|g| is_anchor(g) != is_anchor(b.grids.0))
+    });
     all.extend(bushes.map(|(i, _)| Ground::Bush(i)));
     all
 }

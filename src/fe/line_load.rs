@@ -64,6 +64,11 @@ impl<'a> Between<'a> {
         }
     }
 
+    /// Returns the loads along beams, by beam.
+    pub(crate) fn loads_by_beam(&self) -> HashMap<usize, Vec<LineLoad>> {
+        self.loads.clone()
+    }
+
     /// What acts along beam `i`.
     pub(crate) fn of(&self, model: &Model, i: usize) -> Interior {
         Interior {

@@ -35,6 +35,12 @@ fn push(f: &mut [[f64; 6]], grid: GridIx, at: usize, v: &Vec3) {
     }
 }
 
+fn push_all(f: &mut [[f64; 6]], factor: f64, more: &[[f64; 6]]) {
+    for (f, m) in f.iter_mut().zip(more) {
+        f.iter_mut().zip(m).for_each(|(f, m)| *f += factor * m);
+    }
+}
+
 fn add(
     model: &Model,
     mass: &Mass,
@@ -93,17 +99,15 @@ fn add(
             }
         }
         Load::Gravity(a) => {
-            let field =
-                vec![[a.x * factor, a.y * factor, a.z * factor, 0.0, 0.0, 0.0]; model.grids.len()];
-            for (f, m) in f.iter_mut().zip(mass.times(&field)) {
-                f.iter_mut().zip(m).for_each(|(f, m)| *f += m);
-            }
+            let all = (0..model.grids.len() as u32).map(|g| (GridIx(g), factor));
+            push_all(f, 1.0, &mass.accelerated(a, all));
+        }
+        Load::Acceleration { a, grids } => {
+            push_all(f, factor, &mass.accelerated(a, grids.iter().copied()));
         }
         Load::Spin { centre, omega } => {
             let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
-            for (f, m) in f.iter_mut().zip(mass.centrifugal(&x, centre, omega)) {
-                f.iter_mut().zip(m).for_each(|(f, m)| *f += factor * m);
-            }
+            push_all(f, factor, &mass.centrifugal(&x, centre, omega));
         }
         Load::Line { beam, .. } => {
             let interior = super::line_load::alone(load);

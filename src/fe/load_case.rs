@@ -1,7 +1,6 @@
 //! Load cases: what acts, what holds, what balances.
 
-use super::UnitLoad;
-use crate::model::Model;
+use crate::model::{GridIx, Model, Vec3};
 use nastran::bdf::Subcase;
 
 /// How the loads of a case are held in balance.
@@ -74,4 +73,27 @@ pub fn unit_cases(
             relief,
         })
         .collect()
+}
+
+/// A unit load: what acts in one load case.
+#[derive(Clone, Debug, PartialEq)]
+pub enum UnitLoad {
+    /// A force and a moment at a grid, basic frame.
+    AtGrid {
+        /// Grid index.
+        grid: GridIx,
+        /// Force.
+        force: Vec3,
+        /// Moment.
+        moment: Vec3,
+    },
+    /// A load set of the deck.
+    Set(u32),
+    /// Temperatures: the thermal strain they would give freely acts as a load, and strain is the mechanical rest.
+    Temperature {
+        /// TEMPERATURE(LOAD): a temperature set of the deck.
+        set: u32,
+        /// TEMPERATURE(INITIAL): where thermal strain counts from; `None`: from TREF of the materials.
+        initial: Option<u32>,
+    },
 }

@@ -40,10 +40,16 @@ pub(super) fn nothing_acts(
     if moved || f.iter().flatten().any(|v| *v != 0.0) {
         return None;
     }
-    let gravity = sets_of(model, case).any(|l| matches!(l.1, Load::Gravity(_) | Load::Spin { .. }));
+    let on_mass = |l: &(f64, Load)| {
+        matches!(
+            l.1,
+            Load::Gravity(_) | Load::Acceleration { .. } | Load::Spin { .. }
+        )
+    };
+    let gravity = sets_of(model, case).any(on_mass);
     let (message, remedy) = match gravity && mass.is_none() {
         true => (
-            "GRAV or RFORCE acts on mass, and the model has none: displacement and strain are zero",
+            "GRAV, ACCEL, ACCEL1 and RFORCE act on mass, and the model has none where they act: displacement and strain are zero",
             "give the materials a density (RHO on MAT1), or add CONM2",
         ),
         false => (

@@ -3,11 +3,11 @@
 use super::element::beam::{beam_coupled_mass, beam_lumped_mass};
 use super::element::shell::{many_mass, output_frame, shell_mass};
 use super::element::solid::solid_mass;
-use super::element::{ElementMatrix, point_mass, rod_mass, shear_panel_mass};
+use super::element::{ElementMatrix, between_dofs, point_mass, rod_mass, shear_panel_mass};
 use super::prepared::Prepared;
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
-use crate::model::{GridIx, Model, Vec3};
+use crate::model::{Grid, GridIx, Model, ScalarMass, Vec3, Weight};
 use nastran::cards::ShellShape;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -23,12 +23,14 @@ pub(crate) struct Mass {
     coupled: Vec<ElementMatrix>,
     /// Masses that couple grids in the three translations alike: grids, and row by row their shares.
     scalar: Vec<(Vec<GridIx>, Vec<f64>)>,
+    /// Whether each grid is a scalar point. Scalar points have no location: rigid motions and fields of acceleration leave them out.
+    points: Vec<bool>,
 }
 
 /// Mass, centre of gravity and the 6 x 6 matrix of rigid motions about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MassProperties {
-    /// Mass of the model; where it differs by direction (CONM1), the mean.
+    /// Mass of the model, as [`crate::model::Weight`] has it.
     pub mass: f64,
     /// Centre of gravity, basic frame.
     pub cg: Vec3,
@@ -43,6 +45,7 @@ impl Mass {
         let model = prepared.model;
         let mut mass = Self {
             point: vec![0.0; model.grids.len()],
+            points: model.grids.iter().map(Grid::is_scalar).collect(),
             ..Self::default()
         };
         let shells: Vec<[[f64; 4]; 4]> = (0..model.shells.len())
@@ -113,6 +116,9 @@ impl Mass {
         for m in &model.masses {
             *mass.blocks.entry(m.grid).or_insert_with(Matrix6::zeros) += m.matrix;
         }
+        let scalar_masses = model.scalar_masses.iter();
+        mass.coupled
+            .extend(scalar_masses.map(|m| between_dofs(prepared, &m.ends, m.mass)));
         let w = model.params.wtmass;
         mass.point.iter_mut().for_each(|m| *m *= w);
         mass.blocks.values_mut().for_each(|m| *m *= w);
@@ -180,18 +186,62 @@ impl Mass {
         f
     }
 
+    /// Returns M u, with zeros at scalar points.
+    fn on_grids(&self, u: &[[f64; 6]]) -> Vec<[f64; 6]> {
+        let mut f = self.times(u);
+        let points = f.iter_mut().zip(&self.points).filter(|p| *p.1);
+        points.for_each(|(f, _)| *f = [0.0; 6]);
+        f
+    }
+
+    /// Returns the forces of the mass in the acceleration `factor * a` of each listed grid.
+    pub(super) fn accelerated(
+        &self,
+        a: &Vec3,
+        grids: impl Iterator<Item = (GridIx, f64)>,
+    ) -> Vec<[f64; 6]> {
+        let mut field = vec![[0.0; 6]; self.point.len()];
+        for (g, factor) in grids.filter(|(g, _)| !self.points[g.us()]) {
+            let v = a * factor;
+            field[g.us()][..3].copy_from_slice(v.as_slice());
+        }
+        self.on_grids(&field)
+    }
+
+    /// Returns the displacements of rigid motion `mode` about a point: those of [`rigid`], and zeros at scalar points.
+    pub(crate) fn rigid_field(&self, mode: usize, x: &[Vec3], centre: &Vec3) -> Vec<[f64; 6]> {
+        let pairs = x.iter().zip(&self.points);
+        pairs
+            .map(|(x, point)| {
+                if *point {
+                    [0.0; 6]
+                } else {
+                    rigid(mode, x, centre)
+                }
+            })
+            .collect()
+    }
+
+    /// Returns the first scalar mass that acts at a scalar point.
+    pub(super) fn on_point(model: &Model) -> Option<&ScalarMass> {
+        let scalar = |g: &GridIx| model.grids[g.us()].is_scalar();
+        let mut masses = model.scalar_masses.iter().filter(|m| m.mass != 0.0);
+        masses.find(|m| m.ends.iter().flatten().any(|(g, _)| scalar(g)))
+    }
+
     /// Centrifugal forces -m w x (w x r) of a rotation `omega` about `centre`; masses off their grids count where they are.
     pub(super) fn centrifugal(&self, x: &[Vec3], centre: &Vec3, omega: &Vec3) -> Vec<[f64; 6]> {
         let spin = omega.cross_matrix();
         let gradient = -(spin * spin);
-        let field: Vec<[f64; 6]> = x
-            .iter()
-            .map(|x| {
-                let a = gradient * (x - centre);
+        let field = x.iter().zip(&self.points).map(|(x, point)| {
+            let a = gradient * (x - centre);
+            if *point {
+                [0.0; 6]
+            } else {
                 [a.x, a.y, a.z, 0.0, 0.0, 0.0]
-            })
-            .collect();
-        let mut f = self.times(&field);
+            }
+        });
+        let mut f = self.on_grids(&field.collect::<Vec<_>>());
         for (g, m) in &self.blocks {
             // First moment m o and second moment J = tr(I)/2 - I of the mass about its grid.
             let first = Vec3::new(m[(1, 5)], m[(2, 3)], m[(0, 4)]);
@@ -212,8 +262,8 @@ impl Mass {
     pub(crate) fn rigid(&self, x: &[Vec3], centre: &Vec3) -> Matrix6<f64> {
         let mut matrix = Matrix6::zeros();
         for mode in 0..6 {
-            let u: Vec<[f64; 6]> = x.iter().map(|x| rigid(mode, x, centre)).collect();
-            matrix.set_column(mode, &resultant(x, &self.times(&u), centre).into());
+            let u = self.rigid_field(mode, x, centre);
+            matrix.set_column(mode, &resultant(x, &self.on_grids(&u), centre).into());
         }
         matrix
     }
@@ -221,22 +271,21 @@ impl Mass {
     /// Mass and centre of gravity; `None` without mass.
     pub(crate) fn properties(&self, x: &[Vec3]) -> Option<MassProperties> {
         let near = x.first().copied().unwrap_or_else(Vec3::zeros);
-        let first = self.rigid(x, &near);
-        let mass = (first[(0, 0)] + first[(1, 1)] + first[(2, 2)]) / 3.0;
-        if !(mass > 0.0) {
-            return None;
-        }
-        let cg = near
-            + Vec3::new(
-                (first[(1, 5)] - first[(2, 4)]) / (first[(1, 1)] + first[(2, 2)]),
-                (first[(2, 3)] - first[(0, 5)]) / (first[(0, 0)] + first[(2, 2)]),
-                (first[(0, 4)] - first[(1, 3)]) / (first[(0, 0)] + first[(1, 1)]),
-            );
+        let Weight { mass, cg } = Weight::of(&self.rigid(x, &near), near)?;
         Some(MassProperties {
             mass,
             cg,
             matrix: self.rigid(x, &cg),
         })
+    }
+
+    /// Whether every mass is zero.
+    pub(crate) fn is_zero(&self) -> bool {
+        let blocks = self.blocks.values().flat_map(|m| m.iter());
+        let coupled = self.coupled.iter().flat_map(|m| &m.values);
+        let scalar = self.scalar.iter().flat_map(|m| &m.1);
+        let mut all = self.point.iter().chain(blocks).chain(coupled).chain(scalar);
+        all.all(|v| *v == 0.0)
     }
 }
 

@@ -4,17 +4,21 @@ mod adjoint;
 mod applied;
 mod assembly;
 mod autospc;
+mod beam_field;
 mod beam_strain;
+mod combination;
 mod constraint;
 pub mod deck_result_consistency;
 mod element;
 mod error;
 pub mod floor;
 mod formulation;
+mod free_motions;
 pub mod from_results;
 mod grid_frames;
 mod ground;
 mod hanging;
+mod held_dependents;
 mod lanczos;
 mod line_load;
 mod load;
@@ -51,8 +55,13 @@ mod variants;
 mod what_hangs;
 
 pub use adjoint::{Adjoint, StrainTerm};
+pub use beam_field::BeamField;
+pub use combination::{combine_balances, combine_reactions, combine_results};
+pub(crate) use element::beam::section_at;
 pub use error::{FeError, FreeDof, Refusal};
-pub use load_case::{LoadCase, Relief, loads_of_subcase, relief_of};
+pub use free_motions::determinate_dofs;
+pub use held_dependents::held_dependents;
+pub use load_case::{LoadCase, Relief, UnitLoad, loads_of_subcase, relief_of};
 pub use mass::MassProperties;
 pub use modal_loads::modal_loads;
 pub use modes::{ModalSolution, Mode, solve_modes};
@@ -68,6 +77,9 @@ pub use solve::{
     solve_unit_loads_on, supported_stiffness,
 };
 pub use support::{
-    Support, SupportChoice, SupportError, assumed_relief, contradictions, support_of,
+    Support, SupportChoice, SupportError, contradictions, relief_finding, suport_without_inrel,
+    support_of,
 };
+pub use unsupported_cards::refuse;
+pub(crate) use unsupported_cards::unsupported_cards;
 pub use variants::solve_variants;

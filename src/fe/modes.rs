@@ -6,7 +6,6 @@ use super::load_case::{LoadCase, Relief};
 use super::mass::{Mass, MassProperties};
 use super::options::SolveOptions;
 use super::prepared::Prepared;
-use super::rigid_motion::rigid;
 use super::strain_of_cases::with_strain;
 use super::system::System;
 use super::{Solution, SolveReport, Solved};
@@ -79,14 +78,15 @@ pub fn solve_modes(
     count: usize,
     options: &SolveOptions,
 ) -> Result<ModalSolution, FeError> {
-    let refused = super::unsupported_cards::unsupported_cards(model, &[]);
-    if !refused.is_empty() {
-        return Err(FeError::Refused(refused));
-    }
+    super::unsupported_cards::refuse(model, &[])?;
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared);
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
-    let properties = mass.properties(&x).ok_or(FeError::NoMassToVibrate)?;
+    if mass.is_zero() {
+        return Err(FeError::NoMassToVibrate);
+    }
+    let properties = mass.properties(&x);
+    let centre = properties.map_or_else(Vec3::zeros, |p| p.cg);
     let mut findings = super::formulation::formulations(model);
     findings.extend(super::shape_checks::check_shapes(model));
     let (pairs, rigid_motions, dofs) = pairs_of(
@@ -101,7 +101,7 @@ pub fn solve_modes(
     findings.extend(close_modes(&pairs));
     let modes: Vec<Mode> = pairs
         .into_iter()
-        .map(|p| finished(&mass, &x, &properties, p))
+        .map(|p| finished(&mass, &x, &centre, p))
         .collect();
     let cases: Vec<LoadCase> = (1..)
         .zip(&modes)
@@ -123,7 +123,7 @@ pub fn solve_modes(
     Ok(ModalSolution {
         modes,
         rigid_motions,
-        mass: Some(properties),
+        mass: properties,
         dofs,
         strain,
         findings,
@@ -181,7 +181,7 @@ fn pairs_of(
 }
 
 /// A pair with its masses, its largest translation positive.
-fn finished(mass: &Mass, x: &[Vec3], properties: &MassProperties, pair: Pair) -> Mode {
+fn finished(mass: &Mass, x: &[Vec3], centre: &Vec3, pair: Pair) -> Mode {
     let frequency_error = pair.frequency_error();
     let mut shape = pair.shape;
     let largest = shape
@@ -200,8 +200,8 @@ fn finished(mass: &Mass, x: &[Vec3], properties: &MassProperties, pair: Pair) ->
     };
     let generalised_mass = work(&momentum, &mut shape.iter().copied());
     let effective_mass = std::array::from_fn(|i| {
-        let motion = &mut x.iter().map(|x| rigid(i, x, &properties.cg));
-        work(&momentum, motion).powi(2) / generalised_mass
+        let motion = mass.rigid_field(i, x, centre);
+        work(&momentum, &mut motion.into_iter()).powi(2) / generalised_mass
     });
     Mode {
         frequency: pair.frequency,

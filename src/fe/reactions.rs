@@ -1,8 +1,10 @@
 //! Reactions: what supports put onto the structure.
 
+use super::constraint::Reduction;
 use super::error::FeError;
 use super::grid_frames::{to_basic, to_local};
-use super::ground::{ground_forces, grounds};
+use super::ground::{ground_forces, grounded_points, grounds};
+use super::hanging::hanging;
 use super::mass::resultant;
 use super::prepared::Prepared;
 use super::system::System;
@@ -61,11 +63,7 @@ pub(super) fn reactions(
     let holds: Vec<bool> = (0..model.grids.len())
         .map(|g| (0..6).any(|i| reduction.reaches_support(6 * g + i)))
         .collect();
-    // A free structure has springs to ground by mistake alone, which is told as such.
-    let grounds = match system.body {
-        None => grounds(model, reduction),
-        Some(_) => Vec::new(),
-    };
+    let grounds = grounds(model, reduction);
     if grounds.is_empty() && !holds.contains(&true) {
         return Ok(Vec::new());
     }
@@ -74,6 +72,7 @@ pub(super) fn reactions(
         .filter(|e| model.element_grids(*e).iter().any(|g| holds[g.us()]))
         .collect();
     let internal = internal_forces(prepared, &elements, cases)?;
+    let arriving = Arriving::of(prepared, reduction, cases);
     let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
     let of_case = |(case, internal): (&SolvedCase<'_>, Vec<[f64; 6]>)| {
         let (subcase, u, f) = *case;
@@ -95,7 +94,8 @@ pub(super) fn reactions(
         let origin = Vec3::zeros();
         let (acts, held) = (without_points(model, f), without_points(model, &held));
         let largest = super::applied::largest(&held);
-        let (applied, total) = (resultant(&x, &acts, &origin), resultant(&x, &held, &origin));
+        let (mut applied, total) = (resultant(&x, &acts, &origin), resultant(&x, &held, &origin));
+        arriving.add(f, &mut applied);
         let left = Left::of(&x, &acts, &held, &applied, &total);
         let finding = unbalanced(prepared, &elements, (subcase, mpc), &left, u)?;
         let reactions = Reactions {
@@ -114,6 +114,34 @@ pub(super) fn reactions(
         Ok((reactions, finding))
     };
     cases.iter().zip(internal).map(of_case).collect()
+}
+
+/// Scalar points that springs connect to grids. Loads at these points count in the resultant, at the grids that the springs carry them to.
+struct Arriving(Vec<(usize, [f64; 6])>);
+
+impl Arriving {
+    /// Returns the points of this model, or none if no case loads a scalar point. Forces of grounded points count as reactions.
+    fn of(prepared: &Prepared<'_>, reduction: &Reduction, cases: &[SolvedCase<'_>]) -> Self {
+        let model = prepared.model;
+        let grids = || model.grids.iter().enumerate();
+        let loaded =
+            |(_, _, f): &SolvedCase<'_>| grids().any(|(g, p)| p.is_scalar() && f[g][0] != 0.0);
+        if !cases.iter().any(loaded) {
+            return Self(Vec::new());
+        }
+        let grounded = grounded_points(model, reduction);
+        let mut points = hanging(model, &prepared.axes, reduction, &Vec3::zeros());
+        points.retain(|(point, _)| !grounded[*point]);
+        Self(points)
+    }
+
+    /// Adds the resultant of these loads about the basic origin, by virtual work of the rigid motions.
+    fn add(&self, f: &[[f64; 6]], applied: &mut [f64; 6]) {
+        for (point, by_motion) in &self.0 {
+            let sums = applied.iter_mut().zip(by_motion);
+            sums.for_each(|(sum, moved)| *sum += f[*point][0] * moved);
+        }
+    }
 }
 
 /// A field without what stands at scalar points: a bimoment there is no force.

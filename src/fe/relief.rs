@@ -1,20 +1,17 @@
 //! Inertia relief: loads of a free structure balanced by its own inertia.
 
 use super::assembly::Numbering;
-use super::constraint::{Reduction, State};
-use super::error::FeError;
+use super::constraint::Reduction;
+use super::error::{FeError, Refusal};
+use super::free_motions::RigidStructure;
 use super::grid_frames::to_local;
 use super::hanging::hanging;
 use super::mass::{Mass, MassProperties, resultant};
-use super::rigid_motion::rigid;
-use crate::linalg::{DMatrix, DVector, Matrix6};
-use crate::model::{Grid, GridIx, Mat3, Model, Vec3};
+use crate::linalg::{DMatrix, DVector};
+use crate::model::{Grid, GridIx, Mat3, Model, ScalarMass, Vec3};
 use nastran::cards::Dofs;
 use rayon::prelude::*;
 use serde::Serialize;
-
-/// A rigid motion counts as free when held dofs resist it by less than this share.
-const FREE_MOTION: f64 = 1e-10;
 
 /// Unknowns that a thread looks at together.
 const MIN_UNKNOWNS: usize = 4096;
@@ -52,9 +49,28 @@ pub struct Balance {
     pub residual: f64,
 }
 
+/// Refuses the mass of a scalar point on a free structure: the deck does not state where its inertia acts.
+///
+/// # Errors
+/// The first such mass.
+fn refuse_masses_of_points(model: &Model) -> Result<(), FeError> {
+    let refusal = |m: &ScalarMass| Refusal {
+        card: format!("CMASS {}", m.id),
+        at: m.at,
+        reason:
+            "the structure is free, and where the mass of a scalar point acts on it is not stated"
+                .to_owned(),
+        remedy: "hold the structure, or give the mass to a grid (CONM2)".to_owned(),
+    };
+    match Mass::on_point(model) {
+        Some(m) => Err(FeError::Refused(vec![refusal(m)])),
+        None => Ok(()),
+    }
+}
+
 impl RigidBody {
-    /// The free motions of a model with the given mass; `touched` are the grids that belong to the structure. `None` where supports
-    /// leave no motion free.
+    /// The free motions of a model with the given mass; `touched` are the grids that belong to the structure. `None` where supports and
+    /// springs to ground leave no motion free.
     ///
     /// # Errors
     /// Free motions, and no mass to balance loads along them.
@@ -68,6 +84,9 @@ impl RigidBody {
         let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
         let scalar: Vec<bool> = model.grids.iter().map(Grid::is_scalar).collect();
         let touched: Vec<bool> = touched.iter().zip(&scalar).map(|(t, s)| *t && !s).collect();
+        if !touched.contains(&true) {
+            return Ok(None); // scalar points alone do not move as a body
+        }
         let properties = mass.properties(&x);
         let parts = || x.iter().zip(&touched).filter(|t| *t.1).map(|t| t.0);
         let centre = match &properties {
@@ -76,34 +95,20 @@ impl RigidBody {
         };
         let size = parts().map(|x| (x - centre).norm()).fold(0.0, f64::max);
         let size = if size > 0.0 { size } else { 1.0 };
-        let mut resisted = Matrix6::<f64>::zeros();
-        for (g, x) in x.iter().enumerate().filter(|(g, _)| touched[*g]) {
-            for i in (0..6).filter(|i| reduction.state[6 * g + i] == State::Held) {
-                let row: [f64; 6] = std::array::from_fn(|mode| {
-                    let u = to_local(&axes[g], rigid(mode, x, &centre))[i];
-                    let dof_scale = if i >= 3 { size } else { 1.0 };
-                    u * dof_scale / if mode >= 3 { size } else { 1.0 }
-                });
-                let row = crate::linalg::Vector6::from(row);
-                resisted += row * row.transpose();
-            }
-        }
-        let eigen = resisted.symmetric_eigen();
-        let largest = eigen.eigenvalues.max();
-        let free: Vec<usize> = (0..6)
-            .filter(|&i| eigen.eigenvalues[i] <= FREE_MOTION * largest)
-            .collect();
-        let basis = if largest == 0.0 {
-            DMatrix::identity(6, 6)
-        } else {
-            DMatrix::from_fn(6, free.len(), |r, c| {
-                eigen.eigenvectors[(r, free[c])] / if r >= 3 { size } else { 1.0 }
-            })
+        let structure = RigidStructure {
+            model,
+            axes,
+            reduction,
+            touched: &touched,
+            centre,
+            size,
         };
+        let basis = structure.free_motions();
         if basis.ncols() == 0 {
             return Ok(None);
         }
         let properties = properties.ok_or(FeError::NoMass)?;
+        refuse_masses_of_points(model)?;
         let rigid_mass = DMatrix::from_fn(6, 6, |r, c| properties.matrix[(r, c)]);
         let modal = basis.transpose() * rigid_mass * &basis;
         Ok(Some(Self {

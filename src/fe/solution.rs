@@ -1,7 +1,8 @@
 //! Strain fields of load cases: one type, solved by us or read from a file.
 
+use super::BeamField;
 use crate::finding::Finding;
-use crate::model::{BeamIx, ShellIx, Vec3};
+use crate::model::ShellIx;
 use std::sync::Arc;
 
 /// Results of one or several load cases on one model.
@@ -49,17 +50,6 @@ pub struct ShellField {
     pub from_stress: bool,
 }
 
-/// Axial strain of bars and beams at the stress recovery points C D E F.
-#[derive(Clone, Debug, Default)]
-pub struct BeamField {
-    /// Elements with strain, ascending.
-    pub elements: Arc<Vec<BeamIx>>,
-    /// By element: stations (x/xb ascending), each with the strain at C D E F, axial strain included.
-    pub stations: Vec<Vec<(f64, [f64; 4])>>,
-    /// By element and station: strain of the neutral axis, bending left out; NaN where the result doesn't tell.
-    pub axial: Vec<Vec<f64>>,
-}
-
 /// Strain of solids: xx yy zz xy yz zx, engineering shear, in the basic frame or the material frame that PSOLID names.
 #[derive(Clone, Debug, Default)]
 pub struct SolidField {
@@ -69,27 +59,4 @@ pub struct SolidField {
     pub centre: Vec<[f64; 6]>,
     /// By element and corner; NaN beyond the element's own corners.
     pub corners: Vec<[[f64; 6]; 8]>,
-}
-
-/// A unit load: what acts in one load case.
-#[derive(Clone, Debug, PartialEq)]
-pub enum UnitLoad {
-    /// A force and a moment at a grid, basic frame.
-    AtGrid {
-        /// Grid index.
-        grid: crate::model::GridIx,
-        /// Force.
-        force: Vec3,
-        /// Moment.
-        moment: Vec3,
-    },
-    /// A load set of the deck.
-    Set(u32),
-    /// Temperatures: the thermal strain they would give freely acts as a load, and strain is the mechanical rest.
-    Temperature {
-        /// TEMPERATURE(LOAD): a temperature set of the deck.
-        set: u32,
-        /// TEMPERATURE(INITIAL): where thermal strain counts from; `None`: from TREF of the materials.
-        initial: Option<u32>,
-    },
 }

@@ -93,12 +93,8 @@ pub fn solution_of(
 }
 
 pub(super) fn prepare<'a>(model: &'a Model, cases: &[LoadCase]) -> Result<Prepared<'a>, FeError> {
-    let refused = super::unsupported_cards::unsupported_cards(model, cases);
-    if refused.is_empty() {
-        Ok(Prepared::new(model))
-    } else {
-        Err(FeError::Refused(refused))
-    }
+    super::unsupported_cards::refuse(model, cases)?;
+    Ok(Prepared::new(model))
 }
 
 pub(super) fn displacements(

@@ -1,6 +1,7 @@
-//! What holds a structure under unit loads: an SPC set, or nothing but its own inertia.
+//! What holds a structure under unit loads: an SPC set, springs to ground, or its own inertia.
 
 use super::UnitLoad;
+use super::free_motions::{held_motions, springs_in_words};
 use super::load_case::{LoadCase, Relief, unit_cases};
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -24,6 +25,8 @@ pub struct Support {
     pub spc: Option<u32>,
     /// What balances loads that no support takes.
     pub relief: Relief,
+    /// Rigid motions that springs to ground hold where no SPC set is selected, 0 to 6.
+    pub by_springs: u8,
 }
 
 /// Why a support can't be had.
@@ -60,14 +63,18 @@ fn known(sets: &[u32]) -> String {
 }
 
 impl Support {
-    /// Held by nothing; PARAM,INREL,-1 of the model says that displacements count from its SUPORT dofs.
+    /// Returns the support of a model under no SPC set: springs to ground and permanent constraints hold what they resist, and inertia
+    /// balances the loads along the rigid motions that nothing resists. PARAM,INREL,-1 states that displacements count from the SUPORT dofs.
     pub fn free(model: &Model) -> Self {
+        let held = held_motions(model);
         Self {
             spc: None,
-            relief: match model.params.inrel {
-                -1 => Relief::Suport(None),
+            relief: match (held.free, model.params.inrel) {
+                (0, _) => Relief::None,
+                (_, -1) => Relief::Suport(None),
                 _ => Relief::Automatic,
             },
+            by_springs: held.by_springs as u8,
         }
     }
 
@@ -76,27 +83,40 @@ impl Support {
         unit_cases(model, (self.spc, self.relief), loads)
     }
 
-    /// Whether an SPC set holds the structure.
+    /// Returns whether supports hold every rigid motion that they are meant to hold: an SPC set, or springs to ground alone.
     pub fn is_held(&self) -> bool {
-        self.spc.is_some()
+        self.spc.is_some() || self.relief == Relief::None
     }
 
-    /// The support in words: `held by SPC set 1`, `free (inertia relief)`.
+    /// Returns the support in words: `held by SPC set 1`, `free (inertia relief)`, `held by springs to ground`.
     pub fn words(&self) -> String {
-        match (self.spc, self.relief) {
-            (Some(set), Relief::None) => format!("held by SPC set {set}"),
-            (Some(set), _) => {
+        match (self.spc, self.relief, self.by_springs) {
+            (Some(set), Relief::None, _) => format!("held by SPC set {set}"),
+            (Some(set), _, _) => {
                 format!("held by SPC set {set}, inertia relief along what it leaves free")
             }
-            (None, _) => "free (inertia relief)".to_owned(),
+            (None, Relief::None, 0) => "held by the constraints of its grids".to_owned(),
+            (None, Relief::None, _) => "held by springs to ground".to_owned(),
+            (None, _, 0) => "free (inertia relief)".to_owned(),
+            (None, _, n) => {
+                let motions = rigid_motions(usize::from(n));
+                format!(
+                    "held by springs to ground along {motions}, inertia relief along the others"
+                )
+            }
         }
     }
+}
+
+/// `1 rigid motion`, `3 rigid motions`.
+fn rigid_motions(n: usize) -> String {
+    format!("{n} rigid motion{}", if n == 1 { "" } else { "s" })
 }
 
 /// What holds a model's structure under unit loads.
 ///
 /// A set that is named, or that the deck's case control selects, holds it; PARAM,INREL of the deck then stays in force for the motions
-/// that the set leaves free. Otherwise inertia balances every load.
+/// that the set leaves free. Otherwise springs to ground hold it, and inertia balances loads along the motions that nothing resists.
 ///
 /// # Errors
 /// A set that the deck lacks; several sets selected where one must be.
@@ -124,22 +144,80 @@ pub fn support_of(model: &Model, wanted: SupportChoice) -> Result<Support, Suppo
     Ok(Support {
         spc: Some(set),
         relief,
+        by_springs: 0,
     })
 }
 
-/// Said where a deck that holds nothing and asks for no inertia relief is solved by it all the same: Nastran would stop at a mechanism.
-pub fn assumed_relief(model: &Model, support: Support) -> Option<Finding> {
-    (support.spc.is_none() && support.relief == Relief::Automatic && model.params.inrel == 0).then(
-        || {
+/// Returns a finding where inertia relief is assumed, or acts on fewer motions than stated.
+///
+/// Assumed: the deck neither holds the structure nor asks for inertia relief, where Nastran stops at a mechanism. Fewer: the job states
+/// `support = "free"` or the deck PARAM,INREL, and springs to ground resist some of the six rigid motions. Inertia balances loads along
+/// the others alone. Nastran takes all motions that SUPORT or INREL name as free, so that its rigid body check fails for such a model.
+pub fn relief_finding(model: &Model, support: Support, wanted: SupportChoice) -> Option<Finding> {
+    let n = usize::from(support.by_springs);
+    let stated = wanted == SupportChoice::Free || model.params.inrel < 0;
+    // SUPORT dofs are refused where they are not as many as the free motions.
+    let exact = matches!(support.relief, Relief::Suport(_));
+    if support.spc.is_some() || exact || (n == 0 && support.relief == Relief::None) {
+        return None;
+    }
+    if !stated {
+        let held = match n {
+            0 => "nothing holds the structure".to_owned(),
+            n => format!(
+                "springs to ground ({}) resist {} of 6",
+                springs_in_words(model),
+                rigid_motions(n)
+            ),
+        };
+        return (support.relief == Relief::Automatic).then(|| {
             Finding::new(
                 Severity::Warning,
                 "inertia-relief-assumed",
                 "model",
-                "nothing holds the structure and PARAM,INREL is not given: inertia balances the loads (Nastran would stop at a mechanism)",
+                format!("{held} and PARAM,INREL is not given: inertia balances the loads along the motions that nothing resists (Nastran would stop at a mechanism)"),
                 "give PARAM,INREL,-2 if that is meant, or select the SPC set that holds the structure",
             )
-        },
-    )
+        });
+    }
+    (n > 0).then(|| {
+        let by = springs_in_words(model);
+        let balanced = match support.relief {
+            Relief::None => "the structure is held, and inertia balances no load",
+            _ => "inertia balances the loads along the other motions alone",
+        };
+        Finding::new(
+            Severity::Warning,
+            "tied-to-ground",
+            "model",
+            format!(
+                "inertia relief is stated, and springs to ground ({by}) resist {} of 6: {balanced}",
+                rigid_motions(n)
+            ),
+            "remove the springs to ground if the structure is free; leave PARAM,INREL, SUPORT and support = \"free\" out if the springs hold it",
+        )
+        .with_numbers(n as f64, 0.0)
+    })
+}
+
+/// States how SUPORT without PARAM,INREL is understood, for which dialects differ.
+pub fn suport_without_inrel(model: &Model, sequence: Option<u32>) -> Option<Finding> {
+    /// Rigid format of inertia relief, which needs no parameter.
+    const INERTIA_RELIEF: u32 = 2;
+    if sequence == Some(INERTIA_RELIEF) {
+        return None;
+    }
+    let mut dofs = model.suports.iter().filter(|s| s.0.is_none());
+    let grid = dofs.find_map(|s| model.grids.get(s.1.first()?.0.us()))?;
+    (model.params.inrel == 0).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "suport-without-inrel",
+            format!("SUPORT of grid {}", grid.id),
+            "PARAM,INREL is not given: SUPORT holds nothing here, and inertia balances the loads of a structure without supports. MSC Nastran holds these dofs at zero instead, OptiStruct balances by inertia",
+            "write PARAM,INREL,-1 for inertia relief, or hold the dofs with an SPC set",
+        )
+    })
 }
 
 /// Contradictions of an SPC set: dofs that its cards hold at different values.

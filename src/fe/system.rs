@@ -5,6 +5,7 @@ use super::assembly::{Assembled, Numbering, assemble};
 use super::autospc::{EPZERO, Weak, autospc_finding, held_loads, load_sizes, weak_unknowns};
 use super::constraint::{Reduction, Sets, State, reduce};
 use super::error::{FeError, FreeDof};
+use super::free_motions::touched;
 use super::grid_frames::{to_basic, to_local};
 use super::load_case::Relief;
 use super::mass::Mass;
@@ -375,27 +376,8 @@ fn body(
     if relief == Relief::None {
         return Ok(None);
     }
-    let touched = touched(prepared, reduction);
+    let touched = touched(prepared.model, reduction);
     RigidBody::new(prepared.model, &prepared.axes, mass, reduction, &touched)
-}
-
-/// Grids that belong to the structure: of an element, or tied to it.
-fn touched(prepared: &Prepared<'_>, reduction: &Reduction) -> Vec<bool> {
-    let mut touched = vec![false; prepared.model.grids.len()];
-    for element in prepared.model.elements() {
-        for g in prepared.model.element_grids(element) {
-            touched[g.us()] = true;
-        }
-    }
-    for (dof, state) in reduction.state.iter().enumerate() {
-        if let State::Dependent(r) = state {
-            touched[dof / 6] = true;
-            for (held, _) in &reduction.rows[*r as usize].held {
-                touched[(*held / 6) as usize] = true;
-            }
-        }
-    }
-    touched
 }
 
 /// f - K u0 for enforced displacements, displacement frames.
@@ -447,8 +429,8 @@ fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Opt
             Severity::Error,
             "tied-to-ground",
             format!("grid {}", prepared.model.grids[grid].id),
-            format!("a rigid motion of the structure is resisted here (dof {}): something ties it to ground, and strain depends on it", dof + 1),
-            "look for CELAS or CBUSH to ground, springs between grids that don't coincide, or MPC equations that forbid rigid motion",
+            format!("a rigid motion of the structure is resisted here (dof {}), and no support or spring to ground is the cause: strain depends on it", dof + 1),
+            "look for springs between grids that don't coincide, or MPC equations that forbid rigid motion",
         )
         .with_numbers(worst.0, limit)
     })

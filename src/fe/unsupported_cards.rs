@@ -1,13 +1,29 @@
-//! Cards that the solver does not carry: all of them are named before anything is solved.
+//! What the solver does not carry: all of it is named before anything is solved.
 
 use super::UnitLoad;
-use super::element::shell::Lamination;
-use super::error::Refusal;
+use super::element::shell::{Lamination, normals_beyond};
+use super::error::{FeError, Refusal};
 use super::load_case::LoadCase;
 use crate::model::{Load, MaterialKind, Model, ShellKind};
 use nastran::place::Place;
 
-/// Every entry of the model, or load of the cases, that would be left out of the answer.
+/// Faults that one refusal names.
+const MOST: usize = 200;
+
+/// Refuses a model and load cases of which something would be left out of the answer.
+///
+/// # Errors
+/// Everything that the solver does not carry.
+pub fn refuse(model: &Model, cases: &[LoadCase]) -> Result<(), FeError> {
+    let mut refused = unsupported_cards(model, cases);
+    refused.truncate(MOST);
+    match refused.is_empty() {
+        true => Ok(()),
+        false => Err(FeError::Refused(refused)),
+    }
+}
+
+/// Returns every entry of the model, or load of the cases, that would be left out of the answer.
 pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     let mut all = Vec::new();
     let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {
@@ -72,7 +88,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
         refuse(
             format!("{}{id}", c.card),
             c.at,
-            "the built-in solver does not carry this card",
+            "the built-in solver does not carry it, and it acts on the answer",
             "delete it if it does not matter here, or solve with Nastran and name its results in the job",
         );
     }
@@ -111,6 +127,43 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
             }
         }
     }
-    all.truncate(200);
+    all.extend(normals_and_rigids(model, cases));
+    all
+}
+
+/// Normals of SNORM and expanding rigid elements that the solver does not carry.
+fn normals_and_rigids(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
+    let mut all = Vec::new();
+    let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {
+        all.push(Refusal {
+            card,
+            at,
+            reason: reason.to_owned(),
+            remedy: remedy.to_owned(),
+        });
+    };
+    for n in normals_beyond(model) {
+        let id = model.grids.get(n.grid.us()).map_or(0, |g| g.id);
+        refuse(
+            format!("SNORM {id}"),
+            n.at,
+            "the normal is farther from that of a shell at the grid than PARAM,SNORM allows",
+            "give a normal nearer to those of the shells, or raise PARAM,SNORM",
+        );
+    }
+    let heated = |c: &LoadCase| {
+        let mut loads = c.loads.iter();
+        loads.any(|l| matches!(l, UnitLoad::Temperature { .. }))
+    };
+    if model.params.expanding_rigids && cases.iter().any(heated) {
+        for r in model.rigids.iter().filter(|r| r.kind.alpha() != 0.0) {
+            refuse(
+                format!("{} {}", r.kind.card(), r.id),
+                r.at,
+                "the built-in solver does not carry ALPHA of rigid elements, which RIGID = LAGRAN or LGELIM asks for",
+                "replace the rigid element by a stiff bar of that ALPHA, or solve with Nastran and name its results in the job",
+            );
+        }
+    }
     all
 }

@@ -340,6 +340,7 @@ fn changed_elements(a: &Model, b: &Model) -> Option<Vec<ElementRef>> {
         && a.frames == b.frames
         && (&a.beams, &a.beam_properties) == (&b.beams, &b.beam_properties)
         && (&a.rods, &a.joints, &a.springs) == (&b.rods, &b.joints, &b.springs)
+        && (&a.scalar_masses, &a.normals) == (&b.scalar_masses, &b.normals)
         && (&a.solids, &a.solid_properties) == (&b.solids, &b.solid_properties)
         && (&a.shear_panels, &a.rigids) == (&b.shear_panels, &b.rigids)
         && (&a.mpcs, &a.spcs, &a.suports) == (&b.mpcs, &b.spcs, &b.suports)

@@ -113,17 +113,16 @@ fn arm_reading(arm: &Arm, case: &CaseResult) -> Option<f64> {
             beam,
             point,
             station,
-        } => Some(
-            a * beam_strain(case, beam, station, |row, s| {
-                case.beams.stations.get(row)?.get(s)?.1.get(point).copied()
-            })?,
-        ),
-        Spot::BeamAxis { beam, station } => Some(
-            a * beam_strain(case, beam, station, |row, s| {
-                case.beams.axial.get(row)?.get(s).copied()
-            })?,
-        ),
+        } => {
+            let (points, _) = case.beams.strain_at(beam, station)?;
+            finite(a * points.get(point)?)
+        }
+        Spot::BeamAxis { beam, station } => finite(a * case.beams.strain_at(beam, station)?.1),
     }
+}
+
+fn finite(strain: f64) -> Option<f64> {
+    strain.is_finite().then_some(strain)
 }
 
 /// Strain of a shell at a place, output frame; `None` where the case has none.
@@ -139,28 +138,4 @@ pub fn shell_strain(
         ShellPlace::Corner(c) => case.shells.corners.get(row)?.get(c)?[surface.ix()],
     };
     strain.iter().all(|v| v.is_finite()).then_some(strain)
-}
-
-/// Linear between the stations of a bar or beam; `strain` by row of the field and station.
-fn beam_strain(
-    case: &CaseResult,
-    beam: BeamIx,
-    station: f64,
-    strain: impl Fn(usize, usize) -> Option<f64>,
-) -> Option<f64> {
-    let row = case.beams.elements.binary_search(&beam).ok()?;
-    let stations = case.beams.stations.get(row)?;
-    let at = |i: usize| Some((stations.get(i)?.0, strain(row, i)?));
-    let after = stations
-        .iter()
-        .position(|s| s.0 >= station)
-        .unwrap_or(stations.len().saturating_sub(1));
-    let (x1, e1) = at(after)?;
-    let (x0, e0) = at(after.saturating_sub(1))?;
-    let strain = if x1 > x0 {
-        e0 + (e1 - e0) * ((station - x0) / (x1 - x0)).clamp(0.0, 1.0)
-    } else {
-        e1
-    };
-    strain.is_finite().then_some(strain)
 }

@@ -1,8 +1,10 @@
 //! A gauge on a bar or beam.
 
 use super::arms::{Arm, Gauge, Spot};
+use super::bar_run::run_length;
 use super::error::GaugeError;
 use super::spec::{Bridge, GaugeSpec};
+use crate::fe::section_at;
 use crate::fe::strain_tensor::Surface;
 use crate::model::{BeamIx, Model, Vec3};
 
@@ -41,7 +43,7 @@ fn across(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
 /// twice (half bridge) or four times (full bridge) the strain of the point less that of the neutral axis.
 ///
 /// # Errors
-/// A beam that is not there; a gauge that reads across its axis.
+/// A beam that is not there; a gauge that reads across its axis; a grid longer than the bars along it.
 pub(super) fn on_beam(
     model: &Model,
     spec: &GaugeSpec,
@@ -63,6 +65,15 @@ pub(super) fn on_beam(
             what,
         });
     }
+    let part = run_length(model, beam, spec.grid_length).ok_or_else(missing)?;
+    if part < spec.grid_length {
+        return Err(GaugeError::GridBeyondPart {
+            gauge: spec.name.clone(),
+            element: b.id,
+            grid_length: spec.grid_length,
+            part,
+        });
+    }
     let end = |i: usize| {
         model
             .grids
@@ -74,8 +85,12 @@ pub(super) fn on_beam(
     let [y, z] = model
         .beam_properties
         .get(b.property.us())
-        .and_then(|p| p.sections.first())
-        .and_then(|s| s.1.recovery.get(point).copied())
+        .and_then(|p| {
+            section_at(&p.sections, station)
+                .recovery
+                .get(point)
+                .copied()
+        })
         .unwrap_or_default();
     let arm = |spot: Spot, weight: f64| Arm {
         spot,

@@ -29,6 +29,17 @@ pub enum GaugeError {
         /// Name.
         gauge: String,
     },
+    /// A grid that is longer than the part along its axis.
+    GridBeyondPart {
+        /// Name.
+        gauge: String,
+        /// Element id.
+        element: u32,
+        /// Length of the grid, length of the deck.
+        grid_length: f64,
+        /// Length of the part along the axis of the grid, through its middle.
+        part: f64,
+    },
     /// A gauge on a bar or beam that reads across its axis: recovery points have the strain along it alone.
     AcrossBeam {
         /// Name.
@@ -59,6 +70,18 @@ impl GaugeError {
             Self::NoElement { gauge } => (
                 format!("gauge `{gauge}`: its element is not in the model"),
                 "correct the id",
+            ),
+            Self::GridBeyondPart {
+                gauge,
+                element,
+                grid_length,
+                part,
+            } => (
+                format!(
+                    "gauge `{gauge}`: `grid_length` is {grid_length}, and the part under it (element {element}) is {part:.4} long along the \
+                     gauge's axis"
+                ),
+                "give the length of the gauge's grid in job units, or move the gauge",
             ),
             Self::AcrossBeam {
                 gauge,

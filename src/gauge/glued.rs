@@ -1,9 +1,10 @@
 //! A gauge where it was glued, a little way off its drawing.
 
 use super::arms::Gauge;
-use super::build::{CornerRows, build_by, opposite};
+use super::build::build_by;
 use super::grid_average::SMOOTH;
-use super::spec::{GaugePlace, GaugeSpec};
+use super::side::same_side;
+use super::spec::{CornerRows, GaugePlace, GaugeSpec};
 use super::surface::{centre, corners, nearest_of, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::model::{Model, ShellIx, Vec3};
@@ -108,18 +109,12 @@ impl<'m> Drawn<'m> {
             CornerRows::Absent => self.at,
         };
         let foot = nearest_of(self.model, x, self.near.iter().copied())?;
-        let shell = self.model.shells.get(foot.shell.us())?;
-        let axes = shell_axes(self.model, shell, ShellPlace::Centre)?;
-        let facing = axes.row(2).transpose().dot(&self.gauge.normal) >= 0.0;
+        let home = (self.model.shell_ix(self.gauge.element)?, self.gauge.surface);
         let (sin, cos) = offset.angle_rad.sin_cos();
         let spec = GaugeSpec {
             name: self.gauge.name.clone(),
             place: GaugePlace::Nearest(foot.point),
-            surface: Some(if facing {
-                self.gauge.surface
-            } else {
-                opposite(self.gauge.surface)
-            }),
+            surface: Some(same_side(self.model, home, foot.shell)?),
             direction: Some(axis * cos + across * sin),
             angle_rad: 0.0,
             rosette: None,

@@ -5,8 +5,9 @@
 //! that fits the neighbours across the shell's edges (least squares); neighbours at an angle of more than 20 degrees lie round a bend and
 //! are left out.
 
-use super::surface::{Foot, centre, foot_on, nearest};
-use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use super::side::{normal, same_side};
+use super::surface::{Foot, centre, foot_on};
+use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, ShellIx, Vec3};
 
 /// Points over the grid: Gauss-Legendre abscissae on [-1, 1] and weights (sum 1).
@@ -26,11 +27,7 @@ pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
     let Some(me) = model.shells.get(shell.us()) else {
         return Vec::new();
     };
-    let normal = |ix: ShellIx| {
-        shell_axes(model, model.shells.get(ix.us())?, ShellPlace::Centre)
-            .map(|a| a.row(2).transpose())
-    };
-    let Some(n) = normal(shell) else {
+    let Some(n) = normal(model, shell) else {
         return Vec::new();
     };
     let mine = &me.grids[..me.shape.n_corners()];
@@ -46,7 +43,7 @@ pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
                     >= 2
             })
         })
-        .filter(|&ix| normal(ix).is_some_and(|m| m.dot(&n).abs() >= SMOOTH))
+        .filter(|&ix| normal(model, ix).is_some_and(|m| m.dot(&n).abs() >= SMOOTH))
         .collect()
 }
 
@@ -80,20 +77,39 @@ pub fn about_centre(model: &Model, shell: ShellIx, x: Vec3, axis: Vec3) -> Vec<(
     out
 }
 
-/// The place on the shells at `x`, seen from `home`: on it or on a smooth neighbour within a few steps.
-pub fn place_at(model: &Model, home: ShellIx, x: Vec3) -> Option<Foot> {
-    let mut best = foot_on(model, home, x)?;
+/// A point on the shells, and which side of its shell faces as a side of the first shell does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Landing {
+    /// On the reference surface; `side` is the side that faces as the one asked for.
+    pub foot: Foot,
+    /// How far the point asked for lies past the edge of the surface, along it; 0 over the surface.
+    pub past_edge: f64,
+}
+
+/// Returns the place on the shells at `x`, seen from `side` of `home`: on it, or on a shell that smooth neighbours lead to. Each step keeps
+/// the side in space, whichever way the next shell's normal points.
+pub(super) fn place_at(
+    model: &Model,
+    (home, side): (ShellIx, Surface),
+    x: Vec3,
+) -> Option<Landing> {
+    let on = |ix: ShellIx, side: Surface| {
+        let foot = foot_on(model, ix, x)?;
+        Some(Foot { side, ..foot })
+    };
+    let mut best = on(home, side)?;
     let mut seen = vec![home];
-    for _ in 0..STEPS {
-        if best.distance < 1e-9 * best.point.norm().max(1.0) {
-            break;
-        }
+    while best.distance >= 1e-9 * best.point.norm().max(1.0) {
         let next = neighbours(model, best.shell)
             .into_iter()
             .filter(|ix| !seen.contains(ix))
             .collect::<Vec<_>>();
         seen.extend(&next);
-        let Some(found) = nearest(model, x, |ix| next.contains(&ix)) else {
+        let feet = next.into_iter().filter_map(|ix| {
+            let facing = same_side(model, (best.shell, best.side), ix)?;
+            on(ix, facing)
+        });
+        let Some(found) = feet.min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
             break;
         };
         if found.distance >= best.distance {
@@ -101,8 +117,13 @@ pub fn place_at(model: &Model, home: ShellIx, x: Vec3) -> Option<Foot> {
         }
         best = found;
     }
-    Some(best)
+    let z = normal(model, best.shell)?;
+    let off = x - best.point;
+    let flat = (off - z * off.dot(&z)).norm();
+    // Over a smooth surface a point is off along the normal; at an edge it is off along the surface.
+    let at_edge = flat * flat > (1.0 - SMOOTH * SMOOTH) * off.norm_squared();
+    Some(Landing {
+        foot: best,
+        past_edge: if at_edge { flat } else { 0.0 },
+    })
 }
-
-/// Shells a grid may reach over from its middle.
-const STEPS: usize = 8;

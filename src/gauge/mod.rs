@@ -4,27 +4,31 @@
 //! each a linear functional of the strain at one place, so that `reading = sum coefficient . strain`.
 
 mod arms;
+mod bar_run;
 mod beam;
 mod beside;
 mod build;
 mod error;
 mod glued;
+mod grid;
 mod grid_average;
 mod moved;
 mod on_refined;
+mod side;
 mod spec;
 mod surface;
 mod unverified;
 
 pub use arms::{Arm, Gauge, Spot, reading, shell_strain, strain_terms};
 pub use beside::{Beside, beside_beam, beside_shell};
-pub use build::{CornerRows, build};
+pub use build::build;
 pub use error::GaugeError;
 pub use glued::{Drawn, Offset};
 pub use moved::moved;
 pub use on_refined::{change_by_refining, on_refined};
-pub use spec::{Bridge, GaugePlace, GaugeSpec, Rosette};
-pub use surface::{Foot, centre, nearest, to_side};
+pub use side::opposite;
+pub use spec::{Bridge, CornerRows, GaugePlace, GaugeSpec, Pair, Rosette};
+pub use surface::{Foot, centre, nearest_skin, to_side};
 pub use unverified::on_unverified_elements;
 
 #[cfg(test)]

@@ -3,9 +3,10 @@
 use super::arms::{Arm, Gauge, Spot};
 use super::grid_average::about_centre;
 use super::on_refined::turned;
+use super::side::same_side;
 use super::surface::centre;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
-use crate::model::{Model, ShellIx, Vec3};
+use crate::model::{Model, Vec3};
 
 /// A gauge that reads the change of `gauge` per unit of length (that of the deck) when all its arms move along `direction` (basic frame,
 /// laid onto each arm's shell): the gradient that fits the neighbours of the shell best. `None` for arms on bars, at corners of shells, and
@@ -36,7 +37,7 @@ pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
             arms.push(Arm {
                 spot: Spot::Shell {
                     shell: ix,
-                    surface: same_side(model, shell, ix, surface)?,
+                    surface: same_side(model, (shell, surface), ix)?,
                     place: ShellPlace::Centre,
                 },
                 coefficient: turned(
@@ -53,24 +54,5 @@ pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
     Some(Gauge {
         arms,
         ..gauge.clone()
-    })
-}
-
-/// The side of `other` that faces where `surface` of `shell` does.
-fn same_side(
-    model: &Model,
-    shell: ShellIx,
-    other: ShellIx,
-    surface: crate::fe::strain_tensor::Surface,
-) -> Option<crate::fe::strain_tensor::Surface> {
-    use crate::fe::strain_tensor::Surface::{Bottom, Top};
-    let z = |ix: ShellIx| {
-        let s = model.shells.get(ix.us())?;
-        Some(shell_axes(model, s, ShellPlace::Centre)?.row(2).transpose())
-    };
-    Some(match (z(shell)?.dot(&z(other)?) >= 0.0, surface) {
-        (true, s) => s,
-        (false, Top) => Bottom,
-        (false, Bottom) => Top,
     })
 }

@@ -132,6 +132,7 @@ fn unchanged(field: &BeamField) -> BeamField {
             .map(|s| s.iter().map(|(x, _)| (*x, [0.0; 4])).collect())
             .collect(),
         axial: field.axial.iter().map(|a| vec![0.0; a.len()]).collect(),
+        ..BeamField::default()
     }
 }
 

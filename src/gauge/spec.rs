@@ -1,7 +1,7 @@
 //! A gauge as its user describes it, ids resolved.
 
 use crate::fe::strain_tensor::Surface;
-use crate::model::{BeamIx, ShellIx, Vec3};
+use crate::model::{BeamIx, Mat3, ShellIx, Vec3};
 
 /// How the arms are wired. `eps(d)` is the strain along direction `d`; readings are divided by the bridge factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +71,7 @@ impl Rosette {
 pub enum GaugePlace {
     /// At the centre of a shell.
     Shell(ShellIx),
-    /// At the point of the shells' surfaces nearest to this one, basic frame.
+    /// At the point of the shells' skins nearest to this one, basic frame.
     Nearest(Vec3),
     /// At recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length from end A; reads along the axis.
     Beam {
@@ -82,6 +82,37 @@ pub enum GaugePlace {
         /// x/xb.
         station: f64,
     },
+}
+
+/// Whether the result has strain at the corners of shells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum CornerRows {
+    Present,
+    Absent,
+}
+
+/// Where the second pair of grids of a bridge is glued.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// Shell, at whose centre it sits.
+    pub shell: ShellIx,
+    /// Side.
+    pub surface: Surface,
+    /// Rotation from the axes of the gauge's coordinate system at the first pair to those at this one, basic frame: the identity but in
+    /// cylindrical and spherical systems. It turns the axis of the first pair into that of this one.
+    pub turn: Mat3,
+}
+
+impl Pair {
+    /// Returns a pair whose axis is parallel to the first pair's.
+    pub fn parallel(shell: ShellIx, surface: Surface) -> Self {
+        Self {
+            shell,
+            surface,
+            turn: Mat3::identity(),
+        }
+    }
 }
 
 /// A gauge.
@@ -103,10 +134,12 @@ pub struct GaugeSpec {
     pub bridge_factor: f64,
     /// Length of the grid along its axis; 0: a point.
     pub grid_length: f64,
-    /// Shell and side of the other pair; `None`: the other side of the same shell (bending), none (shear).
-    pub pair: Option<(ShellIx, Surface)>,
+    /// Second pair; `None`: the other side of the same shell (bending), no second pair (shear).
+    pub pair: Option<Pair>,
     /// Three channels instead of one.
     pub rosette: Option<Rosette>,
+    /// Angles by which legs a, b, c of a rosette are turned beyond their own, radians.
+    pub leg_turns_rad: [f64; 3],
     /// Kt, a fraction; readings are taken as corrected for a Poisson ratio of 0.285 by the maker's gauge factor.
     pub transverse_sensitivity: f64,
 }
@@ -125,6 +158,7 @@ impl GaugeSpec {
             grid_length: 0.0,
             pair: None,
             rosette: None,
+            leg_turns_rad: [0.0; 3],
             transverse_sensitivity: 0.0,
         }
     }

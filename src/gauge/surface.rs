@@ -1,7 +1,7 @@
-//! The point of the shells' surfaces nearest to a given one.
+//! The point of the shells' surfaces, or of their skins, nearest to a given one.
 
+use super::side::{normal, opposite};
 use crate::fe::from_results::surface_z;
-use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Shell, ShellIx, Vec3};
 
@@ -14,9 +14,9 @@ pub struct Foot {
     pub weights: [f64; 4],
     /// On the reference surface, basic frame.
     pub point: Vec3,
-    /// Distance of the given point from it.
+    /// Distance of the given point from it, or from the skin of `side` ([`nearest_skin`]).
     pub distance: f64,
-    /// The side that faces the given point.
+    /// Side that faces the given point, or whose skin is nearest to it ([`nearest_skin`]).
     pub side: Surface,
 }
 
@@ -44,15 +44,78 @@ pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
     shell.zoffs + if z.is_finite() { z } else { 0.0 }
 }
 
-/// The nearest point of all shells, or of those that `among` accepts; `None` without shells.
+/// Returns the shell and the side whose skin is nearest to `x`; `None` without shells.
 ///
-/// Every shell is looked at: a bounding sphere excludes most at the cost of one distance.
-pub fn nearest(model: &Model, x: Vec3, among: impl Fn(ShellIx) -> bool) -> Option<Foot> {
-    let all = (0..model.shells.len() as u32).map(ShellIx);
-    nearest_of(model, x, all.filter(|ix| among(*ix)))
+/// The skins are offset from the reference surface by ZOFFS and half the thickness (Z1, Z2), so that the reference surface alone says neither
+/// which plate nor which side a point is on. A point inside a plate belongs to that plate: its middle surface counts as a skin does. Of
+/// equally near skins that of side `stated` is taken, else the top.
+///
+/// [`Foot::distance`] is the distance from the skin of [`Foot::side`].
+pub fn nearest_skin(model: &Model, x: Vec3, stated: Option<Surface>) -> Option<Foot> {
+    let mut best: Option<Nearness> = None;
+    for (i, shell) in model.shells.iter().enumerate() {
+        let ix = ShellIx(i as u32);
+        let (Some(p), Some(c)) = (corners(model, shell), centre(model, shell)) else {
+            continue;
+        };
+        let depth = [Surface::Bottom, Surface::Top].map(|s| to_side(model, shell, s).abs());
+        let radius = p.iter().map(|q| (q - c).norm()).fold(0.0, f64::max) + depth[0].max(depth[1]);
+        let tolerance = SAME_PLACE * radius.max(x.norm());
+        if best.is_some_and(|b| (x - c).norm() - radius > b.distance + tolerance) {
+            continue;
+        }
+        if let Some(near) = nearness(model, ix, x, stated)
+            && best.is_none_or(|b| near.is_before(&b, tolerance))
+        {
+            best = Some(near);
+        }
+    }
+    best.map(|b| b.foot)
 }
 
-/// The nearest point of these shells; `None` without shells.
+/// Share of the size of coordinates up to which two distances count as equal: what rounding leaves of them.
+const SAME_PLACE: f64 = 1e-10;
+
+/// How near a point is to a shell.
+#[derive(Clone, Copy)]
+struct Nearness {
+    /// From the nearest of both skins and the middle surface.
+    distance: f64,
+    /// Of equal distances the lowest is taken: skin of the stated side, other skin, middle surface.
+    rank: usize,
+    foot: Foot,
+}
+
+impl Nearness {
+    fn is_before(&self, other: &Self, tolerance: f64) -> bool {
+        let nearer = self.distance - other.distance;
+        nearer < -tolerance || (nearer <= tolerance && self.rank < other.rank)
+    }
+}
+
+fn nearness(model: &Model, ix: ShellIx, x: Vec3, stated: Option<Surface>) -> Option<Nearness> {
+    let z = normal(model, ix)?;
+    let shell = model.shells.get(ix.us())?;
+    let layer = |height: f64| foot_on(model, ix, x - z * height);
+    let first = stated.unwrap_or(Surface::Top);
+    let height = [first, opposite(first)].map(|s| to_side(model, shell, s));
+    let skins = [layer(height[0])?, layer(height[1])?];
+    let middle = layer(0.5 * (height[0] + height[1]))?.distance;
+    let tolerance = SAME_PLACE * (height[0] - height[1]).abs().max(x.norm());
+    let nearer = usize::from(skins[1].distance < skins[0].distance - tolerance);
+    let skin = skins[nearer].distance;
+    let inside = middle < skin - tolerance;
+    Some(Nearness {
+        distance: if inside { middle } else { skin },
+        rank: if inside { 2 } else { nearer },
+        foot: Foot {
+            side: if nearer == 0 { first } else { opposite(first) },
+            ..skins[nearer]
+        },
+    })
+}
+
+/// Returns the point of the reference surfaces of these shells that is nearest to `x`; `None` without shells.
 pub fn nearest_of(
     model: &Model,
     x: Vec3,
@@ -79,7 +142,7 @@ pub fn nearest_of(
     best
 }
 
-/// The nearest point of one shell.
+/// Returns the point of the reference surface of one shell that is nearest to `x`.
 pub fn foot_on(model: &Model, ix: ShellIx, x: Vec3) -> Option<Foot> {
     let shell = model.shells.get(ix.us())?;
     let p = corners(model, shell)?;
@@ -89,10 +152,7 @@ pub fn foot_on(model: &Model, ix: ShellIx, x: Vec3) -> Option<Foot> {
         on_quad(p, x)
     };
     let point = (0..4).map(|i| p[i] * weights[i]).sum::<Vec3>();
-    let z = shell_axes(model, shell, ShellPlace::Centre)?
-        .row(2)
-        .transpose();
-    let side = if (x - point).dot(&z) >= 0.0 {
+    let side = if (x - point).dot(&normal(model, ix)?) >= 0.0 {
         Surface::Top
     } else {
         Surface::Bottom

@@ -1,3 +1,5 @@
+mod skin;
+
 use super::*;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
@@ -188,7 +190,7 @@ fn bridges_are_signed_sums_over_their_factor() {
     );
     let both = GaugeSpec {
         bridge: Bridge::Shear,
-        pair: Some((ShellIx(1), Surface::Bottom)),
+        pair: Some(Pair::parallel(ShellIx(1), Surface::Bottom)),
         ..spec.clone()
     };
     assert!((read(&m, &both, CornerRows::Absent, &case)[0] * 1e6 - 120.0).abs() < 1e-9);
@@ -395,6 +397,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
             ]],
             // Bending along C alone, 1e-7 of axial strain: D is blank, so that no mean of the four points is the axial strain.
             axial: vec![vec![1e-7, 3e-7]],
+            ..Default::default()
         },
         ..Default::default()
     };
@@ -451,7 +454,7 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
             ..along.clone()
         },
         GaugeSpec {
-            pair: Some((ShellIx(0), Surface::Top)),
+            pair: Some(Pair::parallel(ShellIx(0), Surface::Top)),
             ..along
         },
     ];

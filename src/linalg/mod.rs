@@ -22,6 +22,6 @@ pub mod tall;
 
 pub use dense::{Matrix, Vector};
 pub use nalgebra::{
-    Complex, DMatrix, DVector, Matrix3, Matrix4, Matrix6, SMatrix, SVector, SymmetricEigen,
-    Vector3, Vector4, Vector6,
+    Complex, DMatrix, DVector, Matrix2, Matrix3, Matrix4, Matrix6, SMatrix, SVector,
+    SymmetricEigen, Vector2, Vector3, Vector4, Vector6,
 };

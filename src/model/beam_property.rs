@@ -86,8 +86,17 @@ impl Builder<'_> {
     fn pbar(&mut self, p: &Placed<Pbar>) -> Option<BeamProperty> {
         let name = format!("PBAR {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
-        self.positive("area", p.area, &name, "A", p.at);
+        // A bar without area carries bending and torsion alone.
+        self.not_negative("area", p.area, &name, "A", p.at);
         self.not_negative("torsion constant", p.j, &name, "J", p.at);
+        if [p.area, p.i1, p.i2, p.j] == [0.0; 4] {
+            let kind = FaultKind::Unsupported {
+                what: "a bar whose A, I1, I2 and J are all 0".into(),
+                remedy: "state one of them above 0, or delete the bar",
+            };
+            self.fault(name, "A", p.at, kind);
+            return None;
+        }
         let s = Section {
             area: p.area,
             i1: p.i1,
@@ -105,6 +114,7 @@ impl Builder<'_> {
             sections: vec![(0.0, s), (1.0, s)],
             k,
             section_type: String::new(),
+            bar_centroid: [0.0; 2],
             warping: [0.0; 2],
             at: p.at,
         })
@@ -114,10 +124,12 @@ impl Builder<'_> {
         let name = format!("PBARL {}", p.id);
         let material = self.material(p.mid, &name, "MID", p.at)?;
         let shape = self.section(&p.section, &p.dims, &name, p.at)?;
-        // A bar has its shear centre and neutral axis on the element axis, whatever the section.
+        // A bar has its neutral axis on the element axis, whatever the section: points count from the centroid.
+        let [y, z] = shape.section.neutral;
         let s = Section {
             nsm: p.nsm,
             neutral: [0.0; 2],
+            recovery: shape.section.recovery.map(|[a, b]| [a - y, b - z]),
             ..shape.section
         };
         let section_type = p.section.clone();
@@ -127,6 +139,7 @@ impl Builder<'_> {
             sections: vec![(0.0, s), (1.0, s)],
             k: shape.k,
             section_type,
+            bar_centroid: shape.section.neutral,
             warping: [0.0; 2],
             at: p.at,
         })
@@ -186,6 +199,7 @@ impl Builder<'_> {
             sections,
             k,
             section_type: String::new(),
+            bar_centroid: [0.0; 2],
             warping: end(&p.cw, &[p.cw[0], p.cw[0]]),
             at: p.at,
         })
@@ -218,6 +232,7 @@ impl Builder<'_> {
             sections,
             k,
             section_type: p.section.clone(),
+            bar_centroid: [0.0; 2],
             warping: [warping.first(), warping.last()].map(|cw| cw.copied().unwrap_or(0.0)),
             at: p.at,
         })

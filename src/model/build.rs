@@ -2,7 +2,7 @@
 
 use super::fault::{FaultKind, ModelFault};
 use super::types::*;
-use nastran::bdf::{Deck, Named};
+use nastran::bdf::Deck;
 use nastran::cards::{Cards, Param};
 use nastran::place::Place;
 use std::collections::{HashMap, HashSet};
@@ -36,22 +36,24 @@ impl Model {
     /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.
     pub fn from_deck(deck: &Deck) -> (Model, Vec<ModelFault>) {
         let (structure, loads) = super::unsupported_cards::of_deck(deck);
-        let (mut model, mut faults) =
-            Self::build(&deck.cards, &deck.case_control.global.params, &loads);
+        let (case_params, differing) = super::case_params::params_of_case_control(deck);
+        let (mut model, mut faults) = Self::build(&deck.cards, &case_params, &loads);
         model.unsupported_cards = structure;
+        model.unsupported_cards.extend(differing);
         let (refused, missing) = super::nonstructural::add_selected(&mut model, deck);
         model.unsupported_cards.extend(refused);
         faults.extend(missing);
+        let heated = super::material_at::heat_materials(&mut model, deck);
+        model.unsupported_cards.extend(heated.refused);
+        faults.extend(heated.faults);
+        model.params.expanding_rigids = expanding_rigids(deck);
         model.mpc = deck.case_control.mpc_of_structure();
         let subcases = deck.case_control.effective_subcases();
         model.selected_spcs = subcases.iter().filter_map(|s| s.spc).collect();
         model.selected_spcs.sort_unstable();
         model.selected_spcs.dedup();
-        let named = deck
-            .labels
-            .iter()
-            .filter(|l| matches!(l.kind, Named::Property | Named::Component));
-        model.property_names = named.map(|l| (l.id, l.name.clone())).collect();
+        model.property_names = super::property_names::property_names(deck);
+        let faults = super::not_carried::name_cards(deck, &mut model, faults);
         (model, faults)
     }
 
@@ -77,6 +79,7 @@ impl Model {
         b.frames_and_grids();
         b.materials();
         b.shells();
+        b.normals();
         b.beams();
         b.rods();
         b.bushes();
@@ -84,6 +87,7 @@ impl Model {
         b.solids();
         b.shear_panels();
         b.masses();
+        b.scalar_masses();
         b.rigids();
         b.joints();
         b.constraints();
@@ -94,6 +98,19 @@ impl Model {
         b.faults.sort_by_key(|f| f.at);
         (b.model, b.faults)
     }
+}
+
+/// Whether case control asks for rigid elements that expand with temperature: RIGID = LAGRAN or LGELIM. The default is LINEAR.
+///
+/// # Reference
+/// MSC Nastran Quick Reference Guide, case control command RIGID, and remarks on ALPHA of RBE2.
+fn expanding_rigids(deck: &Deck) -> bool {
+    let lines = deck.case_control.lines.iter();
+    let mut rigid = lines.filter(|l| !l.in_packet && l.name == "RIGID");
+    rigid.any(|l| {
+        let text = l.text.to_ascii_uppercase();
+        ["LAGR", "LGEL"].iter().any(|word| text.contains(word))
+    })
 }
 
 impl Builder<'_> {
@@ -293,6 +310,6 @@ impl Model {
 
     /// Number of elements: those with stiffness, masses and rigid elements.
     pub fn n_elements(&self) -> usize {
-        self.elements().count() + self.masses.len() + self.rigids.len()
+        self.elements().count() + self.masses.len() + self.scalar_masses.len() + self.rigids.len()
     }
 }

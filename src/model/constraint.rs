@@ -209,6 +209,10 @@ impl Builder<'_> {
             .flat_map(|e| m.element_grids(e))
             .for_each(&mut mark);
         m.masses.iter().for_each(|c| mark(c.grid));
+        m.scalar_masses
+            .iter()
+            .flat_map(|c| c.ends.iter().flatten())
+            .for_each(|end| mark(end.0));
         m.mpcs
             .iter()
             .flat_map(|s| &s.equations)

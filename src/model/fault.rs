@@ -31,6 +31,15 @@ pub enum FaultWeight {
 pub enum FaultKind {
     /// Another card that is referred to is missing.
     Missing { what: &'static str, id: i64 },
+    /// A card that others refer to is in the deck, and the model does not carry it.
+    NotCarried {
+        /// What it is looked for as.
+        what: &'static str,
+        /// The first card that refers to it.
+        user: String,
+        /// Number of further references.
+        more: usize,
+    },
     /// An id stands twice.
     Duplicate { what: &'static str, first: Place },
     /// An element id is shared by elements of unlike kind.
@@ -91,6 +100,11 @@ impl ModelFault {
             FaultKind::Unattached | FaultKind::SharedId { .. } => FaultWeight::Note,
             // Solvers pass over a set of SPCADD or MPCADD that has no cards.
             FaultKind::Missing { what: "set", .. } => FaultWeight::Note,
+            // Shells need a thickness, and places need grids and coordinate systems; other elements are left out and results may be given.
+            FaultKind::NotCarried { what, .. } => match what {
+                "grid" | "coordinate system" | "shell property" => FaultWeight::Error,
+                _ => FaultWeight::Note,
+            },
             _ => FaultWeight::Error,
         }
     }
@@ -100,6 +114,9 @@ impl ModelFault {
         use FaultKind::*;
         match &self.kind {
             Missing { what, .. } => format!("add the {what}, or correct the id"),
+            NotCarried { .. } => {
+                "replace it by a card that is carried, or solve with Nastran and name the results in the job".into()
+            }
             Duplicate { .. } => "delete one of them, or renumber".into(),
             SharedId { .. } => "renumber one of them, so that results tell them apart".into(),
             NotPositive { what, .. } => format!("give a {what} above 0"),
@@ -147,6 +164,13 @@ impl fmt::Display for FaultKind {
         use FaultKind::*;
         match self {
             Missing { what, id } => write!(f, "{what} {id} is missing"),
+            NotCarried { what, user, more } => {
+                write!(f, "the card is not carried, and {user}")?;
+                if *more > 0 {
+                    write!(f, " (and {more} more)")?;
+                }
+                write!(f, " refers to its {what}")
+            }
             Duplicate { what, first } => {
                 write!(f, "the {what} stands twice, first on line {}", first.line)
             }

@@ -89,7 +89,7 @@ impl<'a> Builder<'a> {
         self.model.grids = out;
     }
 
-    /// Scalar points: of SPOINT, and those that springs name without a component where there is no grid of that id.
+    /// Scalar points: of SPOINT, and those that springs, masses and dampers name without a component where there is no grid of that id.
     fn scalar_points(&mut self, grid_of: &HashMap<u32, &Placed<cards::Grid>>, out: &mut Vec<Grid>) {
         let cards = self.cards;
         let mut named: BTreeMap<u32, Place> = BTreeMap::new();
@@ -123,11 +123,18 @@ impl<'a> Builder<'a> {
                 }
             }
         }
-        for s in &cards.springs {
-            for (id, component) in s.ends.iter().flatten() {
+        let springs = cards.springs.iter().map(|s| (s.ends, s.at));
+        let masses = cards.scalar_masses.iter().map(|m| (m.ends, m.at));
+        for (ends, at) in springs.chain(masses) {
+            for (id, component) in ends.iter().flatten() {
                 if *component == 0 && !grid_of.contains_key(id) {
-                    named.entry(*id).or_insert(s.at);
+                    named.entry(*id).or_insert(at);
                 }
+            }
+        }
+        for p in &cards.connected_points {
+            if !grid_of.contains_key(&p.card) {
+                named.entry(p.card).or_insert(p.at);
             }
         }
         out.extend(named.into_iter().map(|(id, at)| Grid {

@@ -167,27 +167,7 @@ impl<'a> Builder<'a> {
                     }
                 }
             };
-            let mut ends = [None; 2];
-            let mut complete = true;
-            for (end, slot) in s.ends.iter().zip(&mut ends) {
-                let Some((grid, component)) = *end else {
-                    continue;
-                };
-                match (self.grid(grid, &name, "G", s.at), component) {
-                    (Some(g), c @ 1..=6) => *slot = Some((g, c - 1)),
-                    (Some(g), 0) if self.is_scalar(g) => *slot = Some((g, 0)),
-                    (Some(_), c) => {
-                        let kind = FaultKind::Word {
-                            found: c.to_string(),
-                            expected: "a component 1 to 6 of a grid",
-                        };
-                        self.fault(name.clone(), "C", s.at, kind);
-                        complete = false;
-                    }
-                    (None, _) => complete = false,
-                }
-            }
-            if complete {
+            if let Some(ends) = self.ends_of(&s.ends, &name, s.at) {
                 out.push(Spring {
                     id: s.id,
                     k,
@@ -199,6 +179,36 @@ impl<'a> Builder<'a> {
         }
         out.sort_by_key(|s| s.id);
         self.model.springs = out;
+    }
+
+    /// Returns the dofs (0-based) that a scalar element joins. An invalid dof gives a fault and `None`.
+    pub(super) fn ends_of(
+        &mut self,
+        stated: &[Option<(u32, u8)>; 2],
+        name: &str,
+        at: Place,
+    ) -> Option<[Option<(GridIx, u8)>; 2]> {
+        let mut ends = [None; 2];
+        let mut complete = true;
+        for (end, slot) in stated.iter().zip(&mut ends) {
+            let Some((grid, component)) = *end else {
+                continue;
+            };
+            match (self.grid(grid, name, "G", at), component) {
+                (Some(g), c @ 1..=6) => *slot = Some((g, c - 1)),
+                (Some(g), 0) if self.is_scalar(g) => *slot = Some((g, 0)),
+                (Some(_), c) => {
+                    let kind = FaultKind::Word {
+                        found: c.to_string(),
+                        expected: "a component 1 to 6 of a grid",
+                    };
+                    self.fault(name.to_owned(), "C", at, kind);
+                    complete = false;
+                }
+                (None, _) => complete = false,
+            }
+        }
+        complete.then_some(ends)
     }
 
     pub(super) fn bushes(&mut self) {

@@ -1,5 +1,6 @@
 //! Load sets: primitive loads in the basic frame, LOAD combinations written out, temperatures apart.
 
+mod inertia;
 mod line;
 mod pressure;
 mod temperature;
@@ -169,42 +170,6 @@ impl Builder<'_> {
                 };
                 sets.entry(p.sid).or_default().push((1.0, load));
             }
-        }
-    }
-
-    fn body_forces(&mut self, sets: &mut Sets) {
-        let cards = self.cards;
-        for g in &cards.gravs {
-            let name = format!("GRAV {}", g.sid);
-            let Some(f) = self.frame(g.cid.into(), &name, "CID", g.at) else {
-                continue;
-            };
-            let n = self
-                .model
-                .frames
-                .get(f.us())
-                .map_or_else(Vec3::zeros, |f| f.axes.tr_mul(&Vec3::from(g.n)));
-            sets.entry(g.sid)
-                .or_default()
-                .push((1.0, Load::Gravity(n * g.scale)));
-        }
-        for r in &cards.rforces {
-            let axes = self
-                .frame_ix
-                .get(&r.cid)
-                .and_then(|f| self.model.frames.get(f.us()));
-            let centre = match r.grid {
-                0 => Some(Vec3::zeros()),
-                id => self.grid_ix.get(&id).map(|g| self.model.grids[g.us()].x),
-            };
-            let load = match (axes, centre) {
-                (Some(frame), Some(centre)) if r.acceleration == 0.0 => Load::Spin {
-                    centre,
-                    omega: frame.axes.tr_mul(&Vec3::from(r.r)) * (r.speed * std::f64::consts::TAU),
-                },
-                _ => Load::Unsupported("RFORCE".into(), r.at),
-            };
-            sets.entry(r.sid).or_default().push((1.0, load));
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use super::point_mass::rigid_body_matrix;
 use super::types::*;
-use crate::linalg::Matrix6;
+use crate::linalg::{Matrix6, Vector6};
 
 /// What a model weighs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,17 +16,47 @@ pub struct Weight {
     pub cg: Vec3,
 }
 
-impl Model {
-    /// Mass and centre of gravity, WTMASS applied.
-    pub fn weight(&self) -> Weight {
-        let m = self.rigid_body_mass(Vec3::zeros());
-        let mass = m[(0, 0)];
-        let cg = if mass != 0.0 {
-            Vec3::new(m[(1, 5)], -m[(0, 5)], m[(0, 4)]) / mass
-        } else {
-            Vec3::zeros()
+impl Weight {
+    /// Returns mass and centre of gravity of a rigid-body mass matrix about `about`; `None` without mass.
+    ///
+    /// Where the mass differs by direction (CONM1, scalar masses), it is the largest of the three along its principal directions, as
+    /// Nastran's grid point weight generator lists them in its mass axis system.
+    pub(crate) fn of(m: &Matrix6<f64>, about: Vec3) -> Option<Self> {
+        let by_axis = [m[(0, 0)], m[(1, 1)], m[(2, 2)]];
+        let translation = m.fixed_view::<3, 3>(0, 0).into_owned();
+        let even = translation == Mat3::from_diagonal_element(by_axis[0]);
+        let mass = match even {
+            true => by_axis[0],
+            false => translation.symmetric_eigenvalues().max(),
         };
-        Weight { mass, cg }
+        if !(mass > 0.0) {
+            return None;
+        }
+        let share = |first: f64, i: usize, j: usize| match by_axis[i] + by_axis[j] {
+            sum if sum > 0.0 => first / sum,
+            _ => 0.0,
+        };
+        let offset = Vec3::new(
+            share(m[(1, 5)] - m[(2, 4)], 1, 2),
+            share(m[(2, 3)] - m[(0, 5)], 0, 2),
+            share(m[(0, 4)] - m[(1, 3)], 0, 1),
+        );
+        Some(Self {
+            mass,
+            cg: about + offset,
+        })
+    }
+}
+
+impl Model {
+    /// Returns mass and centre of gravity from [`Self::rigid_body_mass`], WTMASS applied.
+    pub fn weight(&self) -> Weight {
+        let origin = Vec3::zeros();
+        let nothing = Weight {
+            mass: 0.0,
+            cg: origin,
+        };
+        Weight::of(&self.rigid_body_mass(origin), origin).unwrap_or(nothing)
     }
 
     /// Rigid-body mass matrix (6 x 6: translations, then rotations) about the basic location `about`, WTMASS applied.
@@ -49,7 +79,33 @@ impl Model {
             t.fixed_view_mut::<3, 3>(0, 3).copy_from(&-r.cross_matrix());
             sum += t.transpose() * c.matrix * t;
         }
+        for c in &self.scalar_masses {
+            let row = self.motion_of(c, about);
+            sum += row * row.transpose() * c.mass;
+        }
         sum * self.params.wtmass
+    }
+
+    /// Returns the motion of a scalar mass in each of the six rigid motions about `about`: first end minus second end. Scalar points and
+    /// ground do not move.
+    fn motion_of(&self, mass: &ScalarMass, about: Vec3) -> Vector6<f64> {
+        let mut row = Vector6::zeros();
+        for (end, sign) in mass.ends.iter().zip([1.0, -1.0]) {
+            let Some((g, dof)) = end else { continue };
+            let Some(grid) = self.grids.get(g.us()).filter(|g| !g.is_scalar()) else {
+                continue;
+            };
+            let dof = usize::from(*dof).min(5);
+            let axis = self.cd_axes(*g).row(dof % 3).transpose() * sign;
+            let mut add = |first: usize, v: Vec3| (0..3).for_each(|i| row[first + i] += v[i]);
+            if dof < 3 {
+                add(0, axis);
+                add(3, (grid.x - about).cross(&axis));
+            } else {
+                add(3, axis);
+            }
+        }
+        row
     }
 
     fn at(&self, g: GridIx) -> Vec3 {
@@ -79,21 +135,12 @@ impl Model {
                 continue;
             };
             let n = s.shape.n_corners();
-            let x: Vec<Vec3> = s.grids.iter().take(n).map(|g| self.at(*g)).collect();
+            let x = self.corners_of(s);
             let offset = match (s.zoffs, super::shell::shell_normal(&x)) {
                 (z, Some(normal)) if z != 0.0 => normal * z,
                 _ => Vec3::zeros(),
             };
-            // A missing mid-side grid repeats the first corner of its edge.
-            let all: Vec<Option<Vec3>> = (0..s.shape.n_grids())
-                .map(|i| {
-                    s.grids
-                        .get(i)
-                        .filter(|g| i < n || s.grids.get(i - n) != Some(g))
-                })
-                .map(|g| g.map(|g| self.at(*g)))
-                .collect();
-            match super::curved::shell_parts(s.shape, &all) {
+            match super::curved::shell_parts(s.shape, &self.places_of(s)) {
                 Some(parts) => {
                     for part in parts {
                         let t = part
@@ -117,6 +164,57 @@ impl Model {
             let mass = (self.density(s.material) * s.t + s.nsm) * area(&x);
             x.iter().for_each(|x| point(mass / 4.0, *x));
         }
+    }
+
+    /// Returns the area of shell `i` that its mass is computed from.
+    pub(super) fn shell_area(&self, i: usize) -> f64 {
+        let Some(s) = self.shells.get(i) else {
+            return 0.0;
+        };
+        match super::curved::shell_parts(s.shape, &self.places_of(s)) {
+            Some(parts) => parts.iter().map(|p| p.measure).sum(),
+            None => area(&self.corners_of(s)),
+        }
+    }
+
+    /// Returns the area of shear panel `i`.
+    pub(super) fn panel_area(&self, i: usize) -> f64 {
+        let panel = self.shear_panels.get(i);
+        panel.map_or(0.0, |s| area(&s.grids.map(|g| self.at(g))))
+    }
+
+    /// Returns the length of bar or beam `i`, offsets included.
+    pub(super) fn beam_length(&self, i: usize) -> f64 {
+        let length = |b: &Beam| {
+            let [a, e] = [0, 1].map(|k| self.at(b.grids[k]) + b.offsets[k]);
+            (e - a).norm()
+        };
+        self.beams.get(i).map_or(0.0, length)
+    }
+
+    /// Returns the length of rod `i`.
+    pub(super) fn rod_length(&self, i: usize) -> f64 {
+        let length = |r: &Rod| (self.at(r.grids[1]) - self.at(r.grids[0])).norm();
+        self.rods.get(i).map_or(0.0, length)
+    }
+
+    /// Returns the corners of a shell.
+    fn corners_of(&self, s: &Shell) -> Vec<Vec3> {
+        let corners = s.grids.iter().take(s.shape.n_corners());
+        corners.map(|g| self.at(*g)).collect()
+    }
+
+    /// Returns the grid locations of a shell, `None` for a missing mid-side grid. In the model, the latter repeats the first corner of its edge.
+    fn places_of(&self, s: &Shell) -> Vec<Option<Vec3>> {
+        let n = s.shape.n_corners();
+        (0..s.shape.n_grids())
+            .map(|i| {
+                s.grids
+                    .get(i)
+                    .filter(|g| i < n || s.grids.get(i - n) != Some(g))
+            })
+            .map(|g| g.map(|g| self.at(*g)))
+            .collect()
     }
 
     fn lump_lines(&self, point: &mut impl FnMut(f64, Vec3)) {

@@ -2,26 +2,9 @@
 
 use super::build::Builder;
 use super::fault::FaultKind;
+use super::isotropic::{isotropic_material, moduli_faults};
 use super::types::*;
 use nastran::cards::Mat1;
-
-/// E, G and nu of a MAT1 whose blank one follows from the other two: E = 2 (1 + nu) G. With E alone G and nu are 0, with G
-/// alone E and nu are.
-///
-/// # Reference
-/// MSC Nastran Quick Reference Guide, MAT1, remarks on blank fields.
-fn isotropic(m: &Mat1) -> Option<(f64, f64, f64)> {
-    match (m.e, m.g, m.nu) {
-        (Some(e), Some(g), Some(nu)) => Some((e, g, nu)),
-        (Some(e), None, Some(nu)) => Some((e, e / (2.0 * (1.0 + nu)), nu)),
-        (Some(e), None, None) => Some((e, 0.0, 0.0)),
-        (Some(e), Some(g), None) if g != 0.0 => Some((e, g, e / (2.0 * g) - 1.0)),
-        (Some(e), Some(g), None) => Some((e, g, 0.0)),
-        (None, Some(g), Some(nu)) => Some((2.0 * (1.0 + nu) * g, g, nu)),
-        (None, Some(g), None) => Some((0.0, g, 0.0)),
-        (None, None, _) => None,
-    }
-}
 
 impl Builder<'_> {
     pub(super) fn materials(&mut self) {
@@ -29,41 +12,16 @@ impl Builder<'_> {
         let mut out: Vec<Material> = Vec::new();
         for m in &cards.mat1s {
             let name = format!("MAT1 {}", m.id);
-            let (e, g, nu) = match isotropic(m) {
-                Some(v) => v,
-                None => {
-                    self.fault(name.clone(), "E", m.at, FaultKind::Underdetermined);
-                    (0.0, 0.0, 0.0)
-                }
-            };
-            if m.e.is_some_and(|e| e < 0.0) {
-                self.fault(
-                    name.clone(),
-                    "E",
-                    m.at,
-                    FaultKind::NotPositive {
-                        what: "Young's modulus",
-                        value: e,
-                    },
-                );
+            for (field, kind) in moduli_faults(m) {
+                self.fault(name.clone(), field, m.at, kind);
             }
-            // A stated nu is what the card says; with E and G both stated too it may be anything that the solver accepts.
-            if !(-1.0 < nu && nu <= 0.5) && m.g.is_none() {
-                self.fault(name, "NU", m.at, FaultKind::Poisson { nu });
-            }
-            let kind = MaterialKind::Isotropic {
-                e,
-                g,
-                nu,
-                alpha: m.alpha,
+            let nothing = Mat1 {
+                e: Some(0.0),
+                g: Some(0.0),
+                nu: Some(0.0),
+                ..m.card
             };
-            out.push(Material {
-                id: m.id,
-                kind,
-                rho: m.rho,
-                tref: m.tref,
-                at: m.at,
-            });
+            out.extend(isotropic_material(m, m.at).or_else(|| isotropic_material(&nothing, m.at)));
         }
         for m in &cards.mat2s {
             let kind = MaterialKind::Anisotropic2d {

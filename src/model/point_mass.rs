@@ -4,6 +4,7 @@ use super::build::Builder;
 use super::fault::FaultKind;
 use super::types::*;
 use crate::linalg::Matrix6;
+use std::collections::HashMap;
 
 /// Mass matrix about the grid of a rigid body: mass, centre of gravity from the grid, inertia tensor about the centre of gravity.
 ///
@@ -106,7 +107,31 @@ impl Builder<'_> {
                 at: c.at,
             });
         }
+        self.bush_masses(&mut out);
         out.sort_by_key(|m| m.id);
         self.model.masses = out;
+    }
+
+    /// Adds M of PBUSH: half of it at each end of a CBUSH. The half at ground has no effect.
+    fn bush_masses(&self, out: &mut Vec<PointMass>) {
+        let cards = self.cards;
+        let masses: HashMap<u32, f64> = cards.pbushes.iter().map(|p| (p.id, p.mass)).collect();
+        for b in &cards.bushes {
+            let mass = masses.get(&b.pid.unwrap_or(b.id)).copied().unwrap_or(0.0);
+            let ends = [Some(b.grids.0), b.grids.1];
+            let grids = ends.into_iter().flatten();
+            for grid in grids
+                .filter_map(|g| self.grid_ix.get(&g))
+                .filter(|_| mass != 0.0)
+            {
+                out.push(PointMass {
+                    id: b.id,
+                    grid: *grid,
+                    matrix: rigid_body_matrix(mass / 2.0, Vec3::zeros(), Mat3::zeros()),
+                    offset: Vec3::zeros(),
+                    at: b.at,
+                });
+            }
+        }
     }
 }

@@ -127,6 +127,8 @@ impl Model {
     fn load_sets_at_grids(&self) -> Vec<LoadSet> {
         let stays = |load: &Load| match load {
             Load::Force(..) | Load::Moment(..) | Load::Gravity(_) | Load::Spin { .. } => true,
+            // New grids would get no acceleration.
+            Load::Acceleration { .. } => false,
             Load::ShellPressure { .. }
             | Load::FacePressure { .. }
             | Load::Line { .. }

@@ -113,6 +113,7 @@ impl Builder<'_> {
             refc: r.refc,
             arms,
             um,
+            alpha: r.alpha,
         };
         Some(Rigid {
             id: r.id,

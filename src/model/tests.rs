@@ -510,3 +510,112 @@ fn a_sum_of_sums_of_constraints_holds_every_set_once() {
     let six = m.spcs.iter().find(|s| s.sid == 6).unwrap();
     assert_eq!(six.terms.len(), 2);
 }
+
+#[test]
+fn a_card_that_is_not_carried_is_named_where_it_stands_and_not_called_missing() {
+    // Card that stands, card that refers to it, whether the reference stops every use of the model.
+    let table = [
+        (
+            "PBCOMP,9,1,.01,1.-5,1.-5",
+            "CBEAM,9,9,1,2,0.,0.,1.",
+            "PBCOMP 9",
+            false,
+        ),
+        (
+            "PBMSECT,9,1,CP",
+            "CBAR,9,9,1,2,0.,0.,1.",
+            "PBMSECT 9",
+            false,
+        ),
+        ("PCOMPS,9,,0.", "CTETRA,9,9,1,2,3,5", "PCOMPS 9", false),
+        ("PLSOLID,9,1", "CTETRA,9,9,1,2,3,5", "PLSOLID 9", false),
+        ("PLPLANE,9,1", "CQUAD4,9,9,1,2,3,4", "PLPLANE 9", true),
+        (
+            "MAT11,8,1.,1.,1.",
+            "PSOLID,9,8\nCTETRA,9,9,1,2,3,5",
+            "MAT11 8",
+            false,
+        ),
+        (
+            "MATHP,8,1.",
+            "PSOLID,9,8\nCTETRA,9,9,1,2,3,5",
+            "MATHP 8",
+            false,
+        ),
+        ("MAT4,8,1.", "PROD,9,8,1.\nCROD,9,9,1,2", "MAT4 8", false),
+        (
+            "CBEND,9,1,1,2,0.,0.,1.",
+            "PLOAD1,4,9,FY,FR,0.,1.,1.,1.",
+            "CBEND 9",
+            false,
+        ),
+        ("GRIDB,77,,,10.", "SPC1,1,1,77", "GRIDB 77", true),
+        ("EPOINT,70,THRU,80", "SPC1,1,1,77", "EPOINT 70", true),
+        ("GRIDG,3,,1,-4,5", "SPC1,1,1,77", "GRIDG 3", true),
+        ("CORD3G,9,E,1,2", "GRID,77,9,1.,1.,1.", "CORD3G 9", true),
+    ];
+    for (card, user, named, stops) in table {
+        let text = format!("{QUAD}GRID,5,,0.,0.,1.\nCQUAD4,1,1,1,2,3,4\n{user}\n{card}\n");
+        let (m, faults) = model(&text);
+        let own: Vec<&ModelFault> = faults.iter().filter(|f| f.card == named).collect();
+        assert_eq!(own.len(), 1, "{card}: {faults:?}");
+        assert_eq!(own[0].at.line as usize, text.lines().count() + 1, "{card}");
+        assert_eq!(own[0].weight() == FaultWeight::Error, stops, "{card}");
+        assert!(
+            faults
+                .iter()
+                .all(|f| !f.kind.to_string().contains("missing")),
+            "{card}: {faults:?}"
+        );
+        assert!(
+            m.unsupported_cards.iter().any(|c| c.at == own[0].at),
+            "the solver refuses {card}"
+        );
+    }
+    // What is in no card is missing still.
+    let found = errors(&format!("{QUAD}CQUAD4,1,7,1,2,3,4\nPBCOMP,9,1,.01"));
+    assert!(
+        found[0].1.contains("shell property 7 is missing"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn scalar_masses_and_dampers_make_their_scalar_points() {
+    for (card, points) in [
+        ("PMASS,9,1.\nCMASS3,9,9,,2702", vec![2702]),
+        ("CMASS4,9,1.,2701,2702", vec![2701, 2702]),
+        ("CDAMP3,9,9,2701,0", vec![2701]),
+        ("CDAMP4,9,1.,,2702", vec![2702]),
+        ("CMASS2,9,1.,1,3,2701", vec![2701]),
+    ] {
+        let last = points[points.len() - 1];
+        let (m, faults) = model(&format!(
+            "{QUAD}CQUAD4,1,1,1,2,3,4\n{card}\nSPC,1,{last},0,0."
+        ));
+        assert!(
+            faults.iter().all(|f| f.weight() == FaultWeight::Note),
+            "{card}: {faults:?}"
+        );
+        let scalar: Vec<u32> = m
+            .grids
+            .iter()
+            .filter(|g| g.is_scalar())
+            .map(|g| g.id)
+            .collect();
+        assert_eq!(scalar, points, "{card}");
+    }
+}
+
+#[test]
+fn a_property_has_its_own_name_or_that_of_its_component() {
+    let (m, _) = model(&format!(
+        "$HMNAME COMP 3\"left rail\" 1 \"\" 4\n$HMNAME COMP 8 \"bracket\"\n$HMNAME COMP 5 \"other\"\n$HMNAME PROP 5 \"bolt\"\n{QUAD}"
+    ));
+    let names: Vec<(u32, &str)> = m
+        .property_names
+        .iter()
+        .map(|n| (n.0, n.1.as_str()))
+        .collect();
+    assert_eq!(names, [(1, "left rail"), (5, "bolt"), (8, "bracket")]);
+}

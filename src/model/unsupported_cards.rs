@@ -1,59 +1,131 @@
-//! Cards that no part of the model stands for, told apart by what leaving them out would change.
-//!
-//! Dampers, plot elements, heat transfer, output, optimisation and dynamics change nothing in linear statics and are not listed.
+//! What a deck asks for that acts on the solution and that no part of the model stands for.
 
 use super::types::UnsupportedCard;
-use nastran::bdf::Deck;
+use nastran::bdf::vocabulary::{CaseWord, Effect, case_word, effect_of_card};
+use nastran::bdf::{CaseLine, Deck};
+use nastran::place::Place;
 
-/// Stiffness, mass and constraints.
-const STRUCTURE: [&str; 39] = [
-    "CBEAM3", "CBEND", "CBUSH1D", "CBUSH2D", "CCONEAX", "CMASS1", "CMASS2", "CMASS3", "CMASS4",
-    "CPLSTN3", "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3", "CPLSTS4", "CPLSTS6", "CPLSTS8",
-    "CQUAD", "CQUADX", "CQUADX4", "CQUADX8", "CRAC2D", "CRAC3D", "CSEAM", "CTRAX3", "CTRAX6",
-    "CTRIAX", "CTRIAX6", "CYSYM", "GENEL", "RJOINT", "RROD", "RSSCON", "RTRPLT1", "RBE2GS",
-    "BEDGE", "CHACAB", "CINTC", "SNORM",
+/// Solution sequences and rigid formats of linear statics, modes, buckling, flutter, and response to frequencies and time: what this
+/// program solves has the same stiffness, mass and static loads in them.
+const LINEAR: [u32; 39] = [
+    1, 2, 3, 5, 7, 8, 9, 10, 11, 12, 24, 25, 26, 27, 28, 29, 30, 31, 61, 63, 65, 67, 68, 69, 70,
+    71, 72, 101, 103, 105, 107, 108, 109, 110, 111, 112, 118, 145, 200,
 ];
+/// Those of buckling, whose preload STATSUB names.
+const BUCKLING: [u32; 3] = [5, 65, 105];
+/// Further ones that are linear: random and gust response.
+const GUST: [u32; 3] = [146, 187, 190];
 
-/// Structure that acts only where case control selects it, by the word that does.
-const SELECTED: [(&str, &str); 4] = [
-    ("DMIG", "K2GG"),
-    ("BGSET", "BGSET"),
-    ("BCTSET", "BCSET"),
-    ("BCONTACT", "BCONTACT"),
-];
-
-/// Loads, their set id in the first field.
-const LOADS: [&str; 14] = [
-    "ACCEL", "ACCEL1", "CLOAD", "DEFORM", "FORCEAX", "GMLOAD", "MOMAX", "PLOADE1", "PLOADX1",
-    "PRESAX", "TEMPAX", "TEMPP2", "TEMPP3", "TEMPG",
-];
-
-/// Elements, masses and constraints, then loads, in the order of the deck.
+/// Returns elements, masses, constraints, statements of case control and the solution sequence that act; then the loads, which act where
+/// their set is selected.
 pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
-    let listed = |names: &[&str]| {
-        let cards = deck
-            .others
-            .iter()
-            .filter(|c| names.contains(&c.name.as_str()));
-        cards
-            .map(|c| UnsupportedCard {
-                card: c.name.clone(),
-                id: c.first,
-                at: c.at,
-            })
-            .collect()
-    };
-    let selected = |word: &str| {
-        deck.case_control
-            .lines
-            .iter()
-            .any(|l| !l.in_packet && l.name == word)
-    };
-    let mut structure: Vec<&str> = STRUCTURE.to_vec();
-    structure.extend(SELECTED.iter().filter(|s| selected(s.1)).map(|s| s.0));
-    // How connectors are projected: of no matter without them.
-    if !(deck.cards.welds.is_empty() && deck.cards.fasteners.is_empty()) {
-        structure.push("SWLDPRM");
+    let mut structure: Vec<UnsupportedCard> = sequence(deck).into_iter().collect();
+    structure.extend(large_displacement(deck));
+    structure.extend(statements(deck));
+    structure.extend(superelements(deck));
+    let mut loads = Vec::new();
+    for c in &deck.others {
+        let card = UnsupportedCard {
+            card: c.name.clone(),
+            id: c.first,
+            at: c.at,
+        };
+        match effect_of_card(&c.name) {
+            Some(Effect::Load) => loads.push(card),
+            Some(Effect::Acts | Effect::Carried) => structure.push(card),
+            Some(Effect::ActsWith(what)) if is_present(deck, what) => structure.push(card),
+            _ => {}
+        }
     }
-    (listed(&structure), listed(&LOADS))
+    (structure, loads)
+}
+
+/// The solution sequence, or the approach, where it is not linear.
+fn sequence(deck: &Deck) -> Option<UnsupportedCard> {
+    let unsupported = |card: String, at: Place| UnsupportedCard { card, id: None, at };
+    if let Some((approach, at)) = &deck.approach
+        && approach.starts_with("HEAT")
+    {
+        return Some(unsupported(format!("APP {approach}"), *at));
+    }
+    let text = deck.sol_text.as_ref()?;
+    let is_linear = |n: &u32| LINEAR.contains(n) || GUST.contains(n);
+    (!deck.sol.as_ref().is_some_and(is_linear))
+        .then(|| unsupported(format!("SOL {text}"), deck.sol_at))
+}
+
+/// PARAM,LGDISP where it asks for large displacements.
+fn large_displacement(deck: &Deck) -> Option<UnsupportedCard> {
+    let asks = |p: &nastran::cards::Param| {
+        let value = p.values.first().and_then(|v| v.as_f64());
+        p.name == "LGDISP" && value.is_some_and(|v| v > 0.0)
+    };
+    let case_control = &deck.case_control;
+    let cases = std::iter::once(&case_control.global).chain(&case_control.subcases);
+    let stated = cases.flat_map(|c| &c.params).any(asks);
+    let bulk = deck.cards.params.iter().find(|p| asks(&p.card));
+    (stated || bulk.is_some()).then(|| UnsupportedCard {
+        card: "PARAM LGDISP".to_owned(),
+        id: None,
+        at: bulk.map_or(deck.sol_at, |p| p.at),
+    })
+}
+
+/// Statements of case control that act.
+fn statements(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
+    let lines = deck.case_control.lines.iter().filter(|l| !l.in_packet);
+    lines.filter_map(|line| {
+        let word = case_word(&line.name)?;
+        let value = value_of(line);
+        acts(deck, word, &value).then(|| UnsupportedCard {
+            card: match word.name {
+                "ANALYSIS" => format!("ANALYSIS = {value}"),
+                name => name.to_owned(),
+            },
+            id: value.parse().ok(),
+            at: line.at,
+        })
+    })
+}
+
+/// What stands behind the last `=`, or behind the word, upper case.
+fn value_of(line: &CaseLine) -> String {
+    let value = match line.text.rsplit_once('=') {
+        Some((_, value)) => value,
+        None => line.text.get(line.name.len()..).unwrap_or_default(),
+    };
+    value.trim().to_ascii_uppercase()
+}
+
+fn acts(deck: &Deck, word: CaseWord, value: &str) -> bool {
+    if word.name == "ANALYSIS" {
+        // heat transfer, nonlinear statics and transients; static aeroelasticity acts by TRIM
+        let kinds = ["HEAT", "HSTAT", "HTRAN", "NL", "RCNS", "RCTRN", "EXP"];
+        return kinds.iter().any(|k| value.starts_with(k));
+    }
+    let preload = word.name == "STATSUB" && deck.sol.is_some_and(|s| BUCKLING.contains(&s));
+    word.effect == Effect::Acts && !preload && !["NONE", "NO", "0"].contains(&value)
+}
+
+/// Bulk data of superelements and modules that is not read; models for optimisation and acoustics are none of the structure.
+fn superelements(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
+    const ASIDE: [&str; 5] = ["AUXMODEL", "ARBMODEL", "UDS", "TRMC", "FLXSLI"];
+    let parts = deck.parts.iter();
+    parts
+        .filter(|p| ASIDE.iter().all(|a| !p.text.contains(a)))
+        .map(|p| UnsupportedCard {
+            card: p.text.clone(),
+            id: None,
+            at: p.at,
+        })
+}
+
+/// Whether the deck has what a card acts with.
+fn is_present(deck: &Deck, what: &str) -> bool {
+    if what == "connectors" {
+        return !(deck.cards.welds.is_empty() && deck.cards.fasteners.is_empty());
+    }
+    let lines = deck.case_control.lines.iter().filter(|l| !l.in_packet);
+    let words = lines.filter_map(|l| case_word(&l.name));
+    words.into_iter().any(|w| w.name == what)
 }

@@ -1,7 +1,7 @@
 //! Whether the time of a record can be in seconds, and whether it is even.
 
 use crate::finding::{Finding, Severity};
-use crate::series::record::{Clock, EVEN, Evenness};
+use crate::series::record::{Clock, EVEN, Evenness, TimeUnit, USUAL_RATES_HZ, is_usual};
 use crate::units::number;
 
 /// Step, s, from which a record is slower than any logger of loads that move: 2 Hz. Half a millisecond is that of a logger of 2 kHz.
@@ -15,13 +15,18 @@ const ENOUGH: usize = 200;
 /// J. von Neumann, Ann. Math. Stat. 12 (1941) 367.
 const SMOOTH: f64 = 0.5;
 
-/// Steps of time that differ, and samples that are missing: neither stops a record. `second` is one of its times' unit, s.
-pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
+/// Steps of time that differ, samples that are missing, times whose unit only their size shows: none of them stops a record.
+pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
     let mut out = Vec::new();
+    out.extend(
+        clock
+            .unit
+            .map(|unit| recognised(subject, unit, clock.rate_hz)),
+    );
     if let Evenness::Resampled { largest, .. } = clock.evenness {
-        let rate = clock.rate_hz / second;
+        let rate = clock.rate_hz;
         let differ = match clock.change {
-            Some(change) => change.words(second),
+            Some(change) => change.words(),
             None => format!("steps of time differ by up to {:.0} %", 100.0 * largest),
         };
         out.push(
@@ -36,7 +41,7 @@ pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
         );
     }
     if clock.n_gaps > 0 {
-        let first = clock.gaps.first().map_or(0.0, |g| g.from_s * second);
+        let first = clock.gaps.first().map_or(0.0, |g| g.from_s);
         out.push(
             Finding::new(
                 Severity::Warning,
@@ -54,9 +59,54 @@ pub fn irregular(subject: &str, clock: &Clock, second: f64) -> Vec<Finding> {
     out
 }
 
-/// An error where samples lie `step_s` or more apart and yet follow each other as those of a fast logger do: time in milliseconds.
-/// `readings` are those of one piece, `n` gauges a sample.
+/// The note that times are taken in a unit that the file does not state.
+pub fn recognised(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
+    let words = unit.words();
+    Finding::new(
+        Severity::Info,
+        "time-unit-recognised",
+        subject,
+        format!(
+            "The file states no unit of time. Its times are taken as {words}: {rate_hz:.6} Hz."
+        ),
+        "Nothing; state the unit in the header, such as `time [ms]`, if this is wrong.",
+    )
+}
+
+/// The error of a rate, Hz, that records do not have, where no unit of time is stated.
+pub fn check_rate(rate_hz: f64) -> Option<Finding> {
+    if is_usual(rate_hz) {
+        return None;
+    }
+    let [slowest, fastest] = USUAL_RATES_HZ;
+    let (found, limit) = match rate_hz < slowest {
+        true => (
+            format!("a sample every {} s", number(1.0 / rate_hz)),
+            slowest,
+        ),
+        false => (format!("{} samples a second", number(rate_hz)), fastest),
+    };
+    Some(
+        Finding::new(
+            Severity::Error,
+            "time-unit-doubtful",
+            "time",
+            format!(
+                "{found}: the file states no unit of time, and its times in seconds give a rate outside of {slowest} to {fastest} Hz. \
+                 Sample rate, duration and everything in Hz depend on the unit"
+            ),
+            "state the unit in the header, such as `time [ms]`, or as [measured] time_unit",
+        )
+        .with_numbers(rate_hz, limit),
+    )
+}
+
+/// An error where the rate is none of a record, or where samples are `step_s` or more apart and yet follow each other as those of a fast logger
+/// do: time in milliseconds. `readings` are those of one piece, `n` gauges a sample.
 pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
+    if let Some(found) = check_rate(1.0 / step_s) {
+        return Some(found);
+    }
     let samples = readings.len() / n.max(1);
     if !(step_s >= SLOW) || samples < ENOUGH {
         return None;
@@ -118,5 +168,16 @@ mod tests {
         // Rows that have nothing to do with each other.
         assert_eq!(check(2.0, &wave(2.3), 1), None);
         assert_eq!(check(1.0, &wave(100.0)[..50], 1), None);
+    }
+
+    #[test]
+    fn a_rate_that_no_record_has_is_doubtful_however_few_samples_there_are() {
+        for step_s in [10.0, 5.1, 9e-6, 1e-7] {
+            let found = check(step_s, &wave(2.3)[..4], 1).expect("a finding");
+            assert_eq!(found.code, "time-unit-doubtful");
+        }
+        for step_s in [5.0, 1e-5] {
+            assert_eq!(check(step_s, &wave(2.3)[..4], 1), None, "{step_s}");
+        }
     }
 }

@@ -33,6 +33,7 @@ mod suspects;
 mod taught;
 mod types;
 pub mod unlike;
+pub mod validation;
 pub mod verdict;
 
 pub use determined::{beyond_expected, check_planned};

@@ -19,6 +19,15 @@ pub struct Readings {
 }
 
 impl Readings {
+    /// Returns the readings of these gauges, by number and in this order.
+    pub fn of_gauges(&self, gauges: &[usize]) -> Self {
+        let reading = |g: &usize| self.strain.get(*g).copied().unwrap_or(f64::NAN);
+        Self {
+            strain: gauges.iter().map(reading).collect(),
+            ..self.clone()
+        }
+    }
+
     /// Those of a sample of a record at `time_s`.
     pub fn of_sample(time_s: f64, strain: Vec<f64>, noise_factor: f64) -> Self {
         Self {

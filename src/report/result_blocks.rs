@@ -347,7 +347,9 @@ fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {
                 (a.max(*v), b.min(*v))
             })
     };
-    for (ix, stations) in case.beams.elements.iter().zip(&case.beams.stations) {
+    let field = &case.beams;
+    let all = field.elements.iter().zip(&field.stations).zip(&field.axial);
+    for ((ix, stations), axial) in all {
         let beam = &model.beams[ix.us()];
         if beam.is_beam != is_beam {
             continue;
@@ -369,8 +371,8 @@ fn beams(model: &Model, case: &CaseResult, is_beam: bool) -> Rows {
                     .extend([*xi, s[0], s[1], s[2], s[3], largest, smallest, 0.0, 0.0]);
             }
         } else if let (Some((_, a)), Some((_, b))) = (stations.first(), stations.last()) {
-            // Bending and axial parts are told apart by the mean over the points; readers add them.
-            let axial = a.iter().sum::<f64>() / 4.0;
+            // A row holds the axial strain once, for end A; readers add it to the bending strain of both ends.
+            let axial = axial.first().copied().unwrap_or(f64::NAN);
             let (bend_a, bend_b) = (a.map(|s| s - axial), b.map(|s| s - axial));
             let ((amax, amin), (bmax, bmin)) = (extremes(a), extremes(b));
             rows.ids.push(RowId {

@@ -1,5 +1,6 @@
 //! Stress per unit load.
 
+use crate::fe::BeamField;
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{Beam, BeamIx, MaterialIx, MaterialKind, Model, ShellIx, ShellKind};
@@ -151,40 +152,31 @@ fn beam_rows(
     ix: BeamIx,
     beam: &Beam,
 ) -> Result<Vec<ResponseRow>, Without> {
-    let fields: Option<Vec<&Vec<(f64, [f64; 4])>>> = loads
-        .iter()
-        .map(|l| {
-            let row = l.case.beams.elements.binary_search(&ix).ok()?;
-            l.case.beams.stations.get(row)
-        })
-        .collect();
-    let fields = fields.ok_or(Without::Strain)?;
+    let fields: Vec<&BeamField> = loads.iter().map(|l| &l.case.beams).collect();
+    let absent = |f: &&BeamField| f.elements.binary_search(&ix).is_err();
+    if fields.iter().any(absent) {
+        return Err(Without::Strain);
+    }
     let property = model.beam_properties.get(beam.property.us());
     let (e, _, _) = property
         .and_then(|p| isotropic(model, p.material))
         .ok_or(Without::Isotropy)?;
-    let Some(first) = fields.first() else {
-        return Ok(Vec::new());
-    };
     let mut rows = Vec::new();
-    for (s, (station, _)) in first.iter().enumerate() {
+    for station in stations(&fields, ix) {
+        let by_load: Vec<[f64; 4]> = loads
+            .iter()
+            .map(|l| match l.case.beams.strain_at(ix, station) {
+                Some((points, _)) => points.map(|e| e / l.applied),
+                None => [f64::NAN; 4],
+            })
+            .collect();
         for point in 0..4 {
-            let strain: Vec<[f64; 3]> = loads
-                .iter()
-                .zip(&fields)
-                .map(|(l, f)| {
-                    [
-                        f.get(s).map_or(f64::NAN, |v| v.1[point] / l.applied),
-                        0.0,
-                        0.0,
-                    ]
-                })
-                .collect();
+            let strain: Vec<[f64; 3]> = by_load.iter().map(|v| [v[point], 0.0, 0.0]).collect();
             rows.push(ResponseRow {
                 place: Place::Beam {
                     beam: ix,
                     point,
-                    station: *station,
+                    station,
                 },
                 element: beam.id,
                 stress: strain.iter().map(|v| [e * v[0], 0.0, 0.0]).collect(),
@@ -193,6 +185,20 @@ fn beam_rows(
         }
     }
     Ok(rows)
+}
+
+/// Stations of a bar or beam: those of the first load's case, and inner ones where loads act between its ends in some case.
+fn stations(fields: &[&BeamField], beam: BeamIx) -> Vec<f64> {
+    let own = fields.first().and_then(|f| {
+        let row = f.elements.binary_search(&beam).ok()?;
+        f.stations.get(row)
+    });
+    let mut all: Vec<f64> = own.iter().flat_map(|s| s.iter().map(|s| s.0)).collect();
+    let inner = fields.iter().flat_map(|f| f.inner_stations(beam));
+    all.extend(inner);
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
 }
 
 /// What is to be said of elements without rows.

@@ -3,7 +3,7 @@
 use super::{Load, Sensitivity};
 use crate::fe::CaseResult;
 use crate::finding::{Finding, Severity};
-use crate::gauge::{Gauge, reading};
+use crate::gauge::{Arm, Gauge, Spot, reading};
 use crate::linalg::Matrix;
 use crate::model::ShellIx;
 use std::collections::BTreeSet;
@@ -21,9 +21,7 @@ pub struct LoadCaseOf<'a> {
 
 /// A gauge without strain in some case.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error(
-    "gauge `{gauge}` on element {element} has no strain in subcase {subcase} (load `{load}`): ask for STRAIN of that element in every subcase, or move the gauge"
-)]
+#[error("gauge `{gauge}`: {}: {}", self.wrong(), self.remedy())]
 pub struct NoStrain {
     /// Gauge.
     pub gauge: String,
@@ -33,6 +31,63 @@ pub struct NoStrain {
     pub subcase: u32,
     /// Load.
     pub load: String,
+    /// Why.
+    pub why: NoStrainCause,
+}
+
+/// Why a case has no strain at a gauge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NoStrainCause {
+    /// It has none of the element.
+    Absent,
+    /// The station is between those of the result, and the strain of the bar is no straight line between them.
+    BetweenStations,
+}
+
+impl NoStrain {
+    /// Returns what is wrong.
+    pub fn wrong(&self) -> String {
+        let Self {
+            element,
+            subcase,
+            load,
+            ..
+        } = self;
+        match self.why {
+            NoStrainCause::Absent => {
+                format!("element {element} has no strain in subcase {subcase} (load `{load}`)")
+            }
+            NoStrainCause::BetweenStations => format!(
+                "the results do not determine the strain of element {element} at this `station` in subcase {subcase} (load `{load}`): PLOAD1 acts along the element, or its section changes along it"
+            ),
+        }
+    }
+
+    /// Returns what to do.
+    pub fn remedy(&self) -> &'static str {
+        match self.why {
+            NoStrainCause::Absent => {
+                "ask for STRAIN of that element in every subcase, or move the gauge"
+            }
+            NoStrainCause::BetweenStations => {
+                "state a station of the results (an end, or a CBARAO or PBEAM station), or let the built-in solver compute the strain (leave `results` out)"
+            }
+        }
+    }
+}
+
+/// Why a case has no reading of a gauge.
+fn cause(gauge: &Gauge, case: &CaseResult) -> NoStrainCause {
+    let between = |arm: &Arm| match arm.spot {
+        Spot::Beam { beam, .. } | Spot::BeamAxis { beam, .. } => {
+            case.beams.is_at_stations_alone(beam)
+        }
+        Spot::Shell { .. } => false,
+    };
+    match gauge.arms.iter().any(between) {
+        true => NoStrainCause::BetweenStations,
+        false => NoStrainCause::Absent,
+    }
 }
 
 /// `S[g][l] = reading of gauge g in the case of load l / applied`.
@@ -51,6 +106,7 @@ pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity,
                     element: gauge.element,
                     subcase: load.case.subcase,
                     load: load.load.name.clone(),
+                    why: cause(gauge, load.case),
                 }),
             }
         }

@@ -97,6 +97,16 @@ impl Sensitivity {
         }
     }
 
+    /// Returns the rows of these gauges, by number and in this order.
+    pub fn of_gauges(&self, gauges: &[usize]) -> Self {
+        Self {
+            gauges: gauges.iter().map(|&g| self.gauges[g].clone()).collect(),
+            loads: self.loads.clone(),
+            values: self.values.select_rows(gauges),
+            uncertainty: self.uncertainty.as_ref().map(|u| u.of_gauges(gauges)),
+        }
+    }
+
     /// [`Load::prior`] of every load.
     pub fn priors(&self) -> Vec<Option<f64>> {
         self.loads.iter().map(Load::prior).collect()

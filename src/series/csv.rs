@@ -2,7 +2,7 @@
 
 use super::channels::Channels;
 use super::error::SeriesError;
-use super::foreign::check_even;
+use super::even_record::check_even;
 use super::record::csv::Csv;
 use super::record::{Record, read_channels};
 use std::sync::Arc;
@@ -13,7 +13,11 @@ use std::sync::Arc;
 /// # Errors
 /// [`SeriesError`] naming the line: ragged rows, text where a number belongs, uneven time steps, a rate other than the declared one.
 pub fn read_csv(bytes: &[u8], declared_hz: Option<f64>) -> Result<Channels, SeriesError> {
-    let record = Record::new(Box::new(Csv::new(Arc::new(bytes.to_vec()))?), declared_hz)?;
+    let record = Record::new(
+        Box::new(Csv::new(Arc::new(bytes.to_vec()))?),
+        declared_hz,
+        None,
+    )?;
     check_even(&record)?;
     read_channels(&record)
 }

@@ -205,7 +205,7 @@ impl SeriesError {
                     "channels {} were sampled at other times than the rest",
                     names.join(", ")
                 ),
-                "bring all to one rate first (`resample` of asammdf does it)",
+                "resample all of them to the same times first (`resample` of asammdf does it)",
             ),
             Self::Band {
                 low_hz,

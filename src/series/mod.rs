@@ -29,7 +29,7 @@ pub mod content;
 pub mod csv;
 pub mod detrend;
 pub mod error;
-pub mod foreign;
+pub mod even_record;
 pub mod integrate;
 pub mod number;
 #[cfg(feature = "parquet")]

@@ -87,11 +87,16 @@ pub fn parquet_bytes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::foreign::{Foreign, read_foreign};
+    use crate::series::even_record::open_even;
+    use crate::series::record::{Options, read_channels};
     use parquet::schema::parser::parse_message_type;
 
     fn read_parquet(bytes: &[u8], hz: Option<f64>) -> Result<crate::series::Channels, SeriesError> {
-        read_foreign(Foreign::Parquet, bytes, hz, &[])
+        let options = Options {
+            declared_hz: hz,
+            ..Options::default()
+        };
+        read_channels(&open_even(Arc::new(bytes.to_vec()), &options)?)
     }
 
     #[test]

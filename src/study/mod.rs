@@ -4,7 +4,7 @@ mod error;
 mod trials;
 
 pub use error::{ErrorKind, StudyError};
-pub use trials::{PoolGauge, StudyRow, StudySpec, study_layout};
+pub use trials::{PoolGauge, StudyRow, StudySpec, TrueLoad, study_layout};
 
 #[cfg(test)]
 mod tests;

@@ -21,11 +21,30 @@ pub struct PoolGauge {
     pub slope: Option<[Vec<f64>; 2]>,
 }
 
+/// True size of a load in the trials, job units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum TrueLoad {
+    /// One size in all trials.
+    Known(f64),
+    /// Drawn in every trial: normal, mean 0, this standard deviation.
+    Drawn(f64),
+}
+
+impl TrueLoad {
+    /// Returns the size to which errors are compared: the absolute value, or the standard deviation.
+    pub fn size(self) -> f64 {
+        match self {
+            Self::Known(f) => f.abs(),
+            Self::Drawn(sd) => sd,
+        }
+    }
+}
+
 /// What holds for all layouts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudySpec {
-    /// True loads, job units; nuisance loads are drawn with their prior instead.
-    pub truth: Vec<f64>,
+    /// True loads.
+    pub truth: Vec<TrueLoad>,
     /// Prior standard deviation of nuisance loads, `None` for wanted ones.
     pub prior: Vec<Option<f64>>,
     /// Sizes that scale the columns of S for its condition number; `None` scales them to unit norm.
@@ -119,6 +138,18 @@ pub fn study_layout(
     row
 }
 
+/// Entries of a column of S up to this share apart count as equally large.
+const EQUALLY_LARGE: f64 = 1e-6;
+
+/// Returns the sign of the largest entry in column `l` of S, the first of equally large ones. A load that is counted the other way round has the
+/// other sign: times this sign, the same draw is the same state of the structure.
+fn sense(pool: &[PoolGauge], l: usize) -> f64 {
+    let column = || pool.iter().map(|g| g.row[l]);
+    let largest = column().map(f64::abs).fold(0.0, f64::max);
+    let first = column().find(|v| v.abs() >= (1.0 - EQUALLY_LARGE) * largest);
+    first.unwrap_or(1.0).signum()
+}
+
 /// S of a layout and its least-squares solution for readings of equal noise.
 fn solver(pool: &[PoolGauge], layout: &[usize], spec: &StudySpec) -> Option<(Matrix, Fit)> {
     let k = spec.truth.len();
@@ -155,8 +186,11 @@ fn trial(
     let truth: Vec<f64> = spec
         .truth
         .iter()
-        .zip(&spec.prior)
-        .map(|(f, p)| p.map_or(*f, |sd| sd * normal(&mut random)))
+        .enumerate()
+        .map(|(l, load)| match *load {
+            TrueLoad::Known(f) => f,
+            TrueLoad::Drawn(sd) => sense(pool, l) * sd * normal(&mut random),
+        })
         .collect();
     let read = |row: &[f64]| dot(row, &truth);
     let y: Vec<f64> = layout

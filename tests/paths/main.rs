@@ -1,8 +1,12 @@
 //! From files to results, through the program.
 
 mod cases;
+mod combinations;
 mod command;
 mod frame;
+mod gauges;
+mod misread;
+mod names;
 mod placement;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]

@@ -7,9 +7,12 @@ mod calibrated;
 mod drawn;
 mod dynamic;
 mod files;
+mod kinds;
 mod misled;
 mod payload;
 mod supported;
+mod tables;
+mod validation;
 
 use serde_json::Value;
 use std::fmt::Write;

@@ -200,7 +200,7 @@ pub fn on_other(other: &Truck, gauges: &[Gauge], lot: &mut Lot) -> Vec<Gauge> {
 /// The side of the other truck's shell that faces as the gauge does.
 fn side_like(other: &Truck, g: &Gauge, shift: Vec3) -> strainbridge::fe::strain_tensor::Surface {
     use strainbridge::fe::strain_tensor::Surface;
-    let foot = strainbridge::gauge::nearest(&other.model, g.position + shift, |_| true).unwrap();
+    let foot = strainbridge::gauge::nearest_skin(&other.model, g.position + shift, None).unwrap();
     let probe = GaugeSpec {
         surface: Some(Surface::Top),
         direction: Some(g.direction),

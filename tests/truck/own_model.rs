@@ -5,7 +5,7 @@ use crate::world::*;
 use strainbridge::fe::{LoadCase, Relief, SolveOptions, UnitLoad, solve_cases};
 use strainbridge::gauge::reading;
 use strainbridge::model::GridIx;
-use strainbridge::study::{ErrorKind, PoolGauge, StudyError, StudySpec, study_layout};
+use strainbridge::study::{ErrorKind, PoolGauge, StudyError, StudySpec, TrueLoad, study_layout};
 
 #[test]
 fn table_6_1_reactions_of_a_separately_supported_solution_come_back_to_1e_5() {
@@ -76,7 +76,7 @@ fn pool(gauges: &[strainbridge::gauge::Gauge]) -> Vec<PoolGauge> {
 fn tables_6_8_and_6_9_noise_in_proportion_at_ten_gauges() {
     let gauges = best_ten();
     let spec = StudySpec {
-        truth: own().reactions(),
+        truth: own().reactions().into_iter().map(TrueLoad::Known).collect(),
         prior: vec![None; 6],
         sizes: None,
         noise: MICRO,
@@ -97,7 +97,7 @@ fn tables_6_8_and_6_9_noise_in_proportion_at_ten_gauges() {
             .sigma
             .iter()
             .zip(&spec.truth)
-            .map(|(s, t)| 100.0 * s / t)
+            .map(|(s, t)| 100.0 * s / t.size())
             .collect();
         println!(
             "6.8/6.9: noise {size}: sd {errors:.2?} %, mean {:.2}, coverage {:.3?}",

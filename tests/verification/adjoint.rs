@@ -125,6 +125,7 @@ fn the_adjoint_change_is_the_slope_of_solutions_with_some_shells_softer_free_and
     let held = Support {
         spc: Some(1),
         relief: Relief::None,
+        by_springs: 0,
     };
     for support in [Support::free(&model), held] {
         let options = SolveOptions::default();

@@ -11,7 +11,11 @@ impl Loader for Files {
     fn load(&mut self, request: &IncludeRequest) -> Result<Loaded, String> {
         for path in request.candidates(|_| None)? {
             if let Ok(bytes) = std::fs::read(&path) {
-                return Ok(Loaded { path, bytes });
+                return Ok(Loaded {
+                    path,
+                    bytes,
+                    rival: None,
+                });
             }
         }
         Err("not found".to_owned())

@@ -157,3 +157,92 @@ fn scalar_springs_in_a_row_give_way_one_after_the_other() {
         1e-12,
     );
 }
+
+/// Strain at C along the bar of `cantilever` by its bending moment, in terms of E, I and y = 5.
+fn by_moment(m: f64) -> f64 {
+    -m * 5.0 / (E * I1)
+}
+
+#[test]
+fn strain_at_a_station_follows_the_moment_there() {
+    type Moment<'a> = &'a dyn Fn(f64) -> f64;
+    let step = |x: f64| if x < 200.0 { 1.0 } else { 0.0 };
+    let cases: [(&str, Moment<'_>); 6] = [
+        ("PLOAD1,1,1,FY,FR,0.,2.,1.,2.", &|x| (L - x).powi(2)),
+        // From nothing at the wall to 2 per length at the tip.
+        ("PLOAD1,1,1,FY,FR,0.,0.,1.,2.", &|x| {
+            2.0 / L * (L.powi(3) / 3.0 - x * L * L / 2.0 + x.powi(3) / 6.0)
+        }),
+        // Over the first 200 alone.
+        ("PLOAD1,1,1,FY,LE,0.,2.,200.,2.", &|x| {
+            (200.0 - x).max(0.0).powi(2)
+        }),
+        ("PLOAD1,1,1,FY,LE,200.,30.", &|x| {
+            30.0 * (200.0 - x).max(0.0)
+        }),
+        ("PLOAD1,1,1,MZ,LE,200.,900.", &|x| 900.0 * step(x)),
+        ("FORCE,1,2,0,30.,0.,1.,0.", &|x| 30.0 * (L - x)),
+    ];
+    for beam in [false, true] {
+        for (load, moment) in &cases {
+            let s = cantilever(beam, "", load).solve();
+            let largest = by_moment(moment(0.0)).abs();
+            for station in [0.0, 0.1, 0.3, 0.5, 0.75, 1.0] {
+                let (points, axial) = s
+                    .case
+                    .beams
+                    .strain_at(s.model.beam_ix(1).unwrap(), station)
+                    .unwrap();
+                let expected = by_moment(moment(station * L));
+                assert!(
+                    (points[0] - expected).abs() < 1e-10 * largest && axial.abs() < 1e-10 * largest,
+                    "{load} at {station}: {} for {expected}",
+                    points[0]
+                );
+            }
+        }
+    }
+}
+
+/// A beam whose area and second moment double from A to B; stations between the ends are those of the straight line between both.
+#[test]
+fn strain_at_a_station_of_a_tapered_beam_is_that_of_the_section_there() {
+    let solved = |load: &str| {
+        let mut b = Bulk::default();
+        b.card("MAT1,1,210000.,,.3,7.85-9");
+        b.card("PBEAM,2,1,200.,9000.,4000.,0.,8000.,0.,\n,5.,0.,0.,0.,0.,0.,0.,0.,\n,YES,1.,400.,18000.,8000.,0.,16000.,0.,\n,5.,0.,0.,0.,0.,0.,0.,0.");
+        let (a, c) = (b.grid([0.0; 3]), b.grid([L, 0.0, 0.0]));
+        b.card(&format!("CBEAM,1,2,{a},{c},0.,1.,0."));
+        b.hold("123456", [a]);
+        b.card(load);
+        b.solve()
+    };
+    for x in [0.0, 0.25, 0.5, 0.9, 1.0] {
+        let at = |load: &str| {
+            let s = solved(load);
+            s.case
+                .beams
+                .strain_at(s.model.beam_ix(1).unwrap(), x)
+                .unwrap()
+        };
+        let grown = 1.0 + x;
+        near(
+            "end moment",
+            at("MOMENT,1,2,0,900.,0.,0.,1.").0[0],
+            by_moment(900.0) / grown,
+            1e-9,
+        );
+        near(
+            "axial",
+            at("FORCE,1,2,0,700.,1.,0.,0.").1,
+            700.0 / (E * 200.0 * grown),
+            1e-9,
+        );
+        let tip = at("FORCE,1,2,0,30.,0.,1.,0.").0[0];
+        let expected = by_moment(30.0 * L * (1.0 - x)) / grown;
+        assert!(
+            (tip - expected).abs() < 1e-9 * by_moment(30.0 * L).abs(),
+            "{tip} for {expected}"
+        );
+    }
+}

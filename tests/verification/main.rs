@@ -2,6 +2,7 @@
 
 #![allow(clippy::print_stderr, reason = "numbers for the tables in docs")]
 
+mod accelerations;
 mod adjoint;
 mod balance;
 mod connector_faults;
@@ -13,10 +14,12 @@ mod drawn;
 mod frame_calibrated;
 mod frame_refined;
 mod frame_units;
+mod hot_materials;
 mod invariants;
 mod laminates;
 mod line_loads;
 mod macneal_harder;
+mod masses;
 mod mesh;
 mod modes;
 mod plates;
@@ -26,7 +29,9 @@ mod real_cases;
 mod real_deck_limits;
 mod real_decks;
 mod sections;
+mod small_decks;
 mod solids;
+mod springs_in_series;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;
 mod supports;

@@ -148,3 +148,66 @@ fn a_box_of_unlike_sides_has_the_shear_centre_of_its_shear_flow() {
     let centre = (b * right - h * flange) / i;
     close("shear centre", -s.recovery[2][1] - t1 / 2.0, centre, 1e-6);
 }
+
+/// Pure bending of a CBAR strains the points of every section by `M y / I` about its centroid: bending of one sign on both sides of a
+/// section is impossible. The centroid of the points' section is taken from the CBEAM of the same section, which measures it.
+#[test]
+fn points_of_a_pbarl_count_from_the_centroid() {
+    let types: [(&str, &[f64]); 10] = [
+        ("T", &[60.0, 90.0, 7.0, 5.0]),
+        ("T1", &[60.0, 90.0, 7.0, 5.0]),
+        ("T2", &[60.0, 90.0, 7.0, 5.0]),
+        ("L", &[50.0, 70.0, 6.0, 5.0]),
+        ("CHAN", &[40.0, 100.0, 5.0, 6.0]),
+        ("CHAN1", &[30.0, 6.0, 80.0, 100.0]),
+        ("CHAN2", &[5.0, 6.0, 60.0, 90.0]),
+        ("HAT", &[50.0, 4.0, 60.0, 20.0]),
+        ("I", &[100.0, 80.0, 40.0, 5.0, 7.0, 6.0]),
+        ("BOX1", &[60.0, 90.0, 5.0, 9.0, 4.0, 7.0]),
+    ];
+    for (kind, dims) in types {
+        let beam = section(kind, dims);
+        let mut b = Bulk::default();
+        b.card("MAT1,1,210000.,,.3");
+        let fields: Vec<String> = dims.iter().map(|d| format!("{d:?}")).collect();
+        b.card(&format!("PBARL,2,1,,{kind},,,,,\n,{}", fields.join(",")));
+        let (a, c) = (b.grid([0.0; 3]), b.grid([100.0, 0.0, 0.0]));
+        b.card(&format!("CBAR,1,2,{a},{c},0.,1.,0."));
+        b.hold("123456", [a]);
+        b.card("MOMENT,1,2,0,1000.,0.,0.,1.");
+        let s = b.solve();
+        let (points, axial) = s
+            .case
+            .beams
+            .strain_at(s.model.beam_ix(1).unwrap(), 0.5)
+            .unwrap();
+        assert!(axial.abs() < 1e-15, "{kind}: {axial}");
+        // Curvatures of a section with a product of inertia under a moment about z.
+        let d = beam.i1 * beam.i2 - beam.i12 * beam.i12;
+        let largest = points.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+        for (p, got) in beam.recovery.iter().zip(points) {
+            let (y, z) = (p[0] - beam.neutral[0], p[1] - beam.neutral[1]);
+            let expected = -1000.0 * (beam.i2 * y - beam.i12 * z) / (210_000.0 * d);
+            assert!(
+                (got - expected).abs() <= 1e-9 * largest,
+                "{kind}: {got} for {expected}"
+            );
+        }
+    }
+    // A T of flange 80 x 8 and web 92 x 6 under 1e5: its centroid is 27.15 below the top of the flange.
+    let (flange, web) = (80.0 * 8.0, 92.0 * 6.0);
+    let from_top = (flange * 4.0 + web * 54.0) / (flange + web);
+    let i = 80.0 * 512.0 / 12.0
+        + flange * (from_top - 4.0_f64).powi(2)
+        + 6.0 * 92.0_f64.powi(3) / 12.0
+        + web * (54.0 - from_top).powi(2);
+    let t = section("T", &[80.0, 100.0, 8.0, 6.0]);
+    close("I1", t.i1, i, 1e-12);
+    close("top", t.recovery[0][0] - t.neutral[0], from_top, 1e-12);
+    close(
+        "bottom",
+        t.recovery[2][0] - t.neutral[0],
+        from_top - 100.0,
+        1e-12,
+    );
+}

@@ -307,3 +307,248 @@ fn work_that_is_to_stop_gives_no_solution() {
         Err(FeError::Stopped)
     ));
 }
+
+/// Tip force P across a cantilever of length L: u = P L^3 / (3 E I); a property of bending alone states no area.
+#[test]
+fn a_bar_without_area_bends_as_a_cantilever() {
+    for (property, plane, inertia) in [
+        (format!("PBAR,2,1,,{I1:?}"), 2, I1),
+        (format!("PBAR,2,1,0.,,{I2:?}"), 3, I2),
+    ] {
+        let mut b = Bulk::default();
+        b.card(&format!("MAT1,1,{E:?},,.3,7.85-9"));
+        b.card(&property);
+        let g = [0.0, LENGTH].map(|x| b.grid([x, 0.0, 0.0]));
+        b.card(&format!("CBAR,1,2,{},{},0.,1.,0.", g[0], g[1]));
+        b.card(&format!("SPC1,1,123456,{}", g[0]));
+        let direction = if plane == 2 { "0.,1.,0." } else { "0.,0.,1." };
+        b.card(&format!("FORCE,1,{},,100.,{direction}", g[1]));
+        let (solution, _) = solved(&b);
+        let tip = solution.cases[0].displacement[1][plane - 1];
+        same(&property, tip, 100.0 * LENGTH.powi(3) / (3.0 * E * inertia));
+    }
+}
+
+#[test]
+fn a_bar_without_any_stiffness_is_a_fault() {
+    let mut b = bar(1);
+    b.card("PBAR,9,1");
+    b.card("CBAR,9,9,1,2,0.,1.,0.");
+    let found = b.read_model().1;
+    let wrong = "PBAR 9: a bar whose A, I1, I2 and J are all 0 is not supported";
+    assert!(found.iter().any(|f| f.to_string() == wrong), "{found:?}");
+}
+
+#[test]
+fn a_dof_that_is_held_and_dependent_is_found_before_a_solution() {
+    // Bar from grid 1 to 2; grid 3 is joined to grid 2 by one dependent dof.
+    let deck = |joint: &str, support: &str| {
+        let mut b = bar(1);
+        b.grid([LENGTH, 1.0, 0.0]);
+        b.card("SPC1,1,123456,1");
+        b.card(joint);
+        b.card(support);
+        held_dependents(&b.model(), Some(1), Some(4))
+    };
+    for (joint, card) in [
+        ("RBE2,7,2,123,3", "RBE2 7"),
+        ("RBE3,7,,3,123,1.,123456,2", "RBE3 7"),
+        ("MPC,4,3,2,1.,2,2,-1.", "MPC 4"),
+    ] {
+        let finding = deck(joint, "SPC1,1,2,3").unwrap_or_else(|| panic!("{joint}"));
+        assert_eq!(
+            (finding.severity, finding.code),
+            (Severity::Error, "contradicting-spc")
+        );
+        let both = format!("grid 3 dof 2: SPC 1 and {card}");
+        assert!(finding.message.contains(&both), "{finding:?}");
+        assert!(deck(joint, "SPC1,1,456,3").is_none(), "{joint}");
+        assert!(deck(joint, "SPC1,2,2,3").is_none(), "another set: {joint}");
+    }
+}
+
+/// A bar of two units of length on bushes or springs to ground, without any SPC set; `rho` of its material.
+fn bar_on(springs: &str, rho: &str) -> Bulk {
+    let mut b = Bulk::default();
+    b.card(&format!("MAT1,1,1.+10,,.3,{rho}"));
+    b.card("PBAR,1,1,.01,1.-5,1.-5,1.-5\n,.05,0.");
+    let (a, e) = (b.grid([0.0; 3]), b.grid([2.0, 0.0, 0.0]));
+    b.card(&format!("CBAR,1,1,{a},{e},0.,1.,0."));
+    b.card(springs);
+    b.card("FORCE,1,2,,1000.,1.,0.,0.");
+    b
+}
+
+/// A stiffness far below or above that of the bar counts alike; neither mass nor an SPC set is needed.
+#[test]
+fn a_structure_on_springs_to_ground_is_held_by_them() {
+    for k in [1e3, 1e6, 1e12] {
+        let bush = format!(
+            "CBUSH,2,2,1,,,,,0\nPBUSH,2,K{}",
+            format!(",{k:?}").repeat(6)
+        );
+        let springs: Vec<String> = (1..=6)
+            .map(|c| format!("CELAS2,{},{k:?},1,{c}", 10 + c))
+            .collect();
+        let springs = springs.join("\n");
+        let anchored = format!(
+            "GRID,9,,0.,0.,0.,,123456\nCBUSH,2,2,1,9,,,,0\nPBUSH,2,K{}",
+            format!(",{k:?}").repeat(6)
+        );
+        for (held, rho) in [
+            (&bush, "100."),
+            (&bush, ""),
+            (&springs, ""),
+            (&anchored, ""),
+        ] {
+            let model = bar_on(held, rho).model();
+            let support = support_of(&model, SupportChoice::Deck).unwrap();
+            assert!(support.is_held(), "{held}");
+            assert!(relief_finding(&model, support, SupportChoice::Deck).is_none());
+            for relief in [Relief::Automatic, support.relief] {
+                let case = on(None, relief, UnitLoad::Set(1));
+                let (solution, report) =
+                    solve_cases(&model, &[case], &SolveOptions::default()).unwrap();
+                assert!(
+                    solution
+                        .findings
+                        .iter()
+                        .all(|f| f.severity == Severity::Info),
+                    "{:?}",
+                    solution.findings
+                );
+                let u = &solution.cases[0].displacement;
+                same("grid 1", u[0][0], 1000.0 / k);
+                same("grid 2", u[1][0], 1000.0 / k + 1000.0 * 2.0 / (1e10 * 0.01));
+                same("strain", solution.cases[0].beams.axial[0][0], 1e-5);
+                same("reaction", report.reactions[0].total[0], -1000.0);
+            }
+        }
+    }
+}
+
+/// Statically determinate springs, one more at each step: each takes one motion out of those that nothing resists.
+#[test]
+fn each_spring_to_ground_takes_one_rigid_motion() {
+    let at = [(1, 3), (2, 3), (3, 3), (1, 1), (1, 2), (2, 2)];
+    for n in 0..=6 {
+        let mut b = Bulk::default();
+        b.card("MAT1,1,210000.,,.3,7.85-9\nPBAR,2,1,200.,9000.,4000.,8000.");
+        // Far from the origin, on springs far softer than the bars.
+        for x in [[0.0, 0.0], [1000.0, 0.0], [0.0, 1000.0]] {
+            b.grid([1e5 + x[0], x[1] - 1e5, 0.0]);
+        }
+        b.card("CBAR,1,2,1,2,0.,0.,1.\nCBAR,2,2,1,3,0.,0.,1.");
+        for (i, (grid, dof)) in at.iter().take(n).enumerate() {
+            b.card(&format!("CELAS2,{},1.-3,{grid},{dof}", 10 + i));
+        }
+        b.force(2, [3.0, 5.0, 7.0]);
+        let model = b.model();
+        let support = Support::free(&model);
+        assert_eq!(usize::from(support.by_springs), n);
+        assert_eq!(support.is_held(), n == 6);
+        assert_eq!(determinate_dofs(&model).len(), 6 - n);
+        let modes = solve_modes(&model, None, None, 3, &SolveOptions::default()).unwrap();
+        assert_eq!(modes.rigid_motions, 6 - n);
+    }
+}
+
+/// Three springs along z of a frame that is free along x and y and about z.
+fn on_vertical_springs(k: f64) -> Bulk {
+    let mut b = Bulk::default();
+    b.card("MAT1,1,210000.,,.3,7.85-9\nPBAR,2,1,200.,9000.,4000.,8000.");
+    for x in [[0.0, 0.0], [1000.0, 0.0], [0.0, 800.0], [1000.0, 800.0]] {
+        b.grid([x[0], x[1], 0.0]);
+    }
+    b.card("CBAR,1,2,1,2,0.,0.,1.\nCBAR,2,2,1,3,0.,0.,1.\nCBAR,3,2,2,4,0.,0.,1.\nCBAR,4,2,3,4,0.,0.,1.");
+    (1..=3).for_each(|g| b.card(&format!("CELAS2,{},{k:?},{g},3", 10 + g)));
+    b
+}
+
+#[test]
+fn springs_carry_what_they_resist_and_inertia_balances_the_rest() {
+    let k = 40.0;
+    let mut b = on_vertical_springs(k);
+    b.force(4, [20.0, 0.0, 90.0]);
+    let model = b.model();
+    let support = support_of(&model, SupportChoice::Deck).unwrap();
+    assert_eq!((support.by_springs, support.relief), (3, Relief::Automatic));
+    let assumed = relief_finding(&model, support, SupportChoice::Deck).unwrap();
+    assert_eq!(assumed.code, "inertia-relief-assumed");
+    let case = on(None, support.relief, UnitLoad::Set(1));
+    let (solution, report) = solve_cases(&model, &[case], &SolveOptions::default()).unwrap();
+    assert!(solution.findings.iter().all(|f| f.code != "tied-to-ground"));
+    // Equilibrium of a plate on three feet under a force at the fourth corner: -1, 1, 1 times the force.
+    for (g, share) in [(0, -1.0), (1, 1.0), (2, 1.0)] {
+        same(
+            "foot",
+            solution.cases[0].displacement[g][2] * k,
+            90.0 * share,
+        );
+    }
+    let balance = &report.balance[0];
+    let mass = report.mass.as_ref().unwrap().mass;
+    same("along x", balance.acceleration[0], 20.0 / mass);
+    assert!(balance.inertia[2].abs() < 1e-9, "{balance:?}");
+    // The written deck of such a job holds the free motions by SUPORT.
+    let dofs = determinate_dofs(&model);
+    assert!(
+        dofs.len() == 3 && dofs.iter().all(|(_, dof)| [1, 2].contains(dof)),
+        "{dofs:?}"
+    );
+    for (grid, dof) in dofs {
+        b.card(&format!("SUPORT,{},{dof}", model.grids[grid.us()].id));
+    }
+    let stated = on(None, Relief::Suport(None), UnitLoad::Set(1));
+    let (by_suport, _) = solve_cases(&b.model(), &[stated], &SolveOptions::default()).unwrap();
+    let strain = |s: &Solution| s.cases[0].beams.axial[3][1];
+    assert!((strain(&solution) - strain(&by_suport)).abs() <= ROUNDING * strain(&solution).abs());
+}
+
+#[test]
+fn stated_relief_of_a_structure_on_springs_is_limited_with_a_warning() {
+    let mut b = on_vertical_springs(40.0);
+    let free = support_of(&b.model(), SupportChoice::Free).unwrap();
+    let finding = relief_finding(&b.model(), free, SupportChoice::Free).unwrap();
+    assert_eq!(
+        (finding.code, finding.severity),
+        ("tied-to-ground", Severity::Warning)
+    );
+    assert!(
+        finding.message.contains("3 rigid motions of 6"),
+        "{}",
+        finding.message
+    );
+    b.card("PARAM,INREL,-2");
+    let deck = support_of(&b.model(), SupportChoice::Deck).unwrap();
+    assert!(relief_finding(&b.model(), deck, SupportChoice::Deck).is_some());
+}
+
+/// Springs in series through scalar points are springs to ground; a spring between grids, or an idle one, is none.
+#[test]
+fn chains_of_scalar_points_reach_ground_and_springs_within_the_structure_do_not() {
+    let by = |cards: &str| {
+        let mut b = bar(2);
+        b.card(cards);
+        Support::free(&b.model()).by_springs
+    };
+    assert_eq!(
+        by("SPOINT,91,92\nCELAS2,11,5.,1,3,91\nCELAS2,12,7.,91,,92\nCELAS2,13,9.,92"),
+        1
+    );
+    assert_eq!(
+        by("SPOINT,91,92\nCELAS2,11,5.,1,3,91\nCELAS2,12,7.,91,,92"),
+        0
+    );
+    assert_eq!(by("CELAS2,11,5.,1,1,2,1"), 0);
+    assert_eq!(by("CELAS2,11,0.,1,1"), 0);
+    assert_eq!(by("PARAM,K6ROT,100."), 0);
+}
+
+#[test]
+fn a_floor_under_a_structure_on_springs_is_refused() {
+    let model = on_vertical_springs(40.0).model();
+    let contacts: Vec<_> = (1..=4).filter_map(|g| model.grid_ix(g)).collect();
+    let error = floor::solve_standing(&model, 2, &contacts, &[], None).unwrap_err();
+    assert!(error.to_string().contains("springs to ground"), "{error}");
+}

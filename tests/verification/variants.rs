@@ -69,6 +69,7 @@ fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
     let held = Support {
         spc: Some(1),
         relief: Relief::None,
+        by_springs: 0,
     };
     let variants = [
         thicker(&model, 1.1),

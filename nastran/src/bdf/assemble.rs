@@ -2,10 +2,10 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::card::read_card;
-use super::deck::OtherCard;
+use super::continuation_name::{Claimed, asks, bare, claim};
+use super::emit::emit;
 use super::fault::{Fault, Wrong};
-use super::fields::{Fields, Value, excerpt, note_fault};
+use super::fields::{excerpt, note_fault};
 use super::line::{Line, trim, without_comment};
 use super::names::NameReader;
 use super::part::{Deferred, Name, Orphan, Part, Span};
@@ -28,6 +28,8 @@ enum Open {
 pub(super) struct Assembler<'a, 'b> {
     source: SourceIx,
     budget: &'b AtomicUsize,
+    /// Names of continuations that belong to cards elsewhere in the deck.
+    claimed: &'b Claimed,
     pub part: Part,
     open: Open,
     name: Name,
@@ -46,19 +48,12 @@ pub(super) struct Assembler<'a, 'b> {
     last_deferred: Option<usize>,
 }
 
-/// Without the leading mark: names match by what follows.
-pub(super) fn bare(label: &[u8]) -> &[u8] {
-    match label {
-        [b'+' | b'*', rest @ ..] => trim(rest),
-        other => other,
-    }
-}
-
 impl<'a, 'b> Assembler<'a, 'b> {
-    pub(super) fn new(source: SourceIx, budget: &'b AtomicUsize) -> Self {
+    pub(super) fn new(source: SourceIx, budget: &'b AtomicUsize, claimed: &'b Claimed) -> Self {
         Assembler {
             source,
             budget,
+            claimed,
             part: Part::default(),
             open: Open::Nothing,
             name: Name::default(),
@@ -105,6 +100,9 @@ impl<'a, 'b> Assembler<'a, 'b> {
         }
         let cut = cut(body);
         match cut.lead {
+            Lead::Name | Lead::Data if cut.field_1_is_blank() && self.goes_on_with(&cut) => {
+                self.continuation(&cut.with_blank_field_1(), &line)
+            }
             Lead::Name if self.comma && is_list_word(cut.head) => self.data(&cut, &line),
             Lead::Name => self.card(&cut, &line),
             Lead::Continuation => self.continuation(&cut, &line),
@@ -123,6 +121,14 @@ impl<'a, 'b> Assembler<'a, 'b> {
         self.spans.push(self.span(line));
         self.label = cut.fields(&mut self.fields);
         self.comma = cut.is_open();
+        self.names
+            .card(name.as_bytes(), &self.fields, &mut self.part.labels);
+    }
+
+    /// Whether a line whose commas are behind a blank field 1 continues the open card: the card holds text, or the line is no card.
+    fn goes_on_with(&self, cut: &Cut<'a>) -> bool {
+        let open = self.open == Open::Card && !self.comma;
+        open && (holds_text(self.name.as_bytes()) || Name::new(cut.head).is_none())
     }
 
     fn not_a_card(&mut self, line: &Line) {
@@ -151,10 +157,16 @@ impl<'a, 'b> Assembler<'a, 'b> {
     fn continuation(&mut self, cut: &Cut<'a>, line: &Line) {
         let (wanted, have) = (bare(cut.head), bare(self.label));
         let named = matches!(self.label.first(), Some(b'+' | b'*'));
-        let fits = wanted.is_empty() || have.is_empty() || wanted == have;
+        let asked = wanted.is_empty() || asks(self.label, wanted);
+        let elsewhere = !asked && self.claimed.contains(wanted);
         match self.open {
-            Open::Card | Open::Replica if fits || !named => self.attach(cut, line),
-            Open::Orphan if wanted.is_empty() || wanted == have => self.extend_orphan(cut, line),
+            Open::Card | Open::Replica if asked || (!elsewhere && (have.is_empty() || !named)) => {
+                if !asked {
+                    self.part.loose.push(self.span(line));
+                }
+                self.attach(cut, line)
+            }
+            Open::Orphan if asked => self.extend_orphan(cut, line),
             _ => self.orphan(cut, line),
         }
     }
@@ -172,7 +184,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
 
     /// Attaches without looking at names.
     pub(super) fn attach_line(&mut self, line: Line<'a>) {
-        let cut = cut(without_comment(line.text));
+        let mut cut = cut(without_comment(line.text));
+        if cut.lead != Lead::Continuation && cut.field_1_is_blank() {
+            cut = cut.with_blank_field_1();
+        }
         self.attach(&cut, &line);
     }
 
@@ -225,6 +240,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
 
     fn replica(&mut self, cut: &Cut<'a>, line: &Line) {
         self.finish();
+        self.names.forget();
         if self.before_name == Name::default() {
             let what = Wrong::Replication {
                 found: excerpt(trim(line.text)),
@@ -260,10 +276,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
         match std::mem::replace(&mut self.open, Open::Nothing) {
             Open::Nothing | Open::Orphan => {}
             Open::Card => {
-                if matches!(self.label, [b'+' | b'*', rest @ ..] if !rest.is_empty()) {
+                if let Some(label) = claim(self.label, self.claimed) {
                     self.last_deferred = Some(self.part.deferred.len());
                     self.part.deferred.push(Deferred {
-                        label: bare(self.label).to_vec(),
+                        label: label.to_vec(),
                         lines: self.spans.clone(),
                     });
                 } else {
@@ -353,7 +369,6 @@ impl<'a, 'b> Assembler<'a, 'b> {
             emit(
                 self.budget,
                 &mut self.part,
-                &mut self.names,
                 self.before_name,
                 at,
                 &list,
@@ -376,7 +391,6 @@ impl<'a, 'b> Assembler<'a, 'b> {
         emit(
             self.budget,
             &mut self.part,
-            &mut self.names,
             self.name,
             at,
             &self.fields,
@@ -385,40 +399,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 }
 
-fn emit(
-    budget: &AtomicUsize,
-    part: &mut Part,
-    names: &mut NameReader,
-    name: Name,
-    at: Place,
-    list: &[&[u8]],
-    spans: &[Span],
-) {
-    part.count(name);
-    names.card(
-        name.as_bytes(),
-        list.first().copied().unwrap_or_default(),
-        &mut part.labels,
-    );
-    let mut fields = Fields::new(name.as_bytes(), at, list, &mut part.faults, budget);
-    let id = match fields.value(0) {
-        Value::Integer(n) => u32::try_from(n).ok(),
-        _ => None,
-    };
-    if !read_card(&mut fields, &mut part.cards)
-        && let (Some(first), Some(last)) = (spans.first(), spans.last())
-    {
-        let end = if last.end > first.start {
-            last.end
-        } else {
-            first.end
-        };
-        part.others.push(OtherCard {
-            name: super::line::text_of(name.as_bytes()),
-            first: id,
-            at,
-            start: first.start,
-            end,
-        });
-    }
+/// Whether the card holds text rather than fields, so that commas of its continuations separate nothing.
+fn holds_text(name: &[u8]) -> bool {
+    matches!(
+        name,
+        b"DEQATN" | b"ADAPT" | b"OUTPUT" | b"OUTRCV" | b"PBMSECT" | b"PBRSECT"
+    )
 }

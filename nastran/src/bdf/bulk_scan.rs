@@ -1,7 +1,8 @@
 //! Bulk data cut into chunks, up to the next line that is no card.
 
-use super::chunk::{CHUNK_BYTES, Chunk};
+use super::chunk::CHUNK_BYTES;
 use super::line::{Lines, is_blank, trim, without_comment};
+use super::source::Chunk;
 
 /// A line of bulk data that is no card.
 pub(super) enum Special {

@@ -5,21 +5,12 @@ use std::sync::atomic::AtomicUsize;
 use rayon::prelude::*;
 
 use super::assemble::Assembler;
+use super::continuation_name::Claimed;
 use super::line::Lines;
 use super::merge::append;
 use super::part::Part;
-use super::source::Source;
+use super::source::{Chunk, Source};
 use crate::place::SourceIx;
-
-/// Lines of bulk data that begin with a card and hold no INCLUDE, BEGIN or ENDDATA.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Chunk {
-    pub source: u32,
-    pub start: usize,
-    pub end: usize,
-    /// Number of the first line.
-    pub line: u32,
-}
 
 /// Bytes after which a chunk ends at the next card.
 pub(super) const CHUNK_BYTES: usize = 192 << 10;
@@ -28,18 +19,23 @@ pub(super) const CHUNK_BYTES: usize = 192 << 10;
 const BATCH: usize = 32;
 
 /// Reads all chunks; the parts are joined in order.
-pub(super) fn read_chunks(chunks: &[Chunk], sources: &[Source], budget: &AtomicUsize) -> Part {
+pub(super) fn read_chunks(
+    chunks: &[Chunk],
+    sources: &[Source],
+    budget: &AtomicUsize,
+    claimed: &Claimed,
+) -> Part {
     let mut all = Part::default();
     for batch in chunks.chunks(BATCH) {
         let parts: Vec<Part> = if batch.len() == 1 {
             batch
                 .iter()
-                .map(|c| read_chunk(c, sources, budget))
+                .map(|c| read_chunk(c, sources, budget, claimed))
                 .collect()
         } else {
             batch
                 .par_iter()
-                .map(|c| read_chunk(c, sources, budget))
+                .map(|c| read_chunk(c, sources, budget, claimed))
                 .collect()
         };
         for part in parts {
@@ -49,12 +45,12 @@ pub(super) fn read_chunks(chunks: &[Chunk], sources: &[Source], budget: &AtomicU
     all
 }
 
-fn read_chunk(chunk: &Chunk, sources: &[Source], budget: &AtomicUsize) -> Part {
+fn read_chunk(chunk: &Chunk, sources: &[Source], budget: &AtomicUsize, claimed: &Claimed) -> Part {
     let bytes = sources
         .get(chunk.source as usize)
         .map(|s| s.bytes.as_slice())
         .unwrap_or_default();
-    let mut assembler = Assembler::new(SourceIx(chunk.source), budget);
+    let mut assembler = Assembler::new(SourceIx(chunk.source), budget, claimed);
     for line in Lines::new(bytes, chunk.start, chunk.end, chunk.line) {
         assembler.line(line);
     }

@@ -40,6 +40,12 @@ pub struct Deck {
     pub sol: Option<u32>,
     /// SOL as written.
     pub sol_text: Option<String>,
+    /// Where SOL stands.
+    pub sol_at: Place,
+    /// The approach that APP states, upper case, such as HEAT.
+    pub approach: Option<(String, Place)>,
+    /// Bulk data of superelements and other models that is kept and not read: where it begins, and that line in upper case.
+    pub parts: Vec<Note>,
     /// Everything that is wrong.
     pub faults: Vec<Fault>,
     /// What else is worth saying.

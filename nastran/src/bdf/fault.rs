@@ -62,6 +62,11 @@ pub enum Wrong {
     Orphan {
         label: String,
     },
+    /// A continuation whose name does not determine one card.
+    Ambiguous {
+        label: String,
+        why: String,
+    },
     /// A replicated line without a card before it, or a field it cannot repeat.
     Replication {
         found: String,
@@ -92,6 +97,11 @@ pub enum Wrong {
     CutShort,
     /// A text without any card or section of a deck.
     NotADeck,
+    /// A name that no dialect has: the known name nearest to it, and how many cards bear it.
+    UnknownName {
+        near: Option<&'static str>,
+        cards: usize,
+    },
     /// A case control or executive line that cannot be read.
     Statement {
         found: String,
@@ -100,7 +110,7 @@ pub enum Wrong {
 }
 
 impl Wrong {
-    /// Whether part of the deck was not read: it is cut, or an INCLUDE leads nowhere.
+    /// Whether part of the deck was not read: it is cut, an INCLUDE leads nowhere, or a name is unknown.
     pub fn is_incomplete(&self) -> bool {
         match self {
             Self::CutShort
@@ -108,6 +118,7 @@ impl Wrong {
             | Self::IncludeCycle { .. }
             | Self::IncludeDepth { .. }
             | Self::IncludeCount { .. }
+            | Self::UnknownName { .. }
             | Self::IncludeName { .. } => true,
             Self::Missing
             | Self::NotInteger { .. }
@@ -118,6 +129,7 @@ impl Wrong {
             | Self::NotOneOf { .. }
             | Self::NotACard { .. }
             | Self::Orphan { .. }
+            | Self::Ambiguous { .. }
             | Self::Replication { .. }
             | Self::TooManyReplicated { .. }
             | Self::NotADeck
@@ -138,11 +150,12 @@ impl Wrong {
             | Self::Replication { found, .. }
             | Self::IncludeName { found }
             | Self::Statement { found, .. } => Some(found),
-            Self::Orphan { label } => Some(label),
+            Self::Orphan { label } | Self::Ambiguous { label, .. } => Some(label),
             Self::IncludeNotFound { name, .. } | Self::IncludeCycle { name } => Some(name),
             Self::Missing
             | Self::CutShort
             | Self::NotADeck
+            | Self::UnknownName { .. }
             | Self::TooManyReplicated { .. }
             | Self::IncludeDepth { .. }
             | Self::IncludeCount { .. } => None,
@@ -178,6 +191,9 @@ impl Wrong {
                 "the continuation belongs to no card".to_owned()
             }
             Self::Orphan { label } => format!("the continuation belongs to no card: {label}"),
+            Self::Ambiguous { label, why } => {
+                format!("the continuation can belong to more than one card, for {why}: {label}")
+            }
             Self::Replication { found, why } => {
                 format!("the replicated field cannot be filled ({why}): {found}")
             }
@@ -204,6 +220,14 @@ impl Wrong {
                 "no Nastran deck: no card of bulk data and no section stands in it".to_owned()
             }
             Self::Statement { found, why } => format!("{why}: {found}"),
+            Self::UnknownName { near, cards } => {
+                let more = match cards {
+                    0 | 1 => String::new(),
+                    n => format!(" ({n} cards)"),
+                };
+                let meant = near.map_or(String::new(), |n| format!(", did you mean `{n}`?"));
+                format!("Nastran does not know this name{more}{meant}")
+            }
         }
     }
 
@@ -225,6 +249,9 @@ impl Wrong {
             Self::Orphan { .. } => {
                 "put the continuation below its card, or give both the same name in columns 73-80 and 1-8"
             }
+            Self::Ambiguous { .. } => {
+                "give each continuation a name of its own, or put it directly below its card"
+            }
             Self::Replication { .. } => {
                 "write the card out, or put the card that is to be repeated above"
             }
@@ -244,6 +271,7 @@ impl Wrong {
             }
             Self::CutShort => "copy the deck again, or close it with ENDDATA",
             Self::Statement { .. } => "correct the statement",
+            Self::UnknownName { .. } => "correct the name, or make the line a comment with $",
         }
     }
 }

@@ -20,6 +20,8 @@ pub struct Loaded {
     pub path: String,
     /// Its bytes.
     pub bytes: Vec<u8>,
+    /// Path of another file that the name may stand for, where its contents differ.
+    pub rival: Option<String>,
 }
 
 /// Reads included files for [`super::read_deck`], which opens none itself.
@@ -33,7 +35,8 @@ pub trait Loader {
 }
 
 impl IncludeRequest {
-    /// Paths to try, in this order: the first deck's folder, the including file's folder, then both with `\` for `/`.
+    /// Paths to try. A bare file name: the including file's folder, then the first deck's; a path with folders: the other way round. Then
+    /// both with `\` for `/`.
     ///
     /// `symbol` gives the value of a logical symbol or environment variable, which stands in `SYMBOL:path`,
     /// `$SYMBOL/path`, `${SYMBOL}/path` and `%SYMBOL%/path`. `Err` holds a symbol that has no value.
@@ -56,8 +59,13 @@ impl IncludeRequest {
             if is_absolute(&name) {
                 push(name);
             } else {
-                push(join(&self.first_deck, &name));
-                push(join(&self.includer, &name));
+                let mut beside = [&self.first_deck, &self.includer];
+                if !name.contains(['/', '\\']) {
+                    beside.reverse();
+                }
+                for file in beside {
+                    push(join(file, &name));
+                }
             }
         }
         Ok(paths)
@@ -132,16 +140,14 @@ impl Loader for MemoryLoader {
         let paths = request
             .candidates(|s| self.symbols.get(s).cloned())
             .map_err(|s| format!("the symbol {s} has no value"))?;
-        for path in paths {
-            let path = without_dots(&path);
-            if let Some(bytes) = self.files.get(&path) {
-                return Ok(Loaded {
-                    path,
-                    bytes: bytes.clone(),
-                });
-            }
-        }
-        Err("no such file".to_owned())
+        let paths = paths.iter().map(|p| without_dots(p));
+        let mut found = paths.filter_map(|p| Some((self.files.get(&p)?, p)));
+        let (bytes, path) = found.next().ok_or("no such file")?;
+        Ok(Loaded {
+            rival: found.find(|other| other.0 != bytes).map(|other| other.1),
+            path,
+            bytes: bytes.clone(),
+        })
     }
 }
 

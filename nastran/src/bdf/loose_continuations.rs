@@ -1,27 +1,40 @@
 //! Continuations that do not stand below their card: found by name when all lines are read.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::sync::atomic::AtomicUsize;
 
 use super::assemble::Assembler;
+use super::continuation_name::{Claimed, askers};
 use super::fault::{Fault, Wrong};
 use super::fields::note_fault;
 use super::line::{Line, text_of};
 use super::part::{Deferred, Orphan, Part, Span};
-use super::source::{Note, Source};
+use super::source::{Chunk, Note, Source};
 use crate::place::Place;
+
+/// Cards that wait for continuations, continuations that wait for cards, and where both are.
+pub(super) struct Loose<'a> {
+    pub deferred: &'a [Deferred],
+    pub orphans: &'a mut [Orphan],
+    pub chunks: &'a [Chunk],
+    pub sources: &'a [Source],
+}
 
 /// Joins deferred cards with their continuations and reads them.
 ///
-/// A continuation goes to the card that names it, else (with a note) to the card directly above it.
-pub(super) fn resolve(
-    deferred: &[Deferred],
-    orphans: &mut [Orphan],
-    sources: &[Source],
-    budget: &AtomicUsize,
-) -> Part {
+/// A continuation goes to the card that names it, within a file before others, else (with a note) to the card directly above it. A name that
+/// stands twice is a fault.
+pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
+    let Loose {
+        deferred,
+        orphans,
+        chunks,
+        sources,
+    } = loose;
+    let mut rest = Part::default();
+    let ambiguous = refuse_ambiguous(deferred, orphans, sources, &mut rest);
     let mut by_label: HashMap<Vec<u8>, Vec<usize>> = HashMap::new();
-    for (i, orphan) in orphans.iter().enumerate().rev() {
+    for (i, orphan) in orphans.iter().enumerate() {
         by_label.entry(orphan.label.clone()).or_default().push(i);
     }
     let mut chains: Vec<Vec<Span>> = Vec::with_capacity(deferred.len());
@@ -30,8 +43,10 @@ pub(super) fn resolve(
         let mut lines = card.lines.clone();
         let mut label = card.label.clone();
         let mut any = false;
-        while !label.is_empty()
-            && let Some(i) = by_label.get_mut(&label).and_then(Vec::pop)
+        while !ambiguous.contains(&label)
+            && let Some(i) = by_label
+                .get_mut(&label)
+                .and_then(|list| next_of(list, orphans, &lines))
             && let Some(orphan) = orphans.get_mut(i)
         {
             orphan.used = true;
@@ -42,8 +57,8 @@ pub(super) fn resolve(
         chains.push(lines);
         found.push(any);
     }
-    let mut rest = Part::default();
-    for orphan in orphans.iter_mut().filter(|o| !o.used) {
+    let unused = |o: &&mut Orphan| !o.used && !ambiguous.contains(&o.label);
+    for orphan in orphans.iter_mut().filter(unused) {
         let at = orphan.lines.first().map_or(Place::default(), |s| s.at);
         match orphan.follows {
             Some(card) if found.get(card) == Some(&false) => {
@@ -57,21 +72,18 @@ pub(super) fn resolve(
                 rest.notes.push(Note { at, text });
             }
             _ => {
-                let what = Wrong::Orphan {
-                    label: text_of(&orphan.label),
-                };
-                note_fault(
-                    &mut rest.faults,
-                    Fault {
-                        at,
-                        card: String::new(),
-                        field: None,
-                        what,
-                    },
-                );
+                let label = text_of(&orphan.label);
+                refuse(&mut rest, at, Wrong::Orphan { label });
             }
         }
     }
+    let left: Claimed = deferred
+        .iter()
+        .zip(&found)
+        .filter(|(d, found)| !**found && !ambiguous.contains(&d.label))
+        .map(|(d, _)| d.label.clone())
+        .collect();
+    refuse_shared(&left, chunks, sources, &mut rest);
     for chain in &chains {
         let part = read_chain(chain, sources, budget);
         super::merge::append(&mut rest, part);
@@ -79,22 +91,115 @@ pub(super) fn resolve(
     rest
 }
 
+/// Returns the next continuation of a list, one of the file of the last line before others.
+fn next_of(list: &mut Vec<usize>, orphans: &[Orphan], lines: &[Span]) -> Option<usize> {
+    let source = lines.last().map(|s| s.at.source);
+    let of_file = |i: &usize| orphans.get(*i).and_then(Orphan::at).map(|at| at.source) == source;
+    let k = list.iter().position(of_file).unwrap_or(0);
+    (k < list.len()).then(|| list.remove(k))
+}
+
+/// Refuses the names that several cards and several continuations of a file have, and returns them.
+fn refuse_ambiguous(
+    deferred: &[Deferred],
+    orphans: &[Orphan],
+    sources: &[Source],
+    rest: &mut Part,
+) -> HashSet<Vec<u8>> {
+    let mut askers: HashMap<&[u8], Vec<Place>> = HashMap::new();
+    let cards = deferred
+        .iter()
+        .map(|d| (d.label.as_slice(), d.lines.last()));
+    let chained = orphans.iter().map(|o| (o.next.as_slice(), o.lines.last()));
+    for (label, line) in cards.chain(chained) {
+        askers.entry(label).or_default().extend(line.map(|s| s.at));
+    }
+    let mut ambiguous = HashSet::new();
+    let mut first: HashMap<(&[u8], u32), Place> = HashMap::new();
+    for orphan in orphans {
+        let (Some(at), Some(all)) = (orphan.at(), askers.get(orphan.label.as_slice())) else {
+            continue;
+        };
+        let own: Vec<Place> = all
+            .iter()
+            .copied()
+            .filter(|p| p.source == at.source)
+            .collect();
+        let asked = if own.is_empty() { all } else { &own };
+        let before = first.get(&(&*orphan.label, at.source.0)).copied();
+        let why = match (asked.as_slice(), before) {
+            ([a, b, ..], _) => format!("{} both name it", lines(*a, *b, at, sources)),
+            (_, Some(before)) => format!("its name is also on line {}", before.line),
+            _ => {
+                first.insert((&*orphan.label, at.source.0), at);
+                continue;
+            }
+        };
+        ambiguous.insert(orphan.label.clone());
+        let label = text_of(&orphan.label);
+        refuse(rest, at, Wrong::Ambiguous { label, why });
+    }
+    ambiguous
+}
+
+/// Refuses a continuation below its card that another card of the same file names, too.
+fn refuse_shared(names: &Claimed, chunks: &[Chunk], sources: &[Source], rest: &mut Part) {
+    if names.is_empty() {
+        return;
+    }
+    let all = askers(names, chunks, sources);
+    for waiting in all.iter().filter(|a| a.continuation.is_none()) {
+        let holds = |a: &&super::continuation_name::Asker| {
+            a.name == waiting.name && a.at.source == waiting.at.source && a.continuation.is_some()
+        };
+        if let Some(holder) = all.iter().find(holds)
+            && let Some(at) = holder.continuation
+        {
+            let both = lines(
+                waiting.at.min(holder.at),
+                waiting.at.max(holder.at),
+                at,
+                sources,
+            );
+            let why = format!("{both} both name it");
+            let label = text_of(&waiting.name);
+            refuse(rest, at, Wrong::Ambiguous { label, why });
+        }
+    }
+}
+
+/// Returns two lines in words, with the file where it is not that of the continuation.
+fn lines(a: Place, b: Place, at: Place, sources: &[Source]) -> String {
+    let of = |p: Place| match sources.get(p.source.0 as usize) {
+        Some(s) if p.source != at.source => format!(" of `{}`", s.path),
+        _ => String::new(),
+    };
+    format!("lines {}{} and {}{}", a.line, of(a), b.line, of(b))
+}
+
+fn refuse(rest: &mut Part, at: Place, what: Wrong) {
+    note_fault(
+        &mut rest.faults,
+        Fault {
+            at,
+            card: String::new(),
+            field: None,
+            what,
+        },
+    );
+}
+
 fn read_chain(chain: &[Span], sources: &[Source], budget: &AtomicUsize) -> Part {
     let Some((first, more)) = chain.split_first() else {
         return Part::default();
     };
-    let mut assembler = Assembler::new(first.at.source, budget);
-    let line = |span: &Span| {
-        let text = sources
-            .get(span.at.source.0 as usize)
-            .and_then(|s| s.bytes.get(span.start..span.end))
-            .unwrap_or_default();
-        Line {
-            text,
-            start: span.start,
-            end: span.end,
-            number: span.at.line,
-        }
+    let claimed = Claimed::default();
+    let mut assembler = Assembler::new(first.at.source, budget, &claimed);
+    let line = |span: &Span| Line {
+        text: span.text(sources),
+        start: span.start,
+        end: span.end,
+        number: span.at.line,
     };
     assembler.line(line(first));
     for span in more {

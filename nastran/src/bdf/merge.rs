@@ -18,6 +18,7 @@ pub(super) fn append(to: &mut Part, from: Part) {
     }
     to.notes.extend(from.notes);
     to.labels.extend(from.labels);
+    to.loose.extend(from.loose);
     let offset = to.deferred.len();
     to.deferred.extend(from.deferred);
     to.orphans.extend(from.orphans.into_iter().map(|mut o| {
@@ -42,11 +43,11 @@ fn append_cards(to: &mut Cards, from: Cards) {
         from,
         one: grdset baror beamor,
         many:
-        grids spoints coords shells shear_panels bars beams rods conrods bushes springs welds fasteners gaps solids
-        conm1s conm2s nsms nsmadds rbe1s rbe2s rbe3s rbars rsplines mpcs mpcadds spcs spcds spc1s spcadds suports
+        grids spoints connected_points coords shells shear_panels snorms bars beams rods conrods bushes springs welds fasteners gaps solids
+        conm1s conm2s scalar_masses pmasses nsms nsmadds rbe1s rbe2s rbe3s rbars rsplines mpcs mpcadds spcs spcds spc1s spcadds suports
         pshells pcomps pshears pbars pbarls pbeams pbeamls prods ptubes pbushes pelas pwelds pfasts pgaps psolids
-        mat1s mat2s mat8s mat9s forces moments forces_along sloads ploads pload1s pload2s
-        pload4s gravs rforces loads temps tempds tempp1s temprbs params
+        mat1s mat2s mat8s mat9s matt1s material_tables forces moments forces_along sloads ploads pload1s pload2s
+        pload4s gravs rforces accels accel1s loads temps tempds tempp1s temprbs params
     );
 }
 

@@ -6,7 +6,9 @@ mod bulk_scan;
 mod card;
 mod case;
 mod chunk;
+mod continuation_name;
 mod deck;
+mod emit;
 mod fault;
 mod fields;
 mod include;
@@ -22,6 +24,8 @@ mod replicate;
 mod sections;
 mod source;
 mod split;
+mod unknown_names;
+pub mod vocabulary;
 mod write;
 
 #[cfg(test)]

@@ -20,6 +20,8 @@ pub enum Named {
 pub struct Label {
     pub kind: Named,
     pub id: u32,
+    /// Property of a component, where the comment states it.
+    pub property: Option<u32>,
     pub name: String,
     pub at: Place,
 }
@@ -28,7 +30,7 @@ pub struct Label {
 #[derive(Debug, Default)]
 pub(super) struct NameReader {
     /// Name for the next property or material card.
-    pending: Option<(Named, String)>,
+    pending: Option<(Named, String, Place)>,
     /// ANSA: the name stands on the next comment line.
     next_line: Option<(Named, u32)>,
 }
@@ -42,6 +44,7 @@ impl NameReader {
                 labels.push(Label {
                     kind,
                     id,
+                    property: None,
                     name: text_of(body),
                     at,
                 });
@@ -53,52 +56,66 @@ impl NameReader {
         };
         match first.to_ascii_uppercase() {
             b'H' | b'S' if starts(body, b"HMNAME") || starts(body, b"SXNAME") => {
-                labels.extend(quoted(body.get(6..).unwrap_or_default(), at));
+                quoted(body.get(6..).unwrap_or_default(), at, labels);
             }
             b'A' if starts(body, b"ANSA_NAME") => self.ansa(body, at, labels),
-            b'F' if starts(body, b"FEMAP") => labels.extend(femap(body, at)),
-            b'*' => self.star(trim(body.get(1..).unwrap_or_default())),
+            b'F' | b'S' if starts(body, b"FEMAP") || starts(body, b"Simcenter") => {
+                labels.extend(femap(body, at));
+            }
+            b'*' => self.star(trim(body.get(1..).unwrap_or_default()), at),
             b'E' => self.after(
                 body,
                 b"Elements and Element Properties for region",
-                Named::Property,
+                (Named::Property, at),
             ),
-            b'P' => self.after(body, b"Property", Named::Property),
+            b'P' => self.after(body, b"Property", (Named::Property, at)),
             b'M' if starts(body, b"Material Record") => {
-                self.after(body, b"Material Record", Named::Material)
+                self.after(body, b"Material Record", (Named::Material, at));
             }
-            b'M' => self.after(body, b"Material", Named::Material),
+            b'M' => self.after(body, b"Material", (Named::Material, at)),
             _ => {}
         }
     }
 
-    /// Takes a card: a waiting name is its name, if it is of that kind.
-    pub(super) fn card(&mut self, name: &[u8], id: &[u8], labels: &mut Vec<Label>) {
-        let Some((kind, text)) = self.pending.take() else {
-            return;
-        };
-        let fits = match kind {
-            Named::Material => name.starts_with(b"MAT"),
-            Named::Property => {
-                name.starts_with(b"P")
-                    && !name.starts_with(b"PLOAD")
-                    && name != b"PARAM"
-                    && name != b"PLOTEL"
-            }
-            Named::Component => false,
-        };
-        if fits && let Some(id) = number(id) {
-            labels.push(Label {
-                kind,
-                id,
-                name: text,
-                at: Place::default(),
-            });
+    /// Takes a card that begins below the comments, its fields without the name.
+    #[inline]
+    pub(super) fn card(&mut self, name: &[u8], fields: &[&[u8]], labels: &mut Vec<Label>) {
+        if self.pending.is_some() || self.next_line.is_some() {
+            self.give(name, fields, labels);
         }
     }
 
+    /// Drops a name that no card follows.
+    pub(super) fn forget(&mut self) {
+        *self = NameReader::default();
+    }
+
+    /// Gives the waiting name to a property or material card, or to the property of an element card.
+    #[cold]
+    fn give(&mut self, name: &[u8], fields: &[&[u8]], labels: &mut Vec<Label>) {
+        let pending = self.pending.take();
+        self.forget();
+        let Some((kind, text, at)) = pending else {
+            return;
+        };
+        let field = |i: usize| fields.get(i).and_then(|f| number(f));
+        let id = match kind {
+            Named::Material if name.starts_with(b"MAT") => field(0),
+            Named::Property if is_property(name) => field(0),
+            Named::Property if has_property(name) => field(1).or(field(0)),
+            _ => None,
+        };
+        labels.extend(id.map(|id| Label {
+            kind,
+            id,
+            property: None,
+            name: text,
+            at,
+        }));
+    }
+
     /// `$* Property: rail`, `$*  NX PHYSICAL PROPERTY: rail`, `$*  I-DEAS property: 1  name: rail`.
-    fn star(&mut self, body: &[u8]) {
+    fn star(&mut self, body: &[u8], at: Place) {
         let Some(colon) = memchr::memchr(b':', body) else {
             return;
         };
@@ -117,18 +134,18 @@ impl NameReader {
             None => tail,
         };
         if !name.is_empty() {
-            self.pending = Some((kind, text_of(name)));
+            self.pending = Some((kind, text_of(name), at));
         }
     }
 
     /// `HEAD : name`.
-    fn after(&mut self, body: &[u8], head: &[u8], kind: Named) {
+    fn after(&mut self, body: &[u8], head: &[u8], (kind, at): (Named, Place)) {
         if starts(body, head)
             && let Some(rest) = body.get(head.len()..).map(trim)
             && let Some(name) = rest.strip_prefix(b":").map(trim)
             && !name.is_empty()
         {
-            self.pending = Some((kind, text_of(name)));
+            self.pending = Some((kind, text_of(name), at));
         }
     }
 
@@ -150,6 +167,7 @@ impl NameReader {
             (Some(id), name) if !name.is_empty() => labels.push(Label {
                 kind,
                 id,
+                property: None,
                 name: text_of(name),
                 at,
             }),
@@ -170,28 +188,79 @@ fn number(field: &[u8]) -> Option<u32> {
     }
 }
 
-/// `COMP 5 "rail"`, `PROP    201     PBARL   "rail"`.
-fn quoted(rest: &[u8], at: Place) -> Option<Label> {
-    let open = memchr::memchr(b'"', rest)?;
-    let name = rest.get(open + 1..)?;
-    let name = name.get(..memchr::memchr(b'"', name).unwrap_or(name.len()))?;
-    let mut words = rest
-        .get(..open)?
-        .split(|&c| c <= b' ')
-        .filter(|w| !w.is_empty());
-    let kind = match words.next()?.to_ascii_uppercase().as_slice() {
+/// Whether the card defines a property by the id in its first field.
+fn is_property(name: &[u8]) -> bool {
+    name.starts_with(b"P")
+        && !name.starts_with(b"PLOAD")
+        && !matches!(
+            name,
+            b"PARAM" | b"PLOTEL" | b"POINT" | b"PARTN" | b"PRESPT" | b"PSET" | b"PVAL"
+        )
+}
+
+/// Whether the card is an element with a property id in its second field.
+fn has_property(name: &[u8]) -> bool {
+    name.starts_with(b"C")
+        && !matches!(name.get(..4), Some(b"CORD" | b"CONM" | b"CONR"))
+        && !matches!(
+            name,
+            b"CELAS2"
+                | b"CELAS4"
+                | b"CMASS2"
+                | b"CMASS4"
+                | b"CDAMP2"
+                | b"CDAMP4"
+                | b"CSET"
+                | b"CSET1"
+                | b"CAERO1"
+        )
+}
+
+/// Reads `COMP 5 "rail"`, `PROP    201     PBARL   "rail"`, and `COMP 5 "rail" 201 "rail section" 4` with property and its name.
+fn quoted(rest: &[u8], at: Place, labels: &mut Vec<Label>) {
+    let Some((head, name, tail)) = quotation(rest) else {
+        return;
+    };
+    let mut words = head.split(|&c| c <= b' ').filter(|w| !w.is_empty());
+    let kind = match words
+        .next()
+        .unwrap_or_default()
+        .to_ascii_uppercase()
+        .as_slice()
+    {
         b"COMP" => Named::Component,
         b"PROP" => Named::Property,
         b"MAT" => Named::Material,
-        _ => return None,
+        _ => return,
     };
-    let id = words.next().and_then(number)?;
-    Some(Label {
+    let Some(id) = words.next().and_then(number) else {
+        return;
+    };
+    let label = |kind, id, property, name| Label {
         kind,
         id,
+        property,
         name: text_of(trim(name)),
         at,
-    })
+    };
+    let own = quotation(tail).and_then(|(id, name, _)| Some((number(id)?, name)));
+    let property = own.map(|(id, _)| id).filter(|_| kind == Named::Component);
+    labels.push(label(kind, id, property, name));
+    if let Some((id, name)) = own.filter(|(_, name)| !name.is_empty() && property.is_some()) {
+        labels.push(label(Named::Property, id, None, name));
+    }
+}
+
+/// Returns what is before, within and after the first quotation marks.
+fn quotation(text: &[u8]) -> Option<(&[u8], &[u8], &[u8])> {
+    let open = memchr::memchr(b'"', text)?;
+    let rest = text.get(open + 1..)?;
+    let close = memchr::memchr(b'"', rest).unwrap_or(rest.len());
+    Some((
+        text.get(..open)?,
+        rest.get(..close)?,
+        rest.get(close + 1..).unwrap_or_default(),
+    ))
 }
 
 /// `Femap with NX Nastran Property 1 : rail`.
@@ -211,6 +280,7 @@ fn femap(body: &[u8], at: Place) -> Option<Label> {
     Some(Label {
         kind,
         id,
+        property: None,
         name: text_of(trim(body.get(colon + 1..)?)),
         at,
     })

@@ -3,7 +3,7 @@
 use super::deck::OtherCard;
 use super::fault::Fault;
 use super::names::Label;
-use super::source::Note;
+use super::source::{Note, Source};
 use crate::cards::Cards;
 use crate::place::Place;
 
@@ -44,6 +44,8 @@ pub(super) struct Part {
     pub labels: Vec<Label>,
     pub deferred: Vec<Deferred>,
     pub orphans: Vec<Orphan>,
+    /// Named continuations that were appended to the card above, which does not ask for them.
+    pub loose: Vec<Span>,
 }
 
 impl Part {
@@ -70,6 +72,16 @@ pub(super) struct Span {
     pub end: usize,
 }
 
+impl Span {
+    /// The line's bytes.
+    pub(super) fn text<'a>(&self, sources: &'a [Source]) -> &'a [u8] {
+        sources
+            .get(self.at.source.0 as usize)
+            .and_then(|s| s.bytes.get(self.start..self.end))
+            .unwrap_or_default()
+    }
+}
+
 /// A card that names a continuation which did not follow.
 #[derive(Clone, Debug)]
 pub(super) struct Deferred {
@@ -87,4 +99,11 @@ pub(super) struct Orphan {
     /// The deferred card of the same part that stands directly above.
     pub follows: Option<usize>,
     pub used: bool,
+}
+
+impl Orphan {
+    /// Its first line.
+    pub(super) fn at(&self) -> Option<Place> {
+        self.lines.first().map(|s| s.at)
+    }
 }

@@ -6,16 +6,18 @@ use std::sync::atomic::AtomicUsize;
 use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
+use super::continuation_name::{Claimed, claimed_elsewhere};
 use super::deck::Deck;
 use super::fault::{Fault, Wrong};
 use super::fields::MAX_FAULTS;
 use super::include::Loader;
 use super::line::text_of;
-use super::loose_continuations::resolve;
+use super::loose_continuations::{Loose, resolve};
 use super::merge::append;
 use super::part::Part;
 use super::sections::{Statement, read_sections};
-use super::source::{Note, Position};
+use super::source::{Chunk, Note, Position, Source};
+use super::unknown_names::check_names;
 use crate::place::Place;
 
 /// The deck in `bytes` with all files it includes. What cannot be read is in [`Deck::faults`].
@@ -23,14 +25,6 @@ use crate::place::Place;
 /// `main_path` is how messages call the first deck, and where relative INCLUDE names start.
 pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> Deck {
     let sections = read_sections(main_path, bytes, loader);
-    let budget = AtomicUsize::new(BUDGET);
-    let mut part = read_chunks(&sections.chunks, &sections.sources, &budget);
-    if !part.deferred.is_empty() || !part.orphans.is_empty() {
-        let deferred = std::mem::take(&mut part.deferred);
-        let mut orphans = std::mem::take(&mut part.orphans);
-        let late = resolve(&deferred, &mut orphans, &sections.sources, &budget);
-        append(&mut part, late);
-    }
     let Part {
         cards,
         counts,
@@ -39,7 +33,7 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
         notes,
         labels,
         ..
-    } = part;
+    } = read_bulk(&sections.chunks, &sections.sources);
     let mut deck = Deck {
         cards,
         counts: counts
@@ -75,8 +69,10 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     } else {
         deck.faults.extend(faults);
     }
-    deck.notes = sections.notes;
+    deck.parts = sections.parts;
+    deck.notes.extend(sections.notes);
     deck.notes.extend(notes);
+    check_names(&mut deck);
     if deck.faults.len() >= MAX_FAULTS {
         let text = format!("only {MAX_FAULTS} faults are listed, there are more");
         deck.notes.push(Note {
@@ -88,10 +84,39 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     deck
 }
 
-/// Takes the solution from `SOL 101`, `SOL 2,1`, `SOL SESTATIC`.
+/// Reads the cards, each with its continuations wherever they are.
+fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
+    let mut budget = AtomicUsize::new(BUDGET);
+    let mut part = read_chunks(chunks, sources, &budget, &Claimed::default());
+    let claimed = claimed_elsewhere(&part.loose, chunks, sources);
+    if !claimed.is_empty() {
+        budget = AtomicUsize::new(BUDGET);
+        part = read_chunks(chunks, sources, &budget, &claimed);
+    }
+    if !part.deferred.is_empty() || !part.orphans.is_empty() {
+        let deferred = std::mem::take(&mut part.deferred);
+        let mut orphans = std::mem::take(&mut part.orphans);
+        let loose = Loose {
+            deferred: &deferred,
+            orphans: &mut orphans,
+            chunks,
+            sources,
+        };
+        let late = resolve(loose, &budget);
+        append(&mut part, late);
+    }
+    part
+}
+
+/// Takes the solution from `SOL 101`, `SOL 2,1`, `SOL SESTATIC`, and the approach from `APP HEAT`.
 fn read_sol(statements: &[Statement], deck: &mut Deck) {
     for statement in statements {
         let text = statement.text.trim();
+        let mut words = text.split([' ', '\t', ',', '=']).filter(|w| !w.is_empty());
+        if words.next().is_some_and(|w| w.eq_ignore_ascii_case("APP")) {
+            let approach = words.next().map(str::to_ascii_uppercase);
+            deck.approach = approach.map(|a| (a, statement.at));
+        }
         let Some(rest) = text
             .get(3..)
             .filter(|_| text.get(..3).is_some_and(|s| s.eq_ignore_ascii_case("SOL")))
@@ -109,6 +134,7 @@ fn read_sol(statements: &[Statement], deck: &mut Deck) {
             .to_ascii_uppercase();
         deck.sol = word.parse().ok().or_else(|| named_solution(&word));
         deck.sol_text = Some(value.to_owned());
+        deck.sol_at = statement.at;
         let source = statement.at.source.0 as usize;
         deck.bounds.sol = Some((
             Position {

@@ -3,13 +3,12 @@
 use std::collections::BTreeMap;
 
 use super::bulk_scan::{Special, first_word, scan};
-use super::chunk::Chunk;
 use super::fault::{Fault, Wrong};
 use super::fields::note_fault;
-use super::include::{IncludeRequest, Loader};
+use super::include::{IncludeRequest, Loaded, Loader};
 use super::include_statement::include_name;
 use super::line::{Lines, text_of, without_comment};
-use super::source::{Note, Position, SectionBounds, Source};
+use super::source::{Chunk, Note, Position, SectionBounds, Source};
 use crate::place::{Place, SourceIx};
 
 /// Files included within files.
@@ -52,6 +51,8 @@ pub(super) struct Sections<'l> {
     pub chunks: Vec<Chunk>,
     pub faults: Vec<Fault>,
     pub notes: Vec<Note>,
+    /// Where bulk data begins that is kept and not read.
+    pub parts: Vec<Note>,
     pub bounds: SectionBounds,
     /// Files being read, outermost first.
     stack: Vec<u32>,
@@ -79,6 +80,7 @@ pub(super) fn read_sections<'l>(
         chunks: Vec::new(),
         faults: Vec::new(),
         notes: Vec::new(),
+        parts: Vec::new(),
         bounds: SectionBounds::default(),
         stack: Vec::new(),
         by_path: BTreeMap::from([(main_path.to_owned(), 0)]),
@@ -141,6 +143,16 @@ impl Sections<'_> {
         }
     }
 
+    fn note_rival(&mut self, at: Place, loaded: &Loaded) {
+        self.notes.extend(loaded.rival.as_ref().map(|rival| Note {
+            at,
+            text: format!(
+                "INCLUDE reads `{}`, and not `{rival}`, whose contents differ: delete or rename one of the two",
+                loaded.path
+            ),
+        }));
+    }
+
     fn file(&mut self, source: u32) {
         self.stack.push(source);
         let bytes = self.bytes(source);
@@ -197,7 +209,7 @@ impl Sections<'_> {
                 self.done = true;
                 return after;
             }
-            b"" => return after,
+            b"" if without_comment(line.text).iter().all(|c| *c <= b' ') => return after,
             _ => {}
         }
         let statement = Statement {
@@ -235,9 +247,14 @@ impl Sections<'_> {
             source: SourceIx(source),
             line: number,
         };
+        let text = text.trim();
         self.notes.push(Note {
             at,
-            text: format!("`{}` is kept but not read", text.trim()),
+            text: format!("`{text}` is kept but not read"),
+        });
+        self.parts.push(Note {
+            at,
+            text: text.to_ascii_uppercase(),
         });
         false
     }
@@ -339,6 +356,7 @@ impl Sections<'_> {
         };
         match self.loader.load(&request) {
             Ok(loaded) => {
+                self.note_rival(place, &loaded);
                 let ix = match self.by_path.get(&loaded.path) {
                     Some(&ix) => {
                         self.repeated = self.repeated.saturating_add(loaded.bytes.len());

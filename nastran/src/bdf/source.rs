@@ -38,3 +38,13 @@ pub(super) struct SectionBounds {
     /// Start of the line SOL, and its end.
     pub(super) sol: Option<(Position, usize)>,
 }
+
+/// Lines of bulk data that begin with a card and hold no INCLUDE, BEGIN or ENDDATA.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chunk {
+    pub source: u32,
+    pub start: usize,
+    pub end: usize,
+    /// Number of the first line.
+    pub line: u32,
+}

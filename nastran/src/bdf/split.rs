@@ -153,6 +153,29 @@ pub(super) fn is_list_word(head: &[u8]) -> bool {
 }
 
 impl<'a> Cut<'a> {
+    /// Whether field 1 is blank and text of field 2 precedes the first comma, so that the commas may belong to the text.
+    #[inline]
+    pub(super) fn field_1_is_blank(&self) -> bool {
+        let is_free = matches!(self.format, Format::Free | Format::FreeLarge);
+        is_free
+            && match self.body {
+                [b'\t', ..] => true,
+                [b' ', ..] => self.rest > 9 && self.body.iter().take(8).all(|&c| is_blank(c)),
+                _ => false,
+            }
+    }
+
+    /// The line in fields of 8 columns, field 1 blank.
+    pub(super) fn with_blank_field_1(&self) -> Cut<'a> {
+        Cut {
+            format: Format::Small,
+            lead: Lead::Continuation,
+            head: &[],
+            body: self.body,
+            rest: 0,
+        }
+    }
+
     /// Number of fields of a full line.
     pub(super) fn width(&self) -> usize {
         match self.format {

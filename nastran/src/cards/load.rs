@@ -75,10 +75,36 @@ pub struct Grav {
     pub n: [f64; 3],
 }
 
-/// RFORCE: rotation about a grid.
+/// ACCEL: acceleration `n` times a factor that varies along an axis.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Accel {
+    pub sid: u32,
+    pub cid: u32,
+    pub n: [f64; 3],
+    /// DIR: `X`, `Y` or `Z` of the system; empty where blank.
+    pub direction: String,
+    /// Location along DIR and factor there, in the order of the card.
+    pub table: Vec<(f64, f64)>,
+}
+
+/// ACCEL1: acceleration `scale * n` of single grids.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Accel1 {
+    pub sid: u32,
+    pub cid: u32,
+    pub scale: f64,
+    pub n: [f64; 3],
+    pub grids: Vec<super::IdList>,
+}
+
+/// RFORCE, RFORCE1: rotation about a grid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Rforce {
+    /// RFORCE1.
+    pub is_rforce1: bool,
     pub sid: u32,
     pub grid: u32,
     pub cid: u32,
@@ -88,6 +114,8 @@ pub struct Rforce {
     pub method: Option<u32>,
     /// RACC: revolutions per time squared.
     pub acceleration: f64,
+    /// IDRF of RFORCE, GROUPID of RFORCE1: the part of the structure that turns; 0: all of it.
+    pub part: u32,
 }
 
 /// LOAD: `scale` times the sum of `factor * set`.

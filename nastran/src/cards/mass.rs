@@ -47,3 +47,30 @@ pub struct NonstructuralMass {
     /// Mass, or mass per area or length.
     pub value: f64,
 }
+
+/// CMASS1 to CMASS4: a mass that acts between two components, or at one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScalarMass {
+    /// Element id.
+    pub id: u32,
+    /// PMASS, or the mass itself.
+    pub mass: ScalarMassValue,
+    /// Ends: grid id and component (0 for a scalar point); `None` is ground.
+    pub ends: [Option<(u32, u8)>; 2],
+}
+
+/// CMASS1 and CMASS3 name a PMASS, CMASS2 and CMASS4 state the mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum ScalarMassValue {
+    Property(Option<u32>),
+    Direct(f64),
+}
+
+/// PMASS: the mass of CMASS1 and CMASS3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Pmass {
+    pub id: u32,
+    pub mass: f64,
+}

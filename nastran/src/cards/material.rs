@@ -56,3 +56,51 @@ pub struct Mat9 {
     pub tref: f64,
     pub ge: f64,
 }
+
+/// MATT1: tables that give fields of a MAT1 at a temperature.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matt1 {
+    /// Id of the MAT1.
+    pub id: u32,
+    /// Table ids in the order of the fields of MAT1 behind its id: E, G, NU, RHO, A, TREF, GE, ST, SC, SS.
+    pub tables: [Option<u32>; 10],
+}
+
+/// TABLEM1 to TABLEM4: a material property as a function of temperature.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MaterialTable {
+    /// Table id.
+    pub id: u32,
+    /// Which of the four cards, with its parameters.
+    pub form: MaterialTableForm,
+    /// Words on the first line that ask for something other than straight lines between points; empty if there are none.
+    pub options: String,
+}
+
+/// Value of a table at the temperature `x`, for a property whose value on the material card is `z`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MaterialTableForm {
+    /// TABLEM1: `y(x)`.
+    Replaces(Vec<(f64, f64)>),
+    /// TABLEM2: `z y(x - x1)`.
+    Shifted {
+        /// X1.
+        x1: f64,
+        /// Points of `y`.
+        points: Vec<(f64, f64)>,
+    },
+    /// TABLEM3: `z y((x - x1) / x2)`.
+    Scaled {
+        /// X1, X2.
+        x: [f64; 2],
+        /// Points of `y`.
+        points: Vec<(f64, f64)>,
+    },
+    /// TABLEM4: `z sum of a_i ((x - x1) / x2)^i`, `x` kept within X3 and X4.
+    Series {
+        /// X1 to X4.
+        x: [f64; 4],
+        /// A0, A1 ..
+        a: Vec<f64>,
+    },
+}

@@ -82,3 +82,13 @@ pub struct ShearPanel {
     pub pid: Option<u32>,
     pub grids: [u32; 4],
 }
+
+/// SNORM: the normal of the shells at a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub struct Snorm {
+    pub grid: u32,
+    /// Coordinate system of `n`.
+    pub cid: u32,
+    pub n: [f64; 3],
+}

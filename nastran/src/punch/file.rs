@@ -232,7 +232,7 @@ fn block(h: &Header) -> Block {
     Block {
         table: h.table.clone(),
         quantity: h.quantity(),
-        analysis: h.analysis,
+        analysis: h.analysis(),
         subcase: h.subcase,
         mode: h.mode,
         step: h.step,

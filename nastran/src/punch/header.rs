@@ -65,14 +65,16 @@ impl Header {
                     .trim()
                     .to_string();
             }
-            "POINT ID" | "ELEMENT ID" => self.sort2 = true,
-            "EIGENVALUE" | "FREQUENCY" | "TIME" | "LOAD FACTOR" | "LOAD STEP" | "EIGR" => {
-                self.analysis = match key {
-                    "FREQUENCY" => Analysis::Frequency,
-                    "TIME" => Analysis::Transient,
-                    "EIGENVALUE" | "EIGR" => Analysis::Modes,
-                    _ => Analysis::NonlinearStatics,
-                };
+            // `11 IDENTIFIED BY FREQUENCY`: the steps follow.
+            "POINT ID" | "ELEMENT ID" => {
+                self.sort2 = true;
+                let by = value.split_once("IDENTIFIED BY").map(|by| by.1.trim());
+                if let Some(found) = by.and_then(analysis_of) {
+                    self.analysis = found;
+                }
+            }
+            _ if analysis_of(key).is_some() => {
+                self.analysis = analysis_of(key).unwrap_or(self.analysis);
                 let mut parts = value.split_whitespace();
                 self.step = parts
                     .next()
@@ -117,6 +119,15 @@ impl Header {
         }
     }
 
+    /// The analysis; complex numbers are results of none that is static.
+    pub(super) fn analysis(&self) -> Analysis {
+        match (self.analysis, self.complex) {
+            (Analysis::Statics, true) => Analysis::Other(0),
+            (Analysis::Modes, true) => Analysis::ComplexEigen,
+            (analysis, _) => analysis,
+        }
+    }
+
     /// The quantity with plies told apart.
     pub(super) fn quantity(&self) -> Quantity {
         let plies = self
@@ -128,6 +139,18 @@ impl Header {
             (q, _) => q,
         }
     }
+}
+
+/// The analysis whose steps a word names.
+fn analysis_of(word: &str) -> Option<Analysis> {
+    Some(match word {
+        "FREQUENCY" => Analysis::Frequency,
+        "TIME" => Analysis::Transient,
+        "COMPLEX EIGENVALUE" => Analysis::ComplexEigen,
+        "EIGENVALUE" | "EIGR" | "MODE" => Analysis::Modes,
+        "LOAD FACTOR" | "LOAD STEP" => Analysis::NonlinearStatics,
+        _ => return None,
+    })
 }
 
 fn first_number(text: &str) -> Option<u32> {

@@ -252,6 +252,40 @@ fn modes_carry_their_number_and_complex_and_sort2_blocks_are_noted() {
     assert_eq!(punch.notes.len(), 2);
     assert!(matches!(punch.rows(1), Err(PunchError::NotDecoded { .. })));
     assert!(matches!(punch.rows(2), Err(PunchError::NotDecoded { .. })));
+    assert_eq!(punch.blocks[2].analysis, Analysis::Transient);
+}
+
+#[test]
+fn complex_blocks_are_of_the_analysis_that_their_header_names_and_never_static() {
+    let block = |extra: &str| {
+        header(1, "VELOCITY", extra).replace("$REAL OUTPUT", "$MAGNITUDE-PHASE OUTPUT")
+            + &line("         1       G", &["1.0", "2.0", "3.0"])
+            + &line("-CONT-", &["4.0", "5.0", "6.0"])
+            + &line("-CONT-", &["7.0", "8.0", "9.0"])
+            + &line("-CONT-", &["10.0", "11.0", "12.0"])
+    };
+    for (extra, expected) in [
+        (
+            "$POINT ID =         11  IDENTIFIED BY FREQUENCY",
+            Analysis::Frequency,
+        ),
+        ("$FREQUENCY =   0.1000000E+02", Analysis::Frequency),
+        (
+            "$EIGENVALUE =  0.3947842E+05  MODE =     2",
+            Analysis::ComplexEigen,
+        ),
+        ("", Analysis::Other(0)),
+    ] {
+        let text = block(extra);
+        let punch = Punch::read(text.as_bytes()).unwrap();
+        let found = &punch.blocks[0];
+        assert_eq!(
+            (found.quantity, found.analysis),
+            (Quantity::Velocity, expected),
+            "{extra}"
+        );
+        assert!(found.complex && punch.rows(0).is_err());
+    }
 }
 
 #[test]

@@ -87,9 +87,11 @@ impl Loader for Disk {
         paths
             .into_iter()
             .find_map(|path| {
-                std::fs::read(&path)
-                    .ok()
-                    .map(|bytes| Loaded { path, bytes })
+                std::fs::read(&path).ok().map(|bytes| Loaded {
+                    path,
+                    bytes,
+                    rival: None,
+                })
             })
             .ok_or_else(|| "no such file".to_owned())
     }

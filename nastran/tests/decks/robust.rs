@@ -21,7 +21,11 @@ impl Loader for Kept {
             }
             if let Some(bytes) = self.0.get(&path) {
                 let bytes = bytes.clone();
-                return Ok(Loaded { path, bytes });
+                return Ok(Loaded {
+                    path,
+                    bytes,
+                    rival: None,
+                });
             }
         }
         Err("no such file".to_owned())

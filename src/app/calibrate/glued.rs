@@ -120,7 +120,7 @@ impl<'a> Sites<'a> {
             pair: drawn
                 .spec()
                 .pair
-                .and_then(|(ix, side)| Some((self.model.shells.get(ix.us())?.id, side))),
+                .and_then(|p| Some((self.model.shells.get(p.shell.us())?.id, p.surface))),
             gain: glued.gain.value,
         })
     }

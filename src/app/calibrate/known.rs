@@ -2,7 +2,9 @@
 
 use super::payloads::{Payloads, add_columns};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{asked_column, known_column, place_of, run_column, take_units};
+use crate::app::job::column_unit::{
+    asked_column, column_called, known_column, run_column, take_units, unread_in_runs,
+};
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
@@ -69,9 +71,13 @@ pub(super) fn read_known(
     let mut table = read_table(&runs.file.given, &text)?;
     let mut headers = take_units(&mut table);
     table.check_rows()?;
+    let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
+    if let Some(unread) = unread_in_runs(job, &table, &headers, &names) {
+        work.inputs.note(&table.file, unread.finding(&table.file));
+    }
     let payloads = add_columns(work, (job, runs), &mut table, &mut headers, loads, origin)?;
     let mut faults = FaultList::new();
-    let key = run_column(&table, &headers)?;
+    let key = run_column(job, &table, &headers)?;
     let stated = stated(job, runs, &table, &headers, loads, &mut faults);
     let place = |name: &str, key: &str, faults: &mut FaultList| {
         column(job, &table, &headers, name, key, faults)
@@ -326,7 +332,7 @@ fn stated(
         let own = [name, given].map(|n| format!("{n}_sd"));
         let sd = own
             .iter()
-            .find(|n| !matches!(place_of(table, headers, n), Ok(None)));
+            .find(|n| !matches!(column_called(job, table, headers, n), Ok(None)));
         let sd = sd.and_then(|n| known_column(job, runs, table, headers, n, quantity, faults));
         let of = |unit: Option<Unit>| unit.map_or(1.0, |u| 1.0 / factor(job.units, u));
         let of_file = of(quantity.map(|q| runs.units.unit(q)));

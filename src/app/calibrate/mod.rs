@@ -14,6 +14,7 @@ use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::strain::{StrainRows, StrainTable, no_gauge_column, stated_readings};
 use super::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
+use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
 use super::recover::listed;
@@ -32,6 +33,8 @@ use crate::units::MICROSTRAIN;
 /// Every fault of the job and of the files it names; runs without known loads.
 pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
     let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    check_tables(&work, job)?;
     let (measured, runs) = sections(job)?;
     let zeroed = work.stage("read strain", |w| strain_of_runs(w, job, measured))?;
     let (prepared, prior) = prior(&mut work, job, &zeroed.table)?;
@@ -301,7 +304,7 @@ fn check_readings(
     }
     match gauges.iter().any(|g| table.gauges.contains(g)) {
         true => Ok(()),
-        false => Err(no_gauge_column(job, &measured.strain.given).into()),
+        false => Err(no_gauge_column(job, &measured.strain.given, &table.gauges).into()),
     }
 }
 

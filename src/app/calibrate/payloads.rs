@@ -1,7 +1,7 @@
 //! Weighed payloads as known loads: mass and place of the runs file make the columns of the payload's loads.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{known_column, place_of};
+use crate::app::job::column_unit::{column_called, known_column};
 use crate::app::job::payload_loads::part_of;
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::Table;
@@ -51,7 +51,7 @@ pub(super) fn add_columns(
     origin: [f64; 2],
 ) -> Result<Option<Payloads>, Faults> {
     let has = |t: &Table, h: &[Column], name: &str| {
-        runs.columns.contains_key(name) || !matches!(place_of(t, h, name), Ok(None))
+        runs.columns.contains_key(name) || !matches!(column_called(job, t, h, name), Ok(None))
     };
     let Some(states) = STATES.iter().find(|s| has(table, headers, s.0)) else {
         return Ok(None);
@@ -148,7 +148,7 @@ fn weight_sd(
     let own = [name, given].map(|n| format!("{n}_sd"));
     let named = own
         .iter()
-        .find(|n| !matches!(place_of(table, headers, n), Ok(None)));
+        .find(|n| !matches!(column_called(job, table, headers, n), Ok(None)));
     let column = named.and_then(|n| {
         let sd = known_column(job, runs, table, headers, n, Some(quantity), faults)?;
         let unit = match sd.is_stated {

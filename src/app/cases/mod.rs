@@ -13,7 +13,7 @@ use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::solved::support_of_job;
 use super::work::Work;
-use crate::fe::{Relief, Support};
+use crate::fe::{Relief, Support, determinate_dofs};
 use crate::finding::{Finding, Severity};
 use crate::model::{Grid, Model};
 use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
@@ -173,6 +173,8 @@ pub fn load_ids(deck: &Deck) -> Vec<u32> {
     ids.extend(c.pload4s.iter().map(|l| l.card.sid));
     ids.extend(c.gravs.iter().map(|l| l.card.sid));
     ids.extend(c.rforces.iter().map(|l| l.card.sid));
+    ids.extend(c.accels.iter().map(|l| l.card.sid));
+    ids.extend(c.accel1s.iter().map(|l| l.card.sid));
     ids.extend(c.temps.iter().map(|l| l.card.sid));
     ids.extend(c.tempds.iter().map(|l| l.card.sid));
     ids.extend(c.tempp1s.iter().map(|l| l.card.sid));
@@ -222,18 +224,16 @@ fn edits_of(
             Severity::Info,
             "suport-dropped",
             "SUPORT",
-            "SUPORT entries are left out: PARAM,INREL,-2 balances what is free by itself, and a held structure needs none",
+            "SUPORT entries of the deck are left out: inertia relief of the written deck needs none of them, nor does a held structure",
             "",
         ));
     }
     let mut case = String::from(
         "$ Unit loads, one subcase each, in the order of the job\nSTRAIN(FIBER,CENTER) = ALL\n",
     );
-    select_structure(&mut case, work, deck, support);
+    select_structure(&mut case, work, (deck, model, support));
     let mut bulk = String::from("$ Unit loads\nPARAM,POST,-1\n");
-    if support.relief != Relief::None {
-        bulk.push_str("PARAM,INREL,-2\n");
-    }
+    bulk.push_str(&relief_cards(model, support));
     let mut rows = Vec::new();
     let first = load_ids(deck).into_iter().max().unwrap_or(0).max(1000) + 1;
     for (sid, l) in (first..).zip(&job.loads) {
@@ -250,6 +250,23 @@ fn edits_of(
     edits.insert_case_end(deck, &case);
     edits.insert_cards(deck, &bulk);
     Ok((edits, rows))
+}
+
+/// The cards of inertia relief. Where springs to ground resist some rigid motions, PARAM,INREL,-2 would take all six as free: SUPORT
+/// names dofs that hold the others.
+fn relief_cards(model: &Model, support: Support) -> String {
+    match (support.relief, support.by_springs) {
+        (Relief::None, _) => String::new(),
+        (_, 0) => "PARAM,INREL,-2\n".to_owned(),
+        _ => {
+            let mut cards = String::from("PARAM,INREL,-1\n");
+            for (grid, dof) in determinate_dofs(model) {
+                let id = model.grids.get(grid.us()).map_or(0, |g| g.id);
+                cards.push_str(&format_card("SUPORT", &[id.into(), u32::from(dof).into()]));
+            }
+            cards
+        }
+    }
 }
 
 /// Takes out the deck's subcases and what its case control asks for besides, and makes its solution static.
@@ -291,8 +308,20 @@ fn drop_relief(edits: &mut Edits, job: &Job, deck: &Deck) -> Result<usize, Fault
     Ok(deck.cards.suports.len())
 }
 
-/// Selects MPC and SPC sets above all subcases: the deck's subcases go, and what they select of the structure itself stays.
-fn select_structure(case: &mut String, work: &mut Work, deck: &Deck, support: Support) {
+/// Selects MPC, SPC and NSM sets and the temperatures of materials above all subcases: the deck's subcases go, and what they select of the
+/// structure itself stays.
+fn select_structure(
+    case: &mut String,
+    work: &mut Work,
+    (deck, model, support): (&Deck, &Model, Support),
+) {
+    let first = deck.case_control.subcases.first();
+    if let (None, Some(nsm)) = (deck.case_control.global.nsm, first.and_then(|s| s.nsm)) {
+        case.push_str(&format!("NSM = {nsm}\n"));
+    }
+    if let Some(set) = model.material_temperature {
+        case.push_str(&format!("TEMPERATURE(MATERIAL) = {set}\n"));
+    }
     let kept: std::collections::BTreeSet<u32> = deck
         .case_control
         .subcases

@@ -1,6 +1,7 @@
 //! What was found in all files.
 
 use super::decks::DeckEntry;
+use super::records::RecordEntry;
 use super::results::ResultEntry;
 use crate::app::fault::FaultList;
 use crate::app::job::Candidates;
@@ -14,6 +15,8 @@ pub struct Checked {
     pub decks: Vec<DeckEntry>,
     /// Result files.
     pub results: Vec<ResultEntry>,
+    /// Records and tables.
+    pub records: Vec<RecordEntry>,
     /// Every fault; where there is one, the files are bad input.
     #[serde(serialize_with = "as_lines")]
     pub faults: FaultList,

@@ -4,8 +4,9 @@ use crate::app::deck::{DeckModel, model_of_deck};
 use crate::app::fault::FaultList;
 use crate::app::words::short;
 use crate::app::work::Work;
-use crate::fe::{check_shapes, contradictions};
+use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::model::Model;
+use nastran::bdf::vocabulary::{Effect, effect_of_card};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -26,6 +27,8 @@ pub struct DeckEntry {
     path: String,
     /// Number of cards by name.
     cards: BTreeMap<String, usize>,
+    /// Number of cards without influence on linear statics, mass and modes, by reason.
+    without_influence: BTreeMap<&'static str, usize>,
     grids: usize,
     elements: usize,
     /// WTMASS applied.
@@ -54,6 +57,12 @@ pub(super) fn look(
         held.into_iter()
             .filter_map(|s| contradictions(&read.model, Some(s))),
     );
+    let both = sets(&read).into_iter().filter_map(|(spc, mpc)| {
+        let finding = held_dependents(&read.model, spc, mpc)?;
+        Some((spc, finding))
+    });
+    work.findings
+        .extend(both.collect::<BTreeMap<_, _>>().into_values());
     let faults = read.faults.clone();
     (DeckEntry::of(read), faults)
 }
@@ -69,18 +78,44 @@ fn supports(read: &DeckModel) -> BTreeSet<u32> {
     }
 }
 
+/// SPC and MPC sets that act together: those of the subcases; each SPC set of the deck where case control selects none.
+fn sets(read: &DeckModel) -> BTreeSet<(Option<u32>, Option<u32>)> {
+    let subcases = read.deck.case_control.effective_subcases();
+    let selected: BTreeSet<_> = subcases.iter().map(|s| (s.spc, s.mpc)).collect();
+    match selected.iter().any(|s| s.0.is_some()) {
+        true => selected,
+        false => {
+            let mpc = read.model.mpc;
+            let all = supports(read).into_iter().map(|spc| (Some(spc), mpc));
+            all.chain([(None, mpc)]).collect()
+        }
+    }
+}
+
+/// Counts the cards without influence by reason.
+fn without_influence(cards: &BTreeMap<String, usize>) -> BTreeMap<&'static str, usize> {
+    let mut counted = BTreeMap::new();
+    for (name, n) in cards {
+        if let Some(Effect::None(reason)) = effect_of_card(name) {
+            *counted.entry(reason).or_default() += n;
+        }
+    }
+    counted
+}
+
 impl DeckEntry {
     pub(super) fn of(d: DeckModel) -> Self {
         let cards = d.deck.counts.clone();
         let weight = d.model.weight();
         let m = &d.model;
-        let in_mesh = m.n_elements() - m.masses.len() - m.rigids.len();
+        let in_mesh = m.n_elements() - m.masses.len() - m.scalar_masses.len() - m.rigids.len();
         let counted: usize = ELEMENTS.iter().filter_map(|e| cards.get(*e)).sum();
         Self {
             path: d.given,
             grids: m.grids.iter().filter(|g| !g.is_scalar()).count(),
             // Where the mesh came from an OP2 there are no cards to count.
             elements: if cards.is_empty() { in_mesh } else { counted },
+            without_influence: without_influence(&cards),
             cards,
             mass: weight.mass,
             cg: weight.cg.into(),
@@ -96,6 +131,16 @@ impl DeckEntry {
     /// Its mesh.
     pub fn model(&self) -> Option<&Model> {
         self.model.as_ref()
+    }
+
+    /// The line about cards without influence; empty where there are none.
+    fn idle(&self) -> String {
+        let counted = self.without_influence.iter();
+        let parts: Vec<String> = counted.map(|(why, n)| format!("{why} {n}")).collect();
+        match parts.is_empty() {
+            true => String::new(),
+            false => format!("  without influence: {}\n", parts.join("; ")),
+        }
     }
 
     /// For people.
@@ -119,12 +164,13 @@ impl DeckEntry {
             false => "more than numbers can be".to_owned(),
         };
         format!(
-            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n  faults: {}",
+            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
             self.path,
             self.grids,
             self.elements,
             self.subcases.len(),
             cards.join(", "),
+            self.idle(),
             self.faults
         )
     }

@@ -7,7 +7,7 @@ use crate::app::job::strain::stated_readings;
 use crate::app::job::{self, GivenSensitivity, HoldOut, Job, Measured, NamedFile};
 use crate::app::job_deck::against_units;
 use crate::app::outcome::StatedUnits;
-use crate::app::solved::{support_finding, support_of_job};
+use crate::app::solved::{relief_of_job, support_finding, support_of_job};
 use crate::app::strain::{given_as_asked, off_their_elements};
 use crate::app::work::Work;
 use crate::app::zeroed::read_zeroed;
@@ -29,7 +29,10 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     found.units = StatedUnits::of(job.units, &job.report_units);
     found.candidates = Some(job.candidates.clone());
     let (decks, of_others) = (found.decks.len(), found.faults.len());
+    let results = found.results.len();
     files(work, &job, found, into);
+    let of_job = found.results.iter_mut().skip(results);
+    of_job.for_each(|r| r.is_of_job = true);
     let mut faults = std::mem::take(&mut found.faults);
     let s = job.sensitivity.as_ref().and_then(|_| {
         let read = given_as_asked(work, &job);
@@ -58,8 +61,10 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         kept(identify::look(work, &job), &mut faults);
     }
     kept(respond::look(work, &job), &mut faults);
-    kept(reconcile::look(work, &job), &mut faults);
-    kept(calibrate::look(work, &job), &mut faults);
+    if let Some(job) = kept(job.estimating(), &mut faults) {
+        kept(reconcile::look(work, &job), &mut faults);
+        kept(calibrate::look(work, &job), &mut faults);
+    }
     if faults.len() == of_others {
         let deck = found.decks.get(decks).and_then(|d| d.model());
         let grids = deck.map_or(0, |m| m.grids.len());
@@ -164,7 +169,11 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
             work.findings.extend(against_units(job, model));
             work.findings.extend(off_their_elements(model, job));
             match support_of_job(job, model) {
-                Ok(support) => work.findings.push(support_finding(&m.deck.given, support)),
+                Ok(support) => {
+                    work.findings.push(support_finding(&m.deck.given, support));
+                    work.findings
+                        .extend(relief_of_job(job, model).ok().flatten());
+                }
                 Err(faults) => found.faults.extend(faults.into_list()),
             }
             found.faults.extend(missing_ids(job, model));
@@ -181,20 +190,8 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
 fn other_files(job: &Job) -> Vec<&NamedFile> {
     let mut out: Vec<&NamedFile> = Vec::new();
     if let Some(s) = &job.sensitivity {
-        let g = &s.signatures;
         out.push(&s.file);
-        out.extend(
-            [
-                &g.lateral_wheel_loads,
-                &g.thermal,
-                &g.payload,
-                &g.unaccounted_mass,
-                &g.gauge_angle,
-            ]
-            .into_iter()
-            .flatten(),
-        );
-        out.extend(g.rail_stiffness.values());
+        out.extend(s.signatures.files());
     }
     if let Some(v) = &job.vehicle {
         out.push(&v.data);

@@ -1,6 +1,10 @@
 //! What a file is: by content, its name only where that does not tell.
 
 use crate::app::deck::looks_like_op2;
+use crate::app::sheet::is_sheet;
+use crate::app::what_is::{binary_kind, is_deck};
+use crate::series::record::csv::Layout;
+use crate::series::record::is_format;
 
 /// A kind of file that `check` reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -8,13 +12,17 @@ pub(super) enum Kind {
     Job,
     Deck,
     Results,
+    /// A record, or a table of text.
+    Table,
+    /// Anything else that is no text.
+    Other(&'static str),
 }
 
 pub(super) fn kind_of(name: &str, bytes: &[u8]) -> Kind {
     let name = name.to_ascii_lowercase();
     let ends = |list: &[&str]| list.iter().any(|e| name.ends_with(e));
-    if ends(&[".toml"]) {
-        return Kind::Job;
+    if is_format(bytes) {
+        return Kind::Table;
     }
     let head = bytes.trim_ascii_start();
     let punch = head
@@ -24,5 +32,26 @@ pub(super) fn kind_of(name: &str, bytes: &[u8]) -> Kind {
     {
         return Kind::Results;
     }
-    Kind::Deck
+    if is_sheet(bytes) && ends(&[".xlsx", ".xlsm"]) {
+        return Kind::Table;
+    }
+    if let Some(kind) = binary_kind(bytes) {
+        // Tables may be text of two bytes a character.
+        return match ends(TABLES) {
+            true => Kind::Table,
+            false => Kind::Other(kind),
+        };
+    }
+    if ends(&[".toml"]) {
+        return Kind::Job;
+    }
+    let is_record = || Layout::of(bytes).is_ok_and(|layout| layout.is_record());
+    let is_table = ends(TABLES) || ends(&[".txt", ".asc"]) && is_record();
+    match is_table && !is_deck(bytes) {
+        true => Kind::Table,
+        false => Kind::Deck,
+    }
 }
+
+/// Ends of the names of tables of text.
+const TABLES: &[&str] = &[".csv", ".tsv"];

@@ -1,6 +1,6 @@
 //! `check`: what is in the files, every fault, and whether deck and results belong together.
 //!
-//! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`] and [`results`] describe them; [`jobs`] follows a job to
+//! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`], [`results`] and [`records`] describe them; [`jobs`] follows a job to
 //! the files it names, and [`asked`] asks what commands make of them; [`together`] compares.
 
 mod asked;
@@ -8,16 +8,18 @@ mod checked;
 mod decks;
 mod jobs;
 mod kind;
+mod records;
 mod results;
 mod together;
 
 use super::context::Context;
-use super::fault::Faults;
+use super::fault::{Fault, Faults};
 use super::outcome::Outcome;
 use super::work::Work;
 pub use checked::Checked;
 pub use decks::DeckEntry;
 use kind::{Kind, kind_of};
+pub use records::RecordEntry;
 pub use results::ResultEntry;
 use std::path::{Path, PathBuf};
 
@@ -55,5 +57,15 @@ fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
             found.faults.extend(faults);
             found.results.extend(entry);
         }
+        Kind::Table => match records::look(work, base, given) {
+            Ok(entry) => found.records.push(entry),
+            Err(faults) => found.faults.extend(faults),
+        },
+        Kind::Other(kind) => found.faults.push(Fault::of(
+            given,
+            "file",
+            format!("it is {kind}"),
+            "name a deck, results, a job, a record or a table",
+        )),
     }
 }

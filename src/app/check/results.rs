@@ -20,6 +20,9 @@ pub struct ResultEntry {
     file_tables: Vec<String>,
     #[serde(skip)]
     pub(super) bytes: FileBytes,
+    /// Whether a job names it.
+    #[serde(skip)]
+    pub(super) is_of_job: bool,
 }
 
 /// One block of results.
@@ -35,6 +38,8 @@ struct TableEntry {
     /// Mode number or load step, 0 in statics.
     mode: i32,
     decoded: bool,
+    #[serde(skip)]
+    is_complex: bool,
 }
 
 impl ResultEntry {
@@ -45,12 +50,13 @@ impl ResultEntry {
 
     /// For people: one line a kind of table.
     pub fn text(&self) -> String {
-        let mut kinds: BTreeMap<(&str, &str, String), (Vec<u32>, usize)> = BTreeMap::new();
+        let mut kinds: BTreeMap<(&str, &str, String, bool), (Vec<u32>, usize)> = BTreeMap::new();
         for t in &self.tables {
             let key = (
                 t.quantity,
                 t.analysis,
                 t.element_type.clone().unwrap_or_default(),
+                t.is_complex,
             );
             let entry = kinds.entry(key).or_default();
             if !entry.0.contains(&t.subcase) {
@@ -62,7 +68,12 @@ impl ResultEntry {
             "results `{}`: {}, {} bytes a word",
             self.path, self.solver, self.word_bytes
         );
-        for ((quantity, analysis, element), (subcases, rows)) in kinds {
+        for ((quantity, analysis, element, is_complex), (subcases, rows)) in kinds {
+            let complex = if is_complex {
+                " (complex, not read)"
+            } else {
+                ""
+            };
             let on = if element.is_empty() {
                 String::new()
             } else {
@@ -71,7 +82,7 @@ impl ResultEntry {
             let n = subcases.len();
             let plural = if n == 1 { "" } else { "s" };
             out.push_str(&format!(
-                "\n  {quantity}{on}, {analysis}: {n} subcase{plural}, {rows} rows"
+                "\n  {quantity}{on}, {analysis}{complex}: {n} subcase{plural}, {rows} rows"
             ));
         }
         out
@@ -158,6 +169,7 @@ fn describe(
         tables,
         file_tables,
         bytes: bytes.clone(),
+        is_of_job: false,
     };
     (entry, findings, faults)
 }
@@ -183,5 +195,6 @@ fn entry(block: &Block, rows: Option<usize>) -> TableEntry {
         rows: rows.unwrap_or(block.entries),
         mode: block.mode,
         decoded: rows.is_some(),
+        is_complex: block.complex,
     }
 }

@@ -66,6 +66,8 @@ pub struct Kernel {
     pub time_unit_s: Option<f64>,
     /// What is known to be wrong with channels.
     pub corrections: Vec<StrainCorrection>,
+    /// Names of the readings of validation gauges, which are not read.
+    pub reserved: Vec<String>,
     /// Records that are being recovered.
     pub(super) under_way: UnderWay,
 }
@@ -77,11 +79,7 @@ impl Kernel {
     /// Why loads can't be had of it.
     pub fn day(&self, record: &Record) -> Result<Day, String> {
         let mut findings = Vec::new();
-        let second = match self.time_unit_s {
-            Some(unit) if !record.is_time_unit_stated() => unit,
-            _ => 1.0,
-        };
-        let irregular = clock::irregular("time", &record.clock, second);
+        let irregular = clock::irregular("time", &record.clock);
         findings.extend(irregular.into_iter().map(DayFinding::from));
         let cut = record
             .left_out()
@@ -98,12 +96,7 @@ impl Kernel {
         let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
         findings.extend(gaps.into_iter().map(DayFinding::from));
         let judged = std::mem::take(&mut pass.judged);
-        let widened = self.judge(
-            &r,
-            judged,
-            |i| second * record.clock.time_s(i),
-            &mut findings,
-        );
+        let widened = self.judge(&r, judged, |i| record.clock.time_s(i), &mut findings);
         let filter = widened.as_ref().unwrap_or(&r.filter);
         let scales = scales(&r, filter, pass.missing.whole, &pass.by_gauges);
         let loads = pass.counters.into_iter().zip(&self.listed.names);
@@ -122,13 +115,13 @@ impl Kernel {
         let missing = &pass.missing;
         let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
-        let hours = |samples: f64| samples / record.clock.rate_hz * second / 3600.0;
+        let hours = |samples: f64| samples / record.clock.rate_hz / 3600.0;
         findings.extend(told_dead(&dead, &mut gauges, hours));
         gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
         let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
         gauges.sort_by_key(place);
         Ok(Day {
-            rate_hz: record.clock.rate_hz / second,
+            rate_hz: record.clock.rate_hz,
             hours: hours(known as f64),
             missing: record.clock.missing,
             loads: loads.collect(),
@@ -217,7 +210,8 @@ impl Kernel {
 
     /// The columns that a record is read for.
     pub fn wanted(&self) -> Vec<String> {
-        columns_wanted(&self.corrections, &self.sensitivity.gauges)
+        let gauges = self.sensitivity.gauges.iter().chain(&self.reserved);
+        columns_wanted(&self.corrections, gauges)
     }
 
     /// The gauges that read, and the filter from them.
@@ -236,7 +230,9 @@ impl Kernel {
             .iter()
             .map(|c| column_of(&self.corrections, &c.name).to_owned())
             .collect();
-        let unknown = strain_without_gauge("", &names, &all.gauges);
+        let others = names.iter().filter(|n| !self.reserved.contains(n));
+        let others: Vec<String> = others.cloned().collect();
+        let unknown = strain_without_gauge("", &others, &all.gauges);
         findings.extend(unknown.map(DayFinding::from));
         let named = columns.iter().enumerate();
         let places: HashMap<&str, (usize, f64)> = named
@@ -259,7 +255,7 @@ impl Kernel {
             }
         }
         let sampled = sampled(record, &found)?;
-        if !record.is_time_unit_stated() && self.time_unit_s.is_none() {
+        if !record.is_time_unit_stated() {
             let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
             if let Some(f) = wrong {
                 return Err(format!("{}: {}", f.message, f.remedy));

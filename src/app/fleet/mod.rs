@@ -425,6 +425,7 @@ fn not_kept(path: &str, e: &std::io::Error) -> Fault {
 pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, String> {
     let options = Options {
         declared_hz: None,
+        time_unit_s: kernel.time_unit_s,
         wanted: kernel.wanted(),
     };
     let record = open_source(opened.source(), &options).map_err(|e| e.to_string())?;

@@ -5,6 +5,7 @@ use super::recovering::UnderWay;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::job::correct::channel_of;
+use crate::app::named_results::check_tables;
 use crate::app::recover::{listed, reference_strain, zero_of};
 use crate::app::strain::{prepare, stated_errors};
 use crate::app::work::Work;
@@ -20,6 +21,8 @@ const CLASSES: f64 = 32.0;
 /// # Errors
 /// Every fault of the job and of the files it names.
 pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
+    let job = &job.estimating()?;
+    check_tables(work, job)?;
     let Some(measured) = &job.measured else {
         let remedy = "add [measured] with the noise and the model's uncertainty";
         return Err(Fault::of(&*job.file, "measured", "the job has no [measured]", remedy).into());
@@ -80,6 +83,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         widths,
         time_unit_s: measured.time_unit_s,
         corrections: job.corrections.clone(),
+        reserved: job.reserved.clone(),
         under_way: UnderWay::default(),
     })
 }

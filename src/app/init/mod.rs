@@ -17,13 +17,17 @@ use super::fault::{Fault, Faults};
 use super::named_results::RESULTS_REMEDY;
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::work::Work;
-use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
+use crate::fe::from_results::{
+    Displacements, HOLD_ONCE, ReadOptions, repeated, solution_from_file,
+};
 use crate::finding::{Finding, Severity};
+use crate::model::{Model, Shell};
 use crate::units::likely_system;
 use nastran::results::ResultsFile;
 use propose::{StrainFrom, Strained, proposals};
 pub use purpose::{Purpose, init_for};
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 pub use text::JOB;
 use text::{JobPlan, usual_spacing};
@@ -38,6 +42,9 @@ pub struct Proposal {
     pub loads: Vec<String>,
     /// Whether `place` answers it.
     pub placeable: bool,
+    /// Shell properties by the name that the deck gives them.
+    #[serde(skip)]
+    pub zones: BTreeMap<String, BTreeSet<u32>>,
     /// The job itself.
     #[serde(skip)]
     pub text: String,
@@ -109,10 +116,22 @@ pub fn init(
         job: JOB,
         loads: verdict.loads,
         placeable: verdict.places,
+        zones: named_zones(&deck.model),
         text: verdict.text,
         path: target,
     };
     Ok(work.finish(StatedUnits::default(), answer))
+}
+
+/// Shell properties that elements use by the name that comments of the deck give them.
+fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
+    let property = |s: &Shell| Some(model.shell_properties.get(s.property.us())?.id);
+    let used: BTreeSet<u32> = model.shells.iter().filter_map(property).collect();
+    let mut zones: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+    for (id, name) in model.property_names.iter().filter(|n| used.contains(&n.0)) {
+        zones.entry(name.clone()).or_default().insert(*id);
+    }
+    zones
 }
 
 /// Where the job is to stand.
@@ -179,12 +198,17 @@ fn read_strained(
     for path in results {
         let name = path.display().to_string();
         let bytes = work.inputs.read(Path::new(""), &name)?;
-        let solution = work
-            .stage("read results", |_| {
-                ResultsFile::read(&bytes, &name)
-                    .map(|f| solution_from_file(&deck.model, &name, &f, &options))
+        let read = work.stage("read results", |_| {
+            ResultsFile::read(&bytes, &name).map(|f| {
+                let solution = solution_from_file(&deck.model, &name, &f, &options);
+                (solution, repeated(&[&f], None))
             })
-            .map_err(|e| Fault::of(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
+        });
+        let (solution, repeated) =
+            read.map_err(|e| Fault::of(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
+        if let Some(twice) = repeated.iter().find(|r| r.is_of_strain()) {
+            return Err(Fault::of(&*name, "results", twice.words(&[&name]), HOLD_ONCE).into());
+        }
         if let Some(cut) = deck.cut_beside(&solution.findings) {
             return Err(cut.into());
         }

@@ -6,6 +6,7 @@ use crate::app::context::Context;
 use crate::app::fault::{Fault, Faults};
 use crate::app::outcome::{Outcome, StatedUnits};
 use crate::app::work::Work;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What a job is written for beside placing gauges and recovering loads.
@@ -49,6 +50,9 @@ use = ["strain", "reactions"]         # or one of them
 # unloaded = "R00"                    # run without payload: it is subtracted
 # region = [[1000.0, 3000.0], [-300.0, 300.0]]   # where it can be, job units of length
 "#;
+
+/// Zones of [`RECONCILE`], as an example.
+const ZONES: &str = "# zones = { left = [1], right = [2] }";
 
 const RECONCILE: &str = r#"
 [payload]
@@ -121,7 +125,7 @@ impl Purpose {
     ];
 
     /// The job of a deck with the sections of this purpose.
-    pub fn put_into(self, job: &str) -> String {
+    pub fn put_into(self, job: &str, zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
         let head = job.split(LATER).next().unwrap_or(job);
         let sections: &[&str] = match self {
             Self::Payload => &[GAUGES, RUNS, PAYLOAD],
@@ -129,7 +133,8 @@ impl Purpose {
             Self::Calibrate => &[GAUGES, RUNS, CALIBRATION],
             Self::Identify => return IDENTIFY.to_owned(),
         };
-        head.to_owned() + &sections.concat()
+        let sections = sections.concat();
+        head.to_owned() + &sections.replace(ZONES, &zones_line(zones))
     }
 
     /// A whole job, where the purpose needs no deck.
@@ -140,6 +145,21 @@ impl Purpose {
             Self::Payload | Self::Reconcile => None,
         }
     }
+}
+
+/// Returns the commented key of zones with the names of the deck, or its example where the deck has none, or more than fit.
+fn zones_line(zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
+    /// Zones that a line lists.
+    const MOST: usize = 12;
+    if zones.is_empty() || zones.len() > MOST {
+        return ZONES.to_owned();
+    }
+    let zone = |(name, ids): (&String, &BTreeSet<u32>)| {
+        let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
+        format!("{name:?} = [{}]", ids.join(", "))
+    };
+    let listed: Vec<String> = zones.iter().map(zone).collect();
+    format!("# zones = {{ {} }}", listed.join(", "))
 }
 
 /// A commented job for a purpose, from a deck where one is given, to stand in `folder`.
@@ -155,7 +175,7 @@ pub fn init_for(
 ) -> Result<Outcome<Proposal>, Faults> {
     if let Some(deck) = deck {
         let mut proposed = super::init(deck, results, folder, cx)?;
-        proposed.answer.text = purpose.put_into(&proposed.answer.text);
+        proposed.answer.text = purpose.put_into(&proposed.answer.text, &proposed.answer.zones);
         return Ok(proposed);
     }
     let Some(text) = purpose.alone() else {
@@ -167,6 +187,7 @@ pub fn init_for(
         job: JOB,
         loads: Vec::new(),
         placeable: false,
+        zones: BTreeMap::new(),
         text,
         path,
     };

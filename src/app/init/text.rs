@@ -5,6 +5,7 @@ use super::propose::{ProposedLoad, StrainFrom, clean};
 use super::round::round;
 use crate::app::cases::from_folder;
 use crate::app::deck::DeckModel;
+use crate::fe::Support;
 use crate::units::UnitSystem;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -105,7 +106,9 @@ impl JobPlan<'_> {
 
     /// What holds the structure.
     fn support(&self) -> String {
+        let held = Support::free(&self.deck.model);
         match self.deck.model.selected_spcs.as_slice() {
+            [] if held.is_held() || held.by_springs > 0 => format!("support = \"deck\"                     # check: the deck selects no SPC set; the structure is {}", held.words()),
             [] => "# support = \"free\"                   # the deck selects no SPC set: inertia balances every load".to_owned(),
             [set] => format!("support = \"deck\"                     # check: SPC set {set} of the deck holds the structure while gauges are read; \"free\": inertia relief"),
             [set, ..] => format!("support = {set}                          # check: the deck's subcases select several SPC sets; \"free\": inertia relief"),

@@ -3,6 +3,7 @@
 use super::suggest;
 use super::table::Table;
 use super::types::{Job, Runs};
+use super::unread::{Unread, is_same_name};
 use crate::app::fault::{Fault, FaultList};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
@@ -54,6 +55,102 @@ pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usiz
     Ok(None)
 }
 
+/// The column that holds `name` of the job: [`place_of`], else the one called so apart from case and separators that is no other name's.
+///
+/// # Errors
+/// Several columns.
+pub fn column_called(
+    job: &Job,
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+) -> Result<Option<usize>, Fault> {
+    let exact = place_of(t, columns, name)?;
+    if exact.is_some() {
+        return Ok(exact);
+    }
+    // A single letter is a name of its own in either case.
+    if name.chars().filter(|c| c.is_alphanumeric()).count() < 2 {
+        return Ok(None);
+    }
+    let known = names_in_runs(job);
+    let is_claimed = |c: &Column| known.iter().any(|n| is_called(c, n));
+    let alike = |c: &Column| called(c).iter().any(|n| is_same_name(n, name));
+    let mut holding = columns
+        .iter()
+        .enumerate()
+        .filter(|(_, c)| alike(c) && !is_claimed(c));
+    let Some((first, _)) = holding.next() else {
+        return Ok(None);
+    };
+    match holding.next() {
+        None => Ok(Some(first)),
+        Some((_, second)) => Err(Fault::at(
+            &*t.file,
+            1,
+            &*second.header.whole,
+            format!("two columns hold `{name}`"),
+            "leave one of them out, or name it in [runs] columns",
+        )),
+    }
+}
+
+/// What a column may be called.
+fn called(c: &Column) -> [&str; 3] {
+    [&c.header.whole, &c.name, &c.header.name]
+}
+
+fn is_called(c: &Column, name: &str) -> bool {
+    called(c).contains(&name)
+}
+
+/// Names of the payload in a runs file.
+pub const PAYLOAD: [(&str, Quantity); 4] = [
+    ("payload_force", Quantity::Force),
+    ("payload_mass", Quantity::Mass),
+    ("payload_x", Quantity::Length),
+    ("payload_y", Quantity::Length),
+];
+
+/// Returns the names that a column of the runs file may have for any command, those of a given S apart.
+pub fn names_in_runs(job: &Job) -> Vec<String> {
+    let loads = job.loads.iter().map(|l| l.name.clone());
+    let sums = job.combinations.iter().map(|c| c.name.clone());
+    let payload = PAYLOAD.iter().map(|p| p.0.to_owned());
+    let mapped = job.runs.iter().flat_map(|r| r.columns.values().cloned());
+    let mut out: Vec<String> = loads.chain(sums).chain(payload).chain(mapped).collect();
+    let sd: Vec<String> = out.iter().map(|n| format!("{n}_sd")).collect();
+    out.extend(sd);
+    let causes = job.reconcile.iter().flat_map(|r| &r.causes);
+    out.extend(causes.map(|c| c.1.clone()));
+    out.extend(job.calibration.repeats.iter().cloned());
+    out.extend(job.calibration.depends_on.clone());
+    out.push("run".to_owned());
+    out
+}
+
+/// Returns the columns of the runs file that no command reads; `given` are the loads of a given S.
+pub fn unread_in_runs(
+    job: &Job,
+    t: &Table,
+    columns: &[Column],
+    given: &[String],
+) -> Option<Unread> {
+    let mut names = names_in_runs(job);
+    names.extend(given.iter().flat_map(|n| [n.clone(), format!("{n}_sd")]));
+    let mut read = vec![false; columns.len()];
+    for name in &names {
+        if let Ok(Some(at)) = column_called(job, t, columns, name) {
+            read[at] = true;
+        }
+    }
+    let unread = columns.iter().zip(&read).filter(|(_, read)| !**read);
+    let unread: Vec<&str> = unread.map(|(c, _)| c.header.whole.as_str()).collect();
+    let lacking = |n: &&String| !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd");
+    let lacking: Vec<&str> = names.iter().filter(lacking).map(String::as_str).collect();
+    Unread::of(&unread, &lacking)
+}
+
 /// The column that the job asks for by `name`, at this line and key; a fault where there is none, or several.
 pub fn asked_column(
     job: &Job,
@@ -78,8 +175,8 @@ pub fn asked_column(
 ///
 /// # Errors
 /// A fault where there is none.
-pub fn run_column(t: &Table, columns: &[Column]) -> Result<usize, Fault> {
-    place_of(t, columns, "run")?.ok_or_else(|| {
+pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fault> {
+    column_called(job, t, columns, "run")?.ok_or_else(|| {
         let headers = t.header.iter().map(String::as_str);
         let general = "add a column `run` with the runs' names";
         let remedy = suggest::header_remedy("run", headers, general);
@@ -116,7 +213,7 @@ pub fn known_column(
     let key = format!("runs.columns.{name}");
     let at = match given {
         Some(_) => asked_column(job, (runs.line, &key), t, columns, wanted, faults)?,
-        None => place_of(t, columns, wanted)
+        None => column_called(job, t, columns, wanted)
             .map_err(|f| faults.push(f))
             .ok()??,
     };
@@ -127,9 +224,9 @@ pub fn known_column(
         is_stated: false,
     };
     let (header, stated) = (t.header.get(at)?, columns.get(at)?);
-    let is_called = header == wanted || stated.name == wanted;
-    if !is_called || stated.clash() == Some(Clash::Size) {
-        let remedy = match is_called {
+    let is_named = header == wanted || is_same_name(&stated.name, wanted);
+    if !is_named || stated.clash() == Some(Clash::Size) {
+        let remedy = match is_named {
             true => "correct whichever is wrong",
             false => "correct whichever is wrong, or name the column in [runs] columns",
         };

@@ -1,6 +1,9 @@
 //! `[[correction]]` applied to readings: a channel reads `sign gain strain + offset`.
 
+use super::readings::readings_of;
+use super::suggest;
 use super::types::{Job, StrainCorrection};
+use crate::app::fault::{Fault, FaultList, Faults};
 use crate::finding::{Finding, Severity, few};
 
 /// What turns the readings of a channel into strain.
@@ -76,15 +79,76 @@ pub fn turned_by(corrections: &[StrainCorrection], gauge: &str) -> f64 {
     own.filter_map(|c| c.angle_deg).sum()
 }
 
-/// A note that names the corrections; `None` without any.
+/// Adds to the corrections of rosettes those of their legs, which are the channels that have readings. The angle turns the rosette as a whole
+/// and is not repeated.
+pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
+    let legs_of = |name: &str| {
+        let rosette = job.gauges.iter().find(|g| g.name == name)?;
+        Some(readings_of(rosette)).filter(|_| rosette.rosette.is_some())
+    };
+    let mut of_legs = Vec::new();
+    for c in &job.corrections {
+        let other = c.exchanged_with.as_deref();
+        let (own, others) = (legs_of(&c.gauge), other.map(legs_of));
+        // A given S may have one row for a rosette: one channel then.
+        if others.is_some_and(|o| o.is_some() != own.is_some()) && job.sensitivity.is_none() {
+            faults.push(Fault::at(
+                &*job.file,
+                c.line,
+                "correction.exchanged_with",
+                format!(
+                    "of `{}` and `{}` one is a rosette with three channels, the other one channel",
+                    c.gauge,
+                    other.unwrap_or_default()
+                ),
+                "name a leg of the rosette, such as `R1.a`",
+            ));
+        }
+        let others = other.and_then(legs_of).unwrap_or_default();
+        for (i, leg) in own.into_iter().flatten().enumerate() {
+            of_legs.push(StrainCorrection {
+                gauge: leg,
+                exchanged_with: others.get(i).cloned(),
+                angle_deg: None,
+                of_rosette: true,
+                ..c.clone()
+            });
+        }
+    }
+    job.corrections.extend(of_legs);
+}
+
+/// Refuses corrections of channels that are not among `known`, in a job that does not list its gauges; `place` says where they are.
+///
+/// # Errors
+/// Every such correction.
+pub fn check_channels(job: &Job, known: &[String], place: &str) -> Result<(), Faults> {
+    let mut faults = FaultList::new();
+    for c in job.corrections.iter().filter(|_| job.gauges.is_empty()) {
+        let named = std::iter::once(&c.gauge).chain(&c.exchanged_with);
+        for name in named.filter(|n| !known.contains(n)) {
+            faults.push(Fault::at(
+                &*job.file,
+                c.line,
+                "correction.gauge",
+                format!("{place} has no channel `{name}`"),
+                suggest::remedy(name, known.iter().map(String::as_str)),
+            ));
+        }
+    }
+    Faults::check(faults)
+}
+
+/// Returns a note that names the corrections of the job; `None` without any.
 pub fn noted(job: &Job) -> Option<Finding> {
-    let names: Vec<&str> = job.corrections.iter().map(|c| c.gauge.as_str()).collect();
+    let stated = job.corrections.iter().filter(|c| !c.of_rosette);
+    let names: Vec<&str> = stated.map(|c| c.gauge.as_str()).collect();
     (!names.is_empty()).then(|| {
         Finding::new(
             Severity::Info,
             "corrections-applied",
             few(&names),
-            "readings and angles of these gauges are put right as [[correction]] says",
+            "readings and angles of these gauges are corrected as [[correction]] states",
             "",
         )
     })

@@ -15,12 +15,25 @@ pub(super) struct Collector<'a> {
     pub file: &'a str,
     pub text: &'a str,
     pub faults: &'a mut FaultList,
+    /// Bytes at which lines end, ascending.
+    ends: Vec<usize>,
 }
 
-impl Collector<'_> {
+impl<'a> Collector<'a> {
+    /// Returns a collector for the text of a file.
+    pub(super) fn new(file: &'a str, text: &'a str, faults: &'a mut FaultList) -> Self {
+        Self {
+            ends: text.match_indices('\n').map(|(at, _)| at).collect(),
+            file,
+            text,
+            faults,
+        }
+    }
+
     /// Line of a value.
     pub(super) fn line<T>(&self, at: &Spanned<T>) -> u32 {
-        line_column(self.text, at.span().start).0
+        let start = at.span().start;
+        self.ends.partition_point(|end| *end < start) as u32 + 1
     }
 
     /// Notes a fault at a value.

@@ -1,16 +1,22 @@
 //! The gauge file: a row a gauge, columns as the keys of `[[gauge]]`.
 //!
-//! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. `gauge`
-//! may stand for `name` and `kind` for `bridge`. Columns that are not known are left alone, but for those that look like one of these.
+//! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. [`super::gauge_table`]
+//! finds the columns: a finding names those that nothing reads, and one that looks like a column that the table lacks is a fault.
 
-use super::resolve::{bridge_from, check_gauge, point_from, rosette_from, surface_from};
+use super::gauge_table::{GaugeColumn, GaugeColumns};
+use super::resolve::{
+    POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from, role_from, rosette_from,
+    surface_from, with_pair,
+};
 use super::suggest;
 use super::table::{Table, read_table};
 use super::types::{Job, JobGauge, StatedPlace};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::fe::strain_tensor::Surface;
+use crate::finding::{Finding, Severity};
 use crate::gauge::{Bridge, Rosette};
+use crate::placement::Role;
 
 /// The gauges of `[gauges] file`; faults are added to the list.
 pub(super) fn read_gauge_file(
@@ -27,7 +33,17 @@ pub(super) fn read_gauge_file(
         .and_then(|t| read_table(&named.given, &t))
         .and_then(|t| Ok(t.check_rows().map(|()| t)?));
     match table {
-        Ok(t) => gauges_from_table(&t, job.units.length_m(), faults),
+        Ok(t) => {
+            let columns = GaugeColumns::of(&t, job.units.length_m(), &mut FaultList::new());
+            if let Some(unread) = columns.unread(&t) {
+                inputs.note(&t.file, unread.finding(&t.file));
+            }
+            let gauges = gauges_from_table(&t, job.units.length_m(), faults);
+            if let Some(finding) = without_direction(job, &t, &columns, &gauges) {
+                inputs.note(&t.file, finding);
+            }
+            gauges
+        }
         Err(f) => {
             faults.extend(f);
             Vec::new()
@@ -35,9 +51,31 @@ pub(super) fn read_gauge_file(
     }
 }
 
+/// Returns a warning where a table states for no gauge how it points, and a model has to tell what the gauges read.
+fn without_direction(
+    job: &Job,
+    t: &Table,
+    columns: &GaugeColumns,
+    gauges: &[JobGauge],
+) -> Option<Finding> {
+    let is_shell = |g: &JobGauge| !matches!(g.place, StatedPlace::BeamPoint { .. });
+    let of_model = job.model.is_some() && job.sensitivity.is_none();
+    let assumed = of_model && !columns.has_direction() && gauges.iter().any(is_shell);
+    assumed.then(|| {
+        Finding::new(
+            Severity::Warning,
+            "gauges-assumed",
+            &*t.file,
+            "the table has no columns `dir_x`, `dir_y`, `dir_z` and `angle_deg`: every gauge is taken along the x axis of its element",
+            "state the direction of every gauge",
+        )
+    })
+}
+
 /// The gauges of a table; `length_m` are the metres in the job's unit of length.
 pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Vec<JobGauge> {
-    if t.column(&["name", "gauge"]).is_none() {
+    let columns = GaugeColumns::of(t, length_m, faults);
+    if columns.column("name").is_none() {
         let remedy = suggest::closest("name", t.header.iter().map(String::as_str))
             .map_or("add a column `name`".to_owned(), |n| {
                 format!("rename column `{n}` to `name`")
@@ -45,12 +83,13 @@ pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Ve
         faults.push(Fault::at(&*t.file, 1, "name", "no column `name`", remedy));
         return Vec::new();
     }
-    misspelt(t, faults);
+    columns.check_spelling(t, faults);
     let mut out = Vec::new();
     for row in 0..t.rows.len() {
         let before = faults.len();
         let mut of_table = Row {
             table: t,
+            columns: &columns,
             row,
             faults,
         };
@@ -63,52 +102,10 @@ pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Ve
     out
 }
 
-/// Columns whose names are long enough to be told from others when misspelt.
-const LONG_NAMES: [&str; 12] = [
-    "element",
-    "surface",
-    "angle_deg",
-    "bridge",
-    "bridge_factor",
-    "grid_length",
-    "station",
-    "transverse_sensitivity",
-    "rosette",
-    "point",
-    "element2",
-    "surface2",
-];
-
-/// Columns that look like one that the table lacks: an angle that is not read would be 0.
-fn misspelt(t: &Table, faults: &mut FaultList) {
-    let lacking: Vec<&str> = LONG_NAMES
-        .into_iter()
-        .filter(|n| t.column(&[n]).is_none())
-        .collect();
-    for h in t
-        .header
-        .iter()
-        .filter(|h| !LONG_NAMES.contains(&h.as_str()))
-    {
-        let lower = h.to_lowercase();
-        let whole = |n: &&str| n.split_once('_').is_some_and(|(first, _)| first == lower);
-        let meant = lacking.iter().copied().find(whole);
-        let meant = meant.or_else(|| suggest::closest(h, lacking.iter().copied()));
-        if let Some(n) = meant.filter(|_| h.len() > 4) {
-            faults.push(Fault::at(
-                &*t.file,
-                1,
-                h.as_str(),
-                format!("`{h}` is no column of a gauge file"),
-                format!("did you mean `{n}`? Call it otherwise if it is something else"),
-            ));
-        }
-    }
-}
-
 /// A row of a gauge file, with the faults found so far.
 struct Row<'a> {
     table: &'a Table,
+    columns: &'a GaugeColumns,
     row: usize,
     faults: &'a mut FaultList,
 }
@@ -119,11 +116,11 @@ impl Row<'_> {
         self.table.rows.get(self.row).map_or(0, |r| r.0)
     }
 
-    /// The field in the first of these columns that exists; empty where none does.
-    fn text(&self, names: &[&str]) -> &str {
+    /// The field in a column; empty where the table lacks it.
+    fn text(&self, name: &str) -> &str {
         let row = self.table.rows.get(self.row);
-        let field = |column: usize| row?.1.get(column);
-        let column = self.table.column(names);
+        let field = |column: GaugeColumn| row?.1.get(column.at);
+        let column = self.columns.column(name);
         column.and_then(field).map_or("", String::as_str)
     }
 
@@ -134,11 +131,13 @@ impl Row<'_> {
     }
 
     fn number(&mut self, name: &str) -> Option<f64> {
-        let column = self.table.column(&[name])?;
-        self.table.number(self.row, column).unwrap_or_else(|f| {
+        let column = self.columns.column(name)?;
+        let number = self.table.number(self.row, column.at);
+        let number = number.unwrap_or_else(|f| {
             self.faults.push(f);
             None
-        })
+        });
+        number.map(|v| v * column.scale)
     }
 
     /// A vector in three columns; `None` where one is blank.
@@ -181,50 +180,56 @@ impl Row<'_> {
     /// What the word in a column means; `None` where it is blank, or unknown: a fault then.
     fn word<T>(
         &mut self,
-        names: &[&str],
+        name: &str,
         what: &str,
         from: fn(&str) -> Option<T>,
         remedy: fn(&str) -> String,
     ) -> Option<T> {
-        let word = self.text(names);
+        let word = self.text(name);
         if word.is_empty() {
             return None;
         }
         let found = from(word);
         if found.is_none() {
             let (wrong, remedy) = (format!("`{word}` is no {what}"), remedy(word));
-            self.fault(names.first().unwrap_or(&""), wrong, remedy);
+            self.fault(name, wrong, remedy);
         }
         found
     }
 
     fn surface(&mut self, field: &str) -> Option<Surface> {
-        self.word(&[field], "surface", surface_from, |_| {
+        self.word(field, "surface", surface_from, |_| {
             "write `top` (Z2) or `bottom` (Z1)".into()
         })
     }
 
     fn bridge(&mut self) -> Bridge {
         let remedy = |word: &str| suggest::remedy(word, Bridge::ALL.map(Bridge::name));
-        self.word(&["bridge", "kind"], "bridge", bridge_from, remedy)
+        self.word("bridge", "bridge", bridge_from, remedy)
             .unwrap_or(Bridge::Quarter)
     }
 
     fn rosette(&mut self) -> Option<Rosette> {
-        self.word(&["rosette"], "rosette", rosette_from, |_| {
+        self.word("rosette", "rosette", rosette_from, |_| {
             "write `rectangular` or `delta`".into()
         })
     }
 
+    fn role(&mut self) -> Role {
+        let remedy = |_: &str| "write `estimate` or `validation`".into();
+        self.word("role", "role of a gauge", role_from, remedy)
+            .unwrap_or(Role::Estimate)
+    }
+
     /// A recovery point of a bar or beam, 0 to 3.
     fn point(&mut self) -> Option<u8> {
-        self.word(&["point"], "recovery point", point_from, |_| {
+        self.word("point", "recovery point", point_from, |_| {
             "write C, D, E or F".into()
         })
     }
 
     fn name(&mut self) -> String {
-        let name = self.text(&["name", "gauge"]).to_owned();
+        let name = self.text("name").to_owned();
         if name.is_empty() {
             self.fault("name", "blank".into(), "name every gauge");
         }
@@ -252,8 +257,13 @@ fn location(row: &mut Row, length_m: f64) -> Location {
 /// Where the gauge of a row sits; `laid` is one whose direction or surface the row states.
 fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlace {
     let element = row.id("element", "element", 1);
-    let station = row.number("station").unwrap_or(0.0);
-    match (element, row.point(), location.at) {
+    let stated = row.number("station");
+    let station = stated.unwrap_or(0.0);
+    let point = row.point();
+    if stated.is_some() && point.is_none() {
+        row.fault("station", STATION_ALONE.to_owned(), POINT_STATED);
+    }
+    match (element, point, location.at) {
         (Some(element), Some(point), _) => StatedPlace::BeamPoint {
             element,
             point,
@@ -274,8 +284,8 @@ fn gauge_of_row(row: &mut Row, length_m: f64) -> JobGauge {
     let laid = direction.is_some() || surface.is_some();
     let place = place(row, &location, laid, cid);
     let element2 = row.id("element2", "element", 1);
-    let surface2 = row.surface("surface2").unwrap_or(Surface::Bottom);
-    JobGauge {
+    let surface2 = row.surface("surface2");
+    let gauge = JobGauge {
         name: row.name(),
         place,
         position: location.at,
@@ -287,11 +297,13 @@ fn gauge_of_row(row: &mut Row, length_m: f64) -> JobGauge {
         bridge: row.bridge(),
         bridge_factor: row.number("bridge_factor").unwrap_or(1.0),
         grid_length: row.number("grid_length").unwrap_or(0.0),
-        pair: element2.map(|e| (e, surface2)),
+        pair: None,
         rosette: row.rosette(),
         transverse_sensitivity: row.number("transverse_sensitivity").unwrap_or(0.0),
-        member: row.text(&["member"]).to_owned(),
+        role: row.role(),
+        member: row.text("member").to_owned(),
         file: row.table.file.clone(),
         line: row.line(),
-    }
+    };
+    with_pair(gauge, element2, surface2, row.faults)
 }

@@ -1,6 +1,7 @@
 //! Which columns of a given S are loads.
 
-use super::types::{GivenSensitivity, Job};
+use super::types::{GivenSensitivity, Job, JobLoad};
+use super::unread::is_same_name;
 
 /// Load and column of a given S whose table has this header (the column of gauge names left out): as `columns` says; where it is left out,
 /// every column that a stated load names, or every column where no load is stated.
@@ -12,7 +13,29 @@ pub fn columns_of_given(
     if !given.columns.is_empty() {
         return given.columns.clone();
     }
-    let is_load = |name: &String| job.loads.is_empty() || job.loads.iter().any(|l| l.name == *name);
-    let loads = header.into_iter().filter(is_load);
-    loads.map(|name| (name.clone(), name)).collect()
+    let header: Vec<String> = header.into_iter().collect();
+    if job.loads.is_empty() {
+        let own = header.into_iter().filter(|name| !name.is_empty());
+        return own.map(|name| (name.clone(), name)).collect();
+    }
+    let is_load = |name: &str| job.loads.iter().any(|l| l.name == name);
+    // A load whose column nobody else's name is, apart from case and separators.
+    let meant = |column: &String| {
+        // A single letter is a name of its own in either case.
+        let is_word = column.chars().filter(|c| c.is_alphanumeric()).count() > 1;
+        let like =
+            |l: &&JobLoad| is_word && is_same_name(&l.name, column) && !header.contains(&l.name);
+        let mut loads = job.loads.iter().filter(like);
+        let mut columns = header.iter().filter(|h| is_same_name(h, column));
+        let only = (loads.next(), loads.next(), columns.next(), columns.next());
+        match only {
+            (Some(load), None, Some(_), None) => Some((load.name.clone(), column.clone())),
+            _ => None,
+        }
+    };
+    let of = |column: &String| match is_load(column) {
+        true => Some((column.clone(), column.clone())),
+        false => meant(column),
+    };
+    header.iter().filter_map(of).collect()
 }

@@ -6,6 +6,7 @@ pub mod column_unit;
 pub mod correct;
 mod faults;
 pub mod gauge_column;
+mod gauge_table;
 pub mod gauges;
 pub mod given_columns;
 mod not_a_job;
@@ -14,7 +15,9 @@ pub mod payload_loads;
 mod picked;
 pub mod quantity;
 mod raw;
+pub mod readings;
 mod resolve;
+mod roles;
 pub mod runs;
 pub mod schema;
 mod shapes;
@@ -26,6 +29,7 @@ mod strain_text;
 pub mod suggest;
 pub mod table;
 mod types;
+pub mod unread;
 
 #[cfg(test)]
 mod tests;
@@ -90,10 +94,12 @@ impl AsRef<Path> for Job {
 pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     let given = path.display().to_string();
     not_a_job::check_name(&given)?;
-    let text = inputs
-        .read_text(Path::new(""), &given)
-        .map_err(Faults::from)?;
-    not_a_job::check_text(&given, &text)?;
+    let folder = Path::new("");
+    let bytes = inputs.read(folder, &given).map_err(Faults::from)?;
+    if let Ok(text) = std::str::from_utf8(&bytes) {
+        not_a_job::check_text(&given, text)?;
+    }
+    let text = inputs.read_text(folder, &given).map_err(Faults::from)?;
     let (raw, mut faults) = parse::parse_job(&given, &text);
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
     let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);
@@ -102,6 +108,7 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     picked::read_picked(inputs, &mut job, &mut faults);
     resolve::check_names(&job, &mut faults);
     resolve::check_named(&job, &mut faults);
+    correct::correct_legs(&mut job, &mut faults);
     faults.sort_by(|a, b| {
         (a.file != given, &a.file, a.line).cmp(&(b.file != given, &b.file, b.line))
     });

@@ -70,7 +70,7 @@ fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
         return;
     };
     faults.extend(strangers(file, text, &mut job.candidates));
-    let mut c = Collector { file, text, faults };
+    let mut c = Collector::new(file, text, faults);
     let mut picked = candidates_of(&mut c, section);
     for ((name, own), (_, other)) in lists(&mut job.candidates)
         .into_iter()

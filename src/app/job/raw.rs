@@ -122,6 +122,7 @@ pub(super) struct RawGauge {
     pub point: S<String>,
     pub station: S<f64>,
     pub transverse_sensitivity: S<f64>,
+    pub role: S<String>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -1,6 +1,6 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::column_unit::{known_column, run_column, take_units};
+use super::column_unit::{PAYLOAD, known_column, run_column, take_units, unread_in_runs};
 use super::given_columns::columns_of_given;
 use super::quantity::quantity_of_name;
 use super::table::read_table;
@@ -8,7 +8,7 @@ use super::types::{Job, Runs};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::units::Quantity;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// One run, SI units; what a file lacks or leaves blank is absent.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -42,9 +42,12 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     let headers = take_units(&mut t);
     t.check_rows()?;
     let mut faults = FaultList::new();
-    let key = run_column(&t, &headers)?;
+    let key = run_column(job, &t, &headers)?;
     let mut columns: Vec<(String, usize, (Option<Quantity>, f64))> = Vec::new();
     let given = given_loads(inputs, job)?;
+    if let Some(unread) = unread_in_runs(job, &t, &headers, &given) {
+        inputs.note(&t.file, unread.finding(&t.file));
+    }
     for (name, quantity) in known_columns(job, &given) {
         let column = known_column(job, runs, &t, &headers, &name, Some(quantity), &mut faults);
         columns.extend(column.map(|c| {
@@ -53,9 +56,10 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
         }));
     }
     let mut out: Vec<RunRow> = Vec::new();
+    let mut seen: HashSet<&str> = HashSet::with_capacity(t.rows.len());
     for (row, (line, fields)) in t.rows.iter().enumerate() {
         let run = fields.get(key).cloned().unwrap_or_default();
-        if out.iter().any(|r| r.run == run) {
+        if !seen.insert(fields.get(key).map_or("", String::as_str)) {
             let wrong = format!("run `{run}` stands twice");
             faults.push(Fault::at(
                 &*t.file,
@@ -131,12 +135,6 @@ fn known_columns(job: &Job, given: &[String]) -> Vec<(String, Quantity)> {
             out.push((name.clone(), quantity_of_name(name)));
         }
     }
-    let payload = [
-        ("payload_force", Quantity::Force),
-        ("payload_mass", Quantity::Mass),
-        ("payload_x", Quantity::Length),
-        ("payload_y", Quantity::Length),
-    ];
-    out.extend(payload.map(|(n, q)| (n.to_owned(), q)));
+    out.extend(PAYLOAD.map(|(n, q)| (n.to_owned(), q)));
     out
 }

@@ -1,8 +1,9 @@
 //! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, Parquet, MDF4, a channel a
 //! gauge. Text is read in [`super::strain_text`], means of long records in [`super::strain_means`].
 
-use super::correct::columns_wanted;
+use super::correct::{check_channels, columns_wanted};
 use super::gauge_column::strain_columns;
+use super::readings::readings_of;
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
 use super::table::read_table;
@@ -11,6 +12,7 @@ use crate::app::fault::{Fault, Faults};
 use crate::app::files::{FileBytes, Inputs};
 use crate::series::SeriesError;
 use crate::series::record::{Options, Record, is_format, open_record};
+use std::collections::HashSet;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -26,8 +28,24 @@ pub fn read_strain(
     wanted: &[String],
 ) -> Result<StrainTable, Faults> {
     let mut table = strain_as_read(inputs, job, named, wanted)?;
+    check_corrected(job, named, &table.gauges)?;
     table.put_right(&job.corrections);
+    table.leave_out(&job.reserved);
     Ok(table)
+}
+
+/// Refuses corrections of channels that the job's strain file lacks, where nothing else names the channels.
+pub(super) fn check_corrected(
+    job: &Job,
+    named: &NamedFile,
+    columns: &[String],
+) -> Result<(), Faults> {
+    let measured = job.measured.as_ref();
+    let is_own = measured.is_some_and(|m| m.strain.given == named.given);
+    if job.sensitivity.is_some() || !is_own {
+        return Ok(());
+    }
+    check_channels(job, columns, &format!("`{}`", named.given))
 }
 
 /// The file as it stands.
@@ -48,7 +66,9 @@ fn strain_as_read(
 /// Names of the columns that the readings of the job's gauges are taken from; none where the job doesn't tell its gauges. Where a given S
 /// names them, its whole table is read for it: once a question will do.
 pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
-    columns_wanted(&job.corrections, &gauge_names(inputs, job))
+    let mut names = gauge_names(inputs, job);
+    names.extend(job.reserved.iter().cloned());
+    columns_wanted(&job.corrections, &names)
 }
 
 /// What the readings of the job's stated gauges are called: those of a rosette by its legs.
@@ -58,7 +78,8 @@ pub fn stated_readings(job: &Job) -> Vec<String> {
 
 /// Readings of the job's gauges that a strain file has no column of. A rosette may have one column of its own name in place of its legs.
 pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec<String> {
-    let has = |name: &String| columns.contains(name);
+    let known: HashSet<&String> = columns.iter().collect();
+    let has = |name: &String| known.contains(name);
     if job.gauges.is_empty() {
         let mut names = gauge_names(inputs, job);
         names.retain(|n| !has(n));
@@ -72,25 +93,14 @@ pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec
     job.gauges.iter().flat_map(of_gauge).collect()
 }
 
-/// What the readings of a gauge are called: those of a rosette by its legs.
-pub fn readings_of(g: &JobGauge) -> Vec<String> {
-    let leg = |leg: &str| format!("{}.{leg}", g.name);
-    match g.rosette {
-        Some(r) => r.legs().iter().map(|(name, _)| leg(name)).collect(),
-        None => vec![g.name.clone()],
-    }
-}
-
 /// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S
 /// that can't be read is a fault of whoever asks for S.
-fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
+pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
     // A rosette is called by its own name too where S comes from a table.
-    names.extend(
-        stated_readings(job)
-            .into_iter()
-            .filter(|r| job.gauges.iter().all(|g| g.name != *r)),
-    );
+    let own: HashSet<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
+    let legs = stated_readings(job).into_iter();
+    names.extend(legs.filter(|r| !own.contains(r.as_str())));
     let given = job.sensitivity.as_ref().filter(|_| names.is_empty());
     let text = given.and_then(|s| inputs.read_named_text(job, &s.file).ok());
     if let Some((s, text)) = given.zip(text)
@@ -107,8 +117,14 @@ fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     names
 }
 
-/// The fault of a strain file none of whose columns is a gauge's; where a table of S alone names the gauges, either may be meant.
-pub fn no_gauge_column(job: &Job, file: &str) -> Fault {
+/// The fault of a strain file none of whose `columns` is a gauge's; where a table of S alone names the gauges, either may be meant.
+pub fn no_gauge_column(job: &Job, file: &str, columns: &[String]) -> Fault {
+    /// Columns that are listed.
+    const LISTED: usize = 20;
+    let mut there: Vec<&str> = columns.iter().take(LISTED).map(String::as_str).collect();
+    if columns.len() > LISTED {
+        there.push("..");
+    }
     let (wrong, remedy) = match &job.sensitivity {
         Some(s) if job.gauges.is_empty() => (
             format!("no column is named after a gauge of `{}`", s.file.given),
@@ -118,6 +134,10 @@ pub fn no_gauge_column(job: &Job, file: &str) -> Fault {
             "no column is named after a gauge of the job".to_owned(),
             "name the columns after the gauges",
         ),
+    };
+    let wrong = match there.is_empty() {
+        true => format!("{wrong}; the file has no column of numbers"),
+        false => format!("{wrong}; its columns are {}", there.join(", ")),
     };
     Fault::at(file, 1, "gauge", wrong, remedy)
 }
@@ -130,8 +150,8 @@ pub(super) fn open_strain(
     gauges: &[String],
 ) -> Result<(Record, Vec<(usize, String, f64)>), Faults> {
     let options = Options {
-        declared_hz: None,
         wanted: gauges.to_vec(),
+        ..Options::default()
     };
     let record =
         open_record(Arc::new(bytes), &options).map_err(|e| Faults::from(record_fault(file, &e)))?;

@@ -89,6 +89,8 @@ pub fn read_strain_file(
 fn means(job: &Job, file: &str, bytes: FileBytes, names: &[String]) -> Result<StrainMeans, Faults> {
     let (record, columns) = open_strain(file, bytes, names)?;
     let gauge = |name: &str| column_of(&job.corrections, name).to_owned();
+    let is_reserved = |c: &(usize, String, f64)| job.reserved.contains(&gauge(&c.1));
+    let columns: Vec<_> = columns.into_iter().filter(|c| !is_reserved(c)).collect();
     let gauges: Vec<String> = columns.iter().map(|c| gauge(&c.1)).collect();
     let channels: Vec<(f64, Channel)> = columns
         .iter()

@@ -40,6 +40,18 @@ impl StrainTable {
         self.microstrain.get(i * w..(i + 1) * w).unwrap_or(&[])
     }
 
+    /// Drops the columns of these gauges.
+    pub(super) fn leave_out(&mut self, gauges: &[String]) {
+        let kept: Vec<bool> = self.gauges.iter().map(|g| !gauges.contains(g)).collect();
+        if kept.iter().all(|k| *k) {
+            return;
+        }
+        let mut of_value = kept.iter().cycle();
+        self.microstrain.retain(|_| of_value.next() == Some(&true));
+        let mut of_gauge = kept.iter();
+        self.gauges.retain(|_| of_gauge.next() == Some(&true));
+    }
+
     /// Gives every column its gauge's name and every reading its gauge's strain.
     pub(super) fn put_right(&mut self, corrections: &[StrainCorrection]) {
         if corrections.is_empty() {

@@ -203,6 +203,7 @@ joints = [7]
 tolerance = { angle_deg = 1.0, position_mm = 2.0 }
 [sensitivity]
 file = "A_vertical.csv"
+covariance = "calibration.bin"
 per = { force = "kN", moment = "kN m", mass = "kg" }
 columns = { "LF.FZ" = "FZ_LF" }
 signatures = { lateral_wheel_loads = "A_other.csv", thermal = "T_thermal.csv", payload = "B_payload.csv", unaccounted_mass = "B_mass.csv", gauge_angle = "tensor.csv", rail_stiffness = { Z1 = "dA_dt_Z1.csv" } }
@@ -372,6 +373,20 @@ fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
     }
 }
 
+#[test]
+fn a_station_without_a_point_is_refused_in_a_job_and_in_a_table() {
+    let text = "name,element,point,station\nA,1,,0.5\nB,1,C,0.5\nC,1,,\n";
+    let t = table::read_table("g.csv", text).unwrap();
+    let mut found = Vec::new();
+    gauges::gauges_from_table(&t, 1.0, &mut found);
+    let named: Vec<_> = found.iter().map(|f| (f.line, &*f.field)).collect();
+    assert_eq!(named, [(Some(2), "station")], "{found:?}");
+    let job = "units = \"mm-t-s\"\n[model]\ndeck = \"d.bdf\"\n[[gauge]]\nname = \"A\"\nelement = 1\nstation = 0.5\n";
+    let faults = faults(job);
+    let at = |f: &Fault| (f.line, &*f.field) == (Some(7), "gauge.station");
+    assert!(faults.iter().any(at), "{faults:?}");
+}
+
 /// Read as they stand, 1.5 would be system 1 and a station beyond the end that of the end.
 #[test]
 fn a_gauge_table_is_held_to_the_limits_of_a_job() {
@@ -430,7 +445,7 @@ fn a_direction_in_a_gauge_table_is_whole_or_absent() {
 fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
     for (header, meant) in [
         ("angle", "angle_deg"),
-        ("Surface", "surface"),
+        ("surfaces", "surface"),
         ("elemnt", "element"),
         ("grid_lenght", "grid_length"),
     ] {

@@ -12,6 +12,7 @@ pub use readings::NetReading;
 use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::has_covariance;
 use super::work::Work;
@@ -28,6 +29,8 @@ use task::Task;
 /// Every fault of the job and of the files it names; neither strain nor wheel forces to weigh by.
 pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    check_tables(&work, job)?;
     let Some(payload) = &job.payload else {
         return Err(Faults::from(Fault::of(
             &*job.file,

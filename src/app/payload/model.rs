@@ -6,6 +6,7 @@ use crate::app::job::payload_loads::part_of;
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, GivenSensitivity, Job, LoadActs, NamedFile};
 use crate::app::job_deck::read_deck;
+use crate::app::recover::known_payload::{COLUMNS, note_unread};
 use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, has_covariance, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};
@@ -448,6 +449,7 @@ fn signature(
         .map_err(Faults::from)?;
     let table = read_table(&file.given, &text)?;
     let key = table.column(&["gauge", "name"]).unwrap_or(0);
+    note_unread(&mut work.inputs, &table, key);
     let mut faults: FaultList = table.rows_named_twice(key, "gauge");
     // Microstrain per mass (and length) of the table to strain per report force (and length).
     let mass = job.report_units.mass.si / tables.per.mass.si;
@@ -462,8 +464,8 @@ fn signature(
             ));
             continue;
         };
-        for (k, column) in ["b0", "b_dx", "b_dy"].into_iter().enumerate() {
-            let Some(c) = table.column(&[column]) else {
+        for (k, column) in COLUMNS.into_iter().take(3).enumerate() {
+            let Some(c) = table.column(&column) else {
                 continue;
             };
             match table.number(row, c) {

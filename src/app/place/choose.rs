@@ -109,8 +109,8 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
             .gauges
             .iter()
             .enumerate()
-            .filter_map(|(i, &c)| channel(task, kind, c, name(i, n)))
-            .collect();
+            .map(|(i, &c)| channel(task, kind, c, name(i, n)))
+            .collect::<Result<_, _>>()?;
         return Ok(Chosen {
             channels,
             log_det: layout.log_det,
@@ -180,19 +180,48 @@ fn name(i: usize, n: usize) -> String {
     format!("P{:0digits$}", i + 1)
 }
 
-fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Option<Channel> {
+/// Returns the gauge of a choice as a job reads it from `gauges.csv`: by its element, side, direction and grid length.
+fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Channel, Refused> {
+    let job = task.job;
+    let refused = |wrong: String, remedy: &str| {
+        let (file, line) = (&*job.file, job.candidates.line);
+        Refused::Job(Fault::at(file, line, "candidates", wrong, remedy))
+    };
+    let no_place = || {
+        refused(
+            format!("gauge `{name}` has no place"),
+            "widen the candidates",
+        )
+    };
     let site = choice.place as usize;
-    let (shell, surface) = *task.sites.get(site)?;
-    let spec = GaugeSpec {
+    let &(shell, surface) = task.sites.get(site).ok_or_else(no_place)?;
+    let by_angle = GaugeSpec {
         surface: Some(surface),
         angle_rad: axis_of(kind.bridge, choice.angle),
-        grid_length: task.job.candidates.grid_length,
+        grid_length: job.candidates.grid_length,
         bridge: kind.bridge,
-        ..GaugeSpec::on(name, shell)
+        ..GaugeSpec::on(&*name, shell)
     };
-    let (gauges, _) = build(task.fields.model(), &spec, CornerRows::Absent).ok()?;
-    Some(Channel {
-        gauge: gauges.into_iter().next()?,
+    let corners = task.fields.corner_rows(job);
+    let lay = |spec: &GaugeSpec| -> Result<Gauge, Refused> {
+        let laid = build(task.fields.model(), spec, corners);
+        let (gauges, _) = laid.map_err(|e| {
+            let (wrong, remedy) = e.parts();
+            refused(wrong, remedy)
+        })?;
+        gauges.into_iter().next().ok_or_else(no_place)
+    };
+    let direction = lay(&by_angle)?.direction;
+    let by_direction = GaugeSpec {
+        direction: Some(direction),
+        angle_rad: 0.0,
+        ..by_angle
+    };
+    Ok(Channel {
+        gauge: Gauge {
+            direction,
+            ..lay(&by_direction)?
+        },
         bridge: kind.bridge.name(),
         site,
         row: kind.candidates.row(choice),
@@ -244,7 +273,7 @@ fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Ref
     let n = layout.bundles.len();
     let mut channels = Vec::new();
     for (i, &u) in layout.bundles.iter().enumerate() {
-        channels.extend(channels_of(task, kinds, &of_job.described[u], &name(i, n)));
+        channels.extend(channels_of(task, kinds, &of_job.described[u], &name(i, n))?);
     }
     Ok(Chosen {
         channels,
@@ -352,7 +381,12 @@ fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
 }
 
 /// Channels of a bundle, named after it: `P01`, the sides of a pair `P01L` and `P01R`, the legs of a rosette `P01.a` to `P01.c`.
-fn channels_of(task: &Task, kinds: &[Kind], bundle: &Described, base: &str) -> Vec<Channel> {
+fn channels_of(
+    task: &Task,
+    kinds: &[Kind],
+    bundle: &Described,
+    base: &str,
+) -> Result<Vec<Channel>, Refused> {
     let mut channels = Vec::new();
     for (m, (kind, choice)) in bundle.members.iter().enumerate() {
         let leg = m % 3;
@@ -362,9 +396,9 @@ fn channels_of(task: &Task, kinds: &[Kind], bundle: &Described, base: &str) -> V
             (false, 2) => format!("{base}{}", ["L", "R"][m]),
             (false, _) => base.to_owned(),
         };
-        channels.extend(channel(task, &kinds[*kind], *choice, name));
+        channels.push(channel(task, &kinds[*kind], *choice, name)?);
     }
-    channels
+    Ok(channels)
 }
 
 /// Partners of sites at a plane through the origin normal to an axis.

@@ -207,7 +207,7 @@ fn reserved(
         "gauges-reserved",
         "placement.reserve",
         format!("{n} gauges are marked for validation: load sigmas and condition number count all gauges"),
-        "leave the reserved ones out of `recover`, and compare them with its prediction",
+        "keep the column `role` of gauges.csv: `recover` compares these gauges with its prediction",
     ));
     Ok(found)
 }

@@ -4,19 +4,21 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, LoadActs, Region};
 use crate::app::strain::Fields;
 use crate::gauge::centre;
-use crate::model::{ShellIx, Vec3};
+use crate::model::{Model, ShellIx, Vec3};
 use crate::placement::region::{
     Segment, attachments, borders, clear_of, free_edges, hole_rims, joints,
 };
 use crate::placement::sites::Site;
+use std::collections::BTreeSet;
 
 /// Surfaces where the job lets gauges go, among shells with strain in every case.
 ///
 /// # Errors
-/// None is left, or the deck lacks a SET.
+/// None is left, or the deck lacks a SET, an element or a property.
 pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
     let rule = &job.candidates;
     let model = fields.model();
+    check_ids(job, model)?;
     let sets = sets_of(job, fields)?;
     let mut shells: Vec<(ShellIx, Vec3)> = Vec::new();
     for &ix in common {
@@ -34,7 +36,10 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
             && among(&rule.elements, shell.id) != Some(false)
             && among(&rule.exclude_properties, property) != Some(true)
             && among(&rule.exclude_elements, shell.id) != Some(true)
-            && (sets.is_empty() || sets.iter().any(|s| s.has(shell.id)));
+            && (sets.is_empty()
+                || sets
+                    .iter()
+                    .any(|s| s.has_element(shell.id, shell.shape.card())));
         let Some(x) = centre(model, shell).filter(|_| allowed) else {
             continue;
         };
@@ -81,6 +86,54 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
         )));
     }
     Ok(sites)
+}
+
+/// Refuses ids of properties, elements and reference grids that the model lacks: a misspelt exclusion would leave its place open for gauges.
+///
+/// # Errors
+/// Each list with its ids.
+fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
+    let rule = &job.candidates;
+    let shells = model.shell_properties.iter().map(|p| p.id);
+    let beams = model.beam_properties.iter().map(|p| p.id);
+    let solids = model.solid_properties.iter().map(|p| p.id);
+    let properties: BTreeSet<u32> = shells.chain(beams).chain(solids).collect();
+    let elements: BTreeSet<u32> = model.elements().map(|e| model.element_id(e)).collect();
+    let lists = [
+        ("properties", &rule.properties, &properties),
+        ("exclude_properties", &rule.exclude_properties, &properties),
+        ("elements", &rule.elements, &elements),
+        ("exclude_elements", &rule.exclude_elements, &elements),
+    ];
+    let mut faults = FaultList::new();
+    for (key, ids, there) in lists {
+        let ranges = ids.iter().flat_map(|ids| &ids.0);
+        for [a, b] in ranges.filter(|[a, b]| there.range(*a..).next().is_none_or(|id| id > b)) {
+            let range = match a == b {
+                true => a.to_string(),
+                false => format!("{a} to {b}"),
+            };
+            faults.push(Fault::at(
+                &*job.file,
+                rule.line,
+                format!("candidates.{key}"),
+                format!("the model has none with the id {range}"),
+                "correct the id, or delete it from the list",
+            ));
+        }
+    }
+    let placement = &job.placement;
+    let missing = placement.references.iter();
+    for (name, grid) in missing.filter(|r| model.grid_ix(r.1).is_none()) {
+        faults.push(Fault::at(
+            &*job.file,
+            placement.line,
+            "placement.references",
+            format!("`{name}`: the model has no grid {grid}"),
+            "correct the id, or delete the reference point",
+        ));
+    }
+    Faults::check(faults)
 }
 
 /// The deck's SETs that the job names.

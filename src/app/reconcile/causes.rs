@@ -2,7 +2,7 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{asked_column, run_column, take_units};
+use crate::app::job::column_unit::{asked_column, run_column, take_units, unread_in_runs};
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
 use crate::app::work::Work;
@@ -128,7 +128,10 @@ fn read(
     let mut t = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut t);
     t.check_rows()?;
-    let key = run_column(&t, &headers)?;
+    if let Some(unread) = unread_in_runs(job, &t, &headers, &[]) {
+        work.inputs.note(&t.file, unread.finding(&t.file));
+    }
+    let key = run_column(job, &t, &headers)?;
     let mut faults = FaultList::new();
     let mut causes = Vec::new();
     for (name, column) in &reconcile.causes {

@@ -114,6 +114,7 @@ fn from_table(
             }
         }
     }
+    t.note_unread(inputs);
     Ok(change)
 }
 

@@ -179,6 +179,7 @@ impl<'a> Tables<'a> {
                     *column = t.column(name, f)?;
                 }
             }
+            t.note_unread(inputs);
         }
         Ok(payload)
     }
@@ -214,6 +215,7 @@ impl<'a> Tables<'a> {
                 plane.push([exx[g], eyy[g], gxy[g]]);
             }
         }
+        t.note_unread(inputs);
         let (n_l, n_c) = (self.columns.len(), self.n_columns());
         let wired = |(g, plane): (usize, PlaneStrainRow)| match gauges[g].wiring {
             Wiring::Quarter => plane,
@@ -237,6 +239,8 @@ impl<'a> Tables<'a> {
                 let column = t.column(&name, self.scale(&name))?;
                 loads.push((name, column));
             }
+            t.names().iter().for_each(|name| t.leave(name));
+            t.note_unread(inputs);
         }
         Ok(loads)
     }
@@ -249,6 +253,7 @@ impl<'a> Tables<'a> {
         let t = self.read(inputs, file)?;
         let one = |names: [&str; 2]| {
             if is_nuisance(self.job, names[0]) {
+                names.iter().for_each(|n| t.leave(n));
                 return Ok(None);
             }
             names
@@ -257,10 +262,12 @@ impl<'a> Tables<'a> {
                 .map(|n| t.column(n, 1.0))
                 .transpose()
         };
-        Ok([
+        let both = [
             one(["thermal_uniform", "uniform"])?,
             one(["thermal_gradient", "gradient"])?,
-        ])
+        ];
+        t.note_unread(inputs);
+        Ok(both)
     }
 
     /// A mass at each place of the table.
@@ -295,6 +302,7 @@ impl<'a> Tables<'a> {
                     change[g * n_c + c] = v;
                 }
             }
+            t.note_unread(inputs);
             stiffness.push(StiffnessSignature {
                 of: StiffnessOf::Zone,
                 place: zone.clone(),

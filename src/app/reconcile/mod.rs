@@ -50,6 +50,7 @@ pub use words::effect_in_words;
 use super::context::Context;
 use super::fault::Faults;
 use super::job::{GivenSensitivity, Job, ReconcilePath};
+use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::work::Work;
 
@@ -59,6 +60,8 @@ use super::work::Work;
 /// Faults of the job and of the files it names.
 pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults> {
     let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    check_tables(&work, job)?;
     let path = job.reconcile.as_ref().map(|r| r.path);
     let answer = match path.unwrap_or(ReconcilePath::Static) {
         ReconcilePath::Static => strain_path::answer(job, &mut work)?,

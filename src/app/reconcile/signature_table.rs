@@ -3,7 +3,9 @@
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::table::{Table, read_table};
+use crate::app::job::unread::Unread;
 use crate::app::job::{Job, NamedFile};
+use std::cell::RefCell;
 
 /// A column of a frame that a table may give.
 pub(super) struct TableColumn {
@@ -18,6 +20,8 @@ pub(super) struct SignatureTable {
     table: Table,
     /// Row of each gauge.
     rows: Vec<usize>,
+    /// Columns that were read.
+    read: RefCell<Vec<bool>>,
 }
 
 impl SignatureTable {
@@ -45,7 +49,8 @@ impl SignatureTable {
             }
         }
         Faults::check(faults)?;
-        Ok(Self { table, rows })
+        let read = RefCell::new((0..table.header.len()).map(|c| c == key).collect());
+        Ok(Self { table, rows, read })
     }
 
     /// Names of the number columns.
@@ -58,6 +63,30 @@ impl SignatureTable {
             .filter(|(c, _)| *c != key)
             .map(|(_, h)| h.clone())
             .collect()
+    }
+
+    /// Notes that a column is known, and not wanted.
+    pub(super) fn leave(&self, name: &str) {
+        if let Some(c) = self.table.column(&[name]) {
+            self.mark(c);
+        }
+    }
+
+    fn mark(&self, column: usize) {
+        if let Some(read) = self.read.borrow_mut().get_mut(column) {
+            *read = true;
+        }
+    }
+
+    /// Adds a finding that names the columns which were not read.
+    pub(super) fn note_unread(&self, inputs: &mut Inputs) {
+        let read = self.read.borrow();
+        let unread = self.table.header.iter().zip(&*read).filter(|(_, r)| !**r);
+        let unread: Vec<&str> = unread.map(|(h, _)| h.as_str()).collect();
+        if let Some(unread) = Unread::of(&unread, &[]) {
+            let file = &self.table.file;
+            inputs.note(file, unread.finding(file));
+        }
     }
 
     /// Does the column exist?
@@ -78,6 +107,7 @@ impl SignatureTable {
                 "name the columns as the job does",
             )));
         };
+        self.mark(c);
         let number = |&row: &usize| {
             let blank = || Fault::of(&*self.table.file, name, "blank", "write a number");
             Ok(self.table.number(row, c)?.ok_or_else(blank)? * factor)

@@ -5,6 +5,7 @@ use super::dynamic::Motion;
 use super::history::History;
 use super::sink::RecordHead;
 use super::trace::Spans;
+use super::validation::ValidationGauge;
 use crate::app::job::Job;
 use crate::app::outcome::Answer;
 use crate::app::strain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
@@ -23,6 +24,9 @@ pub struct Recovered {
     /// Loads of what was measured.
     #[serde(flatten)]
     pub states: States,
+    /// Gauges that no load was estimated from, each compared with its prediction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub validation: Vec<ValidationGauge>,
     /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it, and what may be left of it is weighed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,

@@ -12,7 +12,7 @@ mod dynamic;
 mod files;
 mod history;
 mod judged;
-mod known_payload;
+pub(super) mod known_payload;
 mod look;
 mod reading;
 mod record;
@@ -21,6 +21,7 @@ mod sink;
 mod speaking;
 mod task;
 mod trace;
+mod validation;
 
 pub use answer::{
     Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
@@ -36,10 +37,12 @@ use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
 pub(super) use task::{gauges_without_strain, reference_strain, strain_without_gauge, zero_of};
 pub use trace::{Span, Spans};
+pub use validation::ValidationGauge;
 
 use super::context::Context;
 use super::fault::Faults;
 use super::job::{Job, Measured};
+use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::{Conditioning, Prepared, prepare};
 use super::work::Work;
@@ -71,9 +74,13 @@ pub fn recover_into(
 ) -> Result<Outcome<Recovered>, Faults> {
     let mut work = Work::of_job(cx, job);
     let measured = task::measured_of(job)?;
-    let prepared = prepare(&mut work, job)?;
-    let states = recovered(&mut work, (job, measured), &prepared, sink)?;
+    job.estimating()?;
+    check_tables(&work, job)?;
+    let mut prepared = prepare(&mut work, job)?;
+    let (states, validation) = recovered(&mut work, (job, measured), &prepared, sink)?;
+    prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
     let answer = Recovered {
+        validation,
         conditioning: Conditioning::of(&prepared.sensitivity),
         states,
         mesh_error: prepared.mesh_error.clone(),
@@ -92,19 +99,22 @@ fn recovered(
     (job, measured): (&Job, &Measured),
     prepared: &Prepared,
     sink: &mut dyn RecordSink,
-) -> Result<States, Faults> {
-    work.findings
-        .extend(check_separability(&prepared.sensitivity.unconditioned()));
+) -> Result<(States, Vec<ValidationGauge>), Faults> {
+    let (_, estimating) = task::validation_rows(job, &prepared.sensitivity);
+    let s = prepared.sensitivity.of_gauges(&estimating);
+    work.findings.extend(check_separability(&s.unconditioned()));
     let task = task::task_of(work, job, measured, prepared)?;
     work.findings.extend(task::changes(measured));
     let bytes = work.inputs.read_named(job, &measured.strain)?;
     Ok(if reading::is_record(&bytes) {
-        let record = work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
-        States::Record(Box::new(record))
+        let (record, validation) =
+            work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
+        (States::Record(Box::new(record)), validation)
     } else {
         let unused = job.dynamic.map(|_| dynamic::without_record());
         work.findings.extend(unused);
-        States::Runs(Box::new(runs::runs(work, &task)?))
+        let (runs, validation) = runs::runs(work, &task)?;
+        (States::Runs(Box::new(runs)), validation)
     })
 }
 
@@ -132,5 +142,6 @@ pub(super) fn recovered_runs(
     prepared: &Prepared,
 ) -> Result<(Vec<Readings>, Recovery), Faults> {
     let task = task::task_of(work, job, measured, prepared)?;
-    runs::solve(work, &task)
+    let solved = runs::solve(work, &task)?;
+    Ok((solved.readings, solved.recovery))
 }

@@ -36,10 +36,6 @@ pub(super) struct Record {
     columns: Vec<(Option<usize>, Channel)>,
     /// Readings that are taken for none: column that is read, and samples.
     blank: Vec<(usize, Range<usize>)>,
-    /// Seconds in the unit of its times.
-    second: f64,
-    /// Neither the file nor the job states the unit of its times.
-    time_unit_open: bool,
 }
 
 impl Record {
@@ -54,14 +50,12 @@ impl Record {
         gauges: &[String],
     ) -> Result<Self, Faults> {
         let file = measured.strain.given.as_str();
-        // Formats of instruments count in seconds or say what they count in.
-        let unit_open = !is_format(&bytes);
         let options = Options {
             declared_hz: None,
+            time_unit_s: measured.time_unit_s,
             wanted: columns_wanted(&job.corrections, gauges),
         };
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
-        let unit_open = unit_open && !inner.is_time_unit_stated();
         let columns = strain_columns(file, inner.columns(), &options.wanted)?;
         let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
         let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
@@ -71,11 +65,6 @@ impl Record {
             micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
             blank: Vec::new(),
-            second: match (unit_open, measured.time_unit_s) {
-                (true, Some(unit)) => unit,
-                _ => 1.0,
-            },
-            time_unit_open: unit_open && measured.time_unit_s.is_none(),
             inner,
         })
     }
@@ -151,8 +140,8 @@ impl Record {
             samples: readings,
             stored: Vec::new(),
         };
-        let inner =
-            series::Record::new(Box::new(whole), None).map_err(|e| record_fault(&self.file, &e))?;
+        let inner = series::Record::new(Box::new(whole), None, None)
+            .map_err(|e| record_fault(&self.file, &e))?;
         let as_it_is = Channel {
             offset: 0.0,
             factor: 1.0,
@@ -165,8 +154,6 @@ impl Record {
             micro: vec![1.0; n],
             columns: (0..n).map(|c| (Some(c), as_it_is)).collect(),
             blank: Vec::new(),
-            second: 1.0,
-            time_unit_open: self.time_unit_open,
         })
     }
 
@@ -177,10 +164,10 @@ impl Record {
 
     /// Time of a sample, s.
     pub fn time_s(&self, sample: usize) -> f64 {
-        self.inner.clock.time_s(sample) * self.second
+        self.inner.clock.time_s(sample)
     }
 
-    /// When its samples were taken, in the unit of the file's times.
+    /// When its samples were taken.
     pub fn clock(&self) -> &Clock {
         &self.inner.clock
     }
@@ -188,12 +175,12 @@ impl Record {
     /// Time of the first sample and between samples, s.
     pub fn first_and_step(&self) -> (f64, f64) {
         let clock = self.clock();
-        (clock.start_s * self.second, self.second / clock.rate_hz)
+        (clock.start_s, 1.0 / clock.rate_hz)
     }
 
-    /// Whether neither the file nor the job states the unit of its times.
+    /// Whether neither the file nor the job states the unit of its times, and their size does not show it.
     pub fn is_time_unit_open(&self) -> bool {
-        self.time_unit_open
+        !self.inner.is_time_unit_stated()
     }
 
     pub fn file(&self) -> &str {
@@ -259,7 +246,7 @@ impl Record {
 
     /// What is to be known of its times.
     pub fn findings(&self) -> Vec<Finding> {
-        clock::irregular(&self.file, self.clock(), self.second)
+        clock::irregular(&self.file, self.clock())
     }
 }
 

@@ -12,6 +12,7 @@ use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
+use super::validation::{self, Channels, Compared, ValidationGauge};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::LoadFile;
@@ -39,8 +40,9 @@ pub(super) fn record(
     task: &Task,
     bytes: FileBytes,
     sink: &mut dyn RecordSink,
-) -> Result<RecoveredRecord, Faults> {
+) -> Result<(RecoveredRecord, Vec<ValidationGauge>), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
+    let mut channels = Channels::open(task, bytes.clone())?;
     let Speaking {
         record,
         sensitivity,
@@ -81,6 +83,8 @@ pub(super) fn record(
     let first_mode = motion.as_ref().and_then(|m| m.modes_hz.first().copied());
     // What the band leaves out stands in the record as measured.
     let content = content(work, task, (&record, first_mode), &filter, &names)?;
+    // Readings as measured hold the vibration that is not in the loads.
+    channels = channels.filter(|_| at_rest.is_none());
     let record = at_rest.unwrap_or(record);
     let about = record.clock().samples;
     let (first_s, step_s) = record.first_and_step();
@@ -96,8 +100,13 @@ pub(super) fn record(
         files: files::wanted(task.job, about)?,
     });
     sink.begin(&head)?;
-    let (sums, spans) = stream(work, &record, &head, sink)?;
+    let (sums, spans, compared) = stream(work, (&record, channels.as_ref()), &head, sink)?;
     sink.end(sums.missing.samples())?;
+    let validation = match &channels {
+        Some(c) => c.found(&compared, head.filter.whole()),
+        None => Vec::new(),
+    };
+    work.findings.extend(validation::contradicted(&validation));
     let slope = task.job.recover.slope;
     let damage = match head.files.contains(&LoadFile::Rainflow) {
         true => {
@@ -115,7 +124,7 @@ pub(super) fn record(
     let said = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
     work.findings.extend(gaps.into_iter().filter(said));
     let extras = (content, motion, damage);
-    Ok(answer(sensitivity, head, sums, spans, extras))
+    Ok((answer(sensitivity, head, sums, spans, extras), validation))
 }
 
 /// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.
@@ -212,22 +221,29 @@ fn unusable(task: &Task) -> Fault {
 /// The first piece that can't be read; what `sink` refuses; one fault where the work is stopped.
 fn stream(
     work: &Work,
-    record: &Record,
+    (record, channels): (&Record, Option<&Channels>),
     head: &RecordHead,
     sink: &mut dyn RecordSink,
-) -> Result<(Sums, Spans), Faults> {
+) -> Result<(Sums, Spans, Compared), Faults> {
     let filter = &head.filter;
+    let mut compared = Compared::default();
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut spans = Spans::new(filter.n_loads());
     let mut first = 0;
     in_groups(work, record, &mut |group| {
-        let done: Result<Vec<(Block, Sums)>, Fault> = group
-            .par_iter()
-            .map(|&i| block(record, filter, i))
-            .collect();
+        let one = |&i: &usize| -> Result<(Block, Sums, Compared), Fault> {
+            let (block, sums) = block(record, filter, i)?;
+            let compared = match channels {
+                Some(c) => c.compare(i, &block.loads.values, filter.n_loads())?,
+                None => Compared::default(),
+            };
+            Ok((block, sums, compared))
+        };
+        let done: Result<Vec<_>, Fault> = group.par_iter().map(one).collect();
         let mut blocks = Vec::with_capacity(group.len());
-        for (mut block, of_block) in done? {
+        for (mut block, of_block, of_channels) in done? {
             sums.merge(&of_block);
+            compared.merge(&of_channels);
             spans.add(&block);
             block.first = first;
             first += block.times.len();
@@ -235,7 +251,7 @@ fn stream(
         }
         Ok(sink.take(blocks)?)
     })?;
-    Ok((sums, spans))
+    Ok((sums, spans, compared))
 }
 
 /// Hands over the pieces of a record group by group, and tells of them, while it is wanted.

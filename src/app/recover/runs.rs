@@ -4,6 +4,7 @@ use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
 use super::known_payload::{self, KnownLoads};
 use super::task::{Task, columns_of};
+use super::validation::{self, ValidationGauge};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
 use crate::app::job::correct::channel_of;
@@ -11,12 +12,12 @@ use crate::app::job::strain::{
     StrainRows, StrainTable, no_gauge_column, read_strain, record_fault, wanted_columns,
 };
 use crate::app::job::strain_means::is_long_record;
-use crate::app::sheet::is_sheet;
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
 use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::{Readings, Recovery, recover};
+use crate::sensitivity::Sensitivity;
 use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
 use std::collections::{HashMap, HashSet};
@@ -46,10 +47,7 @@ pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Known
         Err(_) => has_bare_returns(&bytes),
     };
     // It was not taken for a record because of its layout.
-    if looks_like_record
-        && !is_sheet(&bytes)
-        && let Err(e) = Layout::of(&bytes)
-    {
+    if looks_like_record && let Err(e) = Layout::of(&bytes) {
         return Err(record_fault(&named.given, &e).into());
     }
     let table = table?;
@@ -58,14 +56,15 @@ pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Known
     };
     let columns = columns_of(work, named, &table.gauges, &s.gauges);
     if columns.iter().all(Option::is_none) {
-        return Err(no_gauge_column(task.job, &named.given).into());
+        return Err(no_gauge_column(task.job, &named.given, &table.gauges).into());
     }
     let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
     let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
     // What the job leaves out is not missing.
-    let asked: Vec<(usize, &str)> = (columns.iter().zip(&s.gauges))
+    let asked: Vec<(usize, &str)> = (task.estimating.iter())
+        .map(|g| (columns[*g], &s.gauges[*g]))
         .filter(|(_, gauge)| !channel_of(&task.job.corrections, gauge).ignore)
-        .filter_map(|(column, gauge)| Some(((*column)?, gauge.as_str())))
+        .filter_map(|(column, gauge)| Some((column?, gauge.as_str())))
         .collect();
     work.findings.extend(blanks(&table, names, &asked));
     let known = known_payload::take_out(work, task, &mut readings)?;
@@ -149,11 +148,23 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
     out
 }
 
+/// Loads of the runs, with what they were estimated from.
+pub(super) struct Solved {
+    /// S of the gauges that loads are estimated from.
+    pub s: Sensitivity,
+    pub readings: Vec<Readings>,
+    pub recovery: Recovery,
+    pub validation: Vec<ValidationGauge>,
+}
+
 /// Reads the strain of the runs and recovers their loads.
-pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Recovery), Faults> {
-    let s = &task.prepared.sensitivity;
-    let (readings, known) = read(work, task)?;
-    let mut recovery = work.stage("recover", |_| recover(s, &readings, task.errors));
+pub(super) fn solve(work: &mut Work, task: &Task) -> Result<Solved, Faults> {
+    let s = task.prepared.sensitivity.of_gauges(&task.estimating);
+    let (all, known) = read(work, task)?;
+    let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
+    let mut recovery = work.stage("recover", |_| recover(&s, &readings, task.errors));
+    let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
+    work.findings.extend(validation::contradicted(&validation));
     for (run, loads) in recovery.runs.iter_mut().zip(&known) {
         for (l, value) in loads {
             if let Some(found) = run.estimate.values.get_mut(*l) {
@@ -162,7 +173,12 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Reco
         }
     }
     work.findings.extend(recovery.findings.iter().cloned());
-    Ok((readings, recovery))
+    Ok(Solved {
+        s,
+        readings,
+        recovery,
+        validation,
+    })
 }
 
 fn readings_of(
@@ -197,20 +213,28 @@ fn readings_of(
 ///
 /// # Errors
 /// Unreadable tables; sums of loads that S lacks.
-pub(super) fn runs(work: &mut Work, task: &Task) -> Result<RecoveredRuns, Faults> {
-    let s = &task.prepared.sensitivity;
-    let (readings, mut recovery) = solve(work, task)?;
+pub(super) fn runs(
+    work: &mut Work,
+    task: &Task,
+) -> Result<(RecoveredRuns, Vec<ValidationGauge>), Faults> {
+    let Solved {
+        s,
+        readings,
+        mut recovery,
+        validation,
+    } = solve(work, task)?;
     let Listed {
         names,
         units,
         sums: combinations,
-    } = listed(task.job, s)?;
+    } = listed(task.job, &s)?;
     let k = s.loads.len();
     work.findings.extend(sums(task, &recovery, &units[..k]));
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }
-    Ok(RecoveredRuns::of(s, readings, recovery, names, units))
+    let runs = RecoveredRuns::of(&s, readings, recovery, names, units);
+    Ok((runs, validation))
 }
 
 /// Equilibrium: the sum of all forces by direction, where it is far from zero in a run.

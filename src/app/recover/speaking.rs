@@ -8,7 +8,6 @@ use crate::app::job::correct::channel_of;
 use crate::app::job::strain::no_gauge_column;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
-use crate::linalg::Matrix;
 use crate::sensitivity::Sensitivity;
 use crate::series::still::{Gives, Still};
 
@@ -34,11 +33,14 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
     let found = columns_of(work, named, &record.names, &all.gauges);
     let channel = |g: usize| (found[g], channel_of(corrections, &all.gauges[g]));
     // Gauges without a column take no part.
-    let mut used: Vec<usize> = (0..found.len())
+    let mut used: Vec<usize> = task
+        .estimating
+        .iter()
+        .copied()
         .filter(|&g| found[g].is_some() && task.zero[g].is_finite() && !channel(g).1.ignore)
         .collect();
     if used.is_empty() {
-        return Err(no_gauge_column(task.job, file).into());
+        return Err(no_gauge_column(task.job, file, &record.names).into());
     }
     let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
     let given = columns_of_record(&record)?;
@@ -73,12 +75,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
         )));
     }
     Ok(Speaking {
-        sensitivity: Sensitivity {
-            gauges: used.iter().map(|&g| all.gauges[g].clone()).collect(),
-            loads: all.loads.clone(),
-            values: Matrix::from_fn(used.len(), all.loads.len(), |i, l| all.values[(used[i], l)]),
-            uncertainty: all.uncertainty.as_ref().map(|u| u.of_gauges(&used)),
-        },
+        sensitivity: all.of_gauges(&used),
         zero: used.iter().map(|&g| task.zero[g]).collect(),
         record,
     })

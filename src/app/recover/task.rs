@@ -14,8 +14,9 @@ use crate::finding::{Finding, Severity, few};
 use crate::gauge::reading;
 use crate::model::Model;
 use crate::recovery::ErrorModel;
+use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// What runs and records share.
 pub(super) struct Task<'a> {
@@ -25,6 +26,10 @@ pub(super) struct Task<'a> {
     pub errors: ErrorModel,
     /// Strain subtracted from readings, by gauge of S.
     pub zero: Vec<f64>,
+    /// Rows of S from which loads are estimated.
+    pub estimating: Vec<usize>,
+    /// Rows of S of the gauges that the estimate is compared with.
+    pub validation: Vec<usize>,
     /// Noise variance of a reading less zero, in units of that of a reading.
     pub noise_factor: f64,
 }
@@ -89,7 +94,10 @@ pub(super) fn without_reference<'a>(
             "state noise_microstrain: the scatter of a gauge at rest",
         ));
     }
+    let (validation, estimating) = validation_rows(job, &prepared.sensitivity);
     Ok(Task {
+        estimating,
+        validation,
         job,
         measured,
         prepared,
@@ -99,6 +107,12 @@ pub(super) fn without_reference<'a>(
     })
 }
 
+/// Returns the rows of S of the job's validation gauges, then all other rows.
+pub(super) fn validation_rows(job: &Job, s: &Sensitivity) -> (Vec<usize>, Vec<usize>) {
+    let names: HashSet<String> = job.validation_readings().into_iter().collect();
+    (0..s.gauges.len()).partition(|&g| names.contains(&s.gauges[g]))
+}
+
 /// Where a gauge's column stands; `None`: it has none.
 pub(super) fn columns_of(
     work: &mut Work,
@@ -106,10 +120,7 @@ pub(super) fn columns_of(
     header: &[String],
     gauges: &[String],
 ) -> Vec<Option<usize>> {
-    let columns: Vec<Option<usize>> = gauges
-        .iter()
-        .map(|g| header.iter().position(|h| h == g))
-        .collect();
+    let columns = columns_of_gauges(header, gauges);
     let silent = gauges.iter().zip(&columns).filter(|(_, c)| c.is_none());
     let silent: Vec<&str> = silent.map(|(g, _)| g.as_str()).collect();
     let unknown = unknown_columns(header, gauges);
@@ -119,6 +130,13 @@ pub(super) fn columns_of(
     work.findings
         .extend(strain_without_gauge(&of_file, header, gauges));
     columns
+}
+
+/// Returns where each gauge's column is; `None`: it has none.
+pub(super) fn columns_of_gauges(header: &[String], gauges: &[String]) -> Vec<Option<usize>> {
+    let places: HashMap<&String, usize> =
+        header.iter().rev().zip((0..header.len()).rev()).collect();
+    gauges.iter().map(|g| places.get(g).copied()).collect()
 }
 
 /// A warning of gauges that a file of strain has no column of; `unknown` are its columns that belong to no gauge.
@@ -208,11 +226,15 @@ pub(in crate::app) fn reference_strain(
     match (measured.reference, &prepared.fields) {
         (Reference::None, _) => Ok(vec![0.0; n]),
         (Reference::Subcase(id), Some(fields)) => {
-            let case = fields.subcase(id).ok_or_else(|| {
-                fault(
+            let case = fields.subcase(id).ok_or_else(|| match fields.is_solved_here() {
+                true => fault(
+                    format!("the deck has no static subcase {id} with a load, and there are no results"),
+                    "name a subcase of the deck: the state in which the gauges read zero",
+                ),
+                false => fault(
                     format!("the results have no subcase {id}"),
                     "name the subcase of the reference state",
-                )
+                ),
             })?;
             prepared
                 .gauges

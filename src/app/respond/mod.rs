@@ -10,6 +10,7 @@ pub use outcome::{Element, Field, Responded};
 use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::{self, Job};
+use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::{Prepared, WantedAt, has_covariance, prepare, read_fields};
 use super::work::Work;
@@ -26,7 +27,7 @@ use std::collections::BTreeSet;
 /// Every fault of the job and of what it names; a given S, which has no fields.
 pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let answer = responded(&mut work, job)?;
+    let answer = responded(&mut work, &job.estimating()?)?;
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
@@ -42,6 +43,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
 }
 
 fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
+    check_tables(work, job)?;
     let calibrated = has_covariance(job) && job.model.is_some();
     if job.sensitivity.is_some() && !calibrated {
         return Err(Faults::from(Fault::of(

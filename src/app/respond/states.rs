@@ -2,6 +2,7 @@
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::{Table, each_part};
+use crate::app::job::unread::Unread;
 use crate::app::job::{Job, JobLoad, NamedFile};
 use crate::app::recover::recovered_runs;
 use crate::app::strain::{LoadUnits, Prepared, load_units};
@@ -67,11 +68,15 @@ pub(super) fn from_table(
     let units = load_units(job, &names);
     let mut faults = FaultList::new();
     let mut columns: Option<Columns> = None;
+    let mut unread = None;
     let mut states = Vec::new();
     let mut blank = 0_usize;
     let mut before = None;
     each_part(&named.given, &text, PART, &mut |part| {
-        let columns = columns.get_or_insert_with(|| Columns::of(&part, job, &names, &mut faults));
+        let columns = columns.get_or_insert_with(|| {
+            unread = unread_columns(&part, job, &names);
+            Columns::of(&part, job, &names, &mut faults)
+        });
         for row in 0..part.rows.len() {
             faults.extend(columns.out_of_order(&part, row, &mut before));
             match columns.state(&part, row, &units, &mut faults) {
@@ -80,6 +85,9 @@ pub(super) fn from_table(
             }
         }
     })?;
+    if let Some(unread) = unread {
+        work.inputs.note(&named.given, unread.finding(&named.given));
+    }
     Faults::check(faults)?;
     if states.is_empty() {
         return Err(Faults::from(Fault::of(
@@ -121,6 +129,25 @@ pub(super) fn from_table(
     Ok(states)
 }
 
+/// Returns the columns of a table of loads that nothing reads; sums of loads, which `recover` writes too, are made of the loads again.
+fn unread_columns(t: &Table, job: &Job, names: &[String]) -> Option<Unread> {
+    let key = t.column(&KEYS).unwrap_or(0);
+    let sums = job.combinations.iter().map(|c| &c.name);
+    let known: Vec<String> = names
+        .iter()
+        .chain(sums)
+        .flat_map(|n| ["", ".low", ".high"].map(|end| format!("{n}{end}")))
+        .collect();
+    let header = t.header.iter().enumerate();
+    let unread = header.filter(|(c, h)| *c != key && !known.contains(h));
+    let unread: Vec<&str> = unread.map(|(_, h)| h.as_str()).collect();
+    let lacking = known.iter().filter(|n| !t.header.contains(n));
+    Unread::of(&unread, &lacking.map(String::as_str).collect::<Vec<_>>())
+}
+
+/// Names of the column that states what a row is.
+const KEYS: [&str; 4] = ["run", "time", "t", "state"];
+
 /// Where in the table the loads stand.
 struct Columns {
     key: usize,
@@ -137,7 +164,7 @@ impl Columns {
     fn of(t: &Table, job: &Job, names: &[String], faults: &mut FaultList) -> Self {
         let unit = |l: &JobLoad| l.report_unit(&job.report_units).map_or(1.0, |u| u.si);
         let sizes = job.loads.iter().map(|l| (l.quantity(), unit(l)));
-        let key = t.column(&["run", "time", "t", "state"]).unwrap_or(0);
+        let key = t.column(&KEYS).unwrap_or(0);
         let named = t.header.get(key).map(String::as_str);
         let mut out = Self {
             key,

@@ -1,18 +1,21 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
+use super::load_cases::find_cases;
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::check_places;
 use crate::app::deck::DeckModel;
-use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, LoadRole, Reference};
+use crate::app::fault::{Fault, Faults};
+use crate::app::job::{Job, JobLoad, LoadRole, ModelFiles, Reference};
 use crate::app::job_deck::read_deck;
 use crate::app::named_results::results_fault;
-use crate::app::solved::{MODES, cases_of_job, solve_kept, support_of_job};
+use crate::app::solved::{
+    MODES, case_of_subcase, cases_of_job, has_enforced, relief_of_job, solve_kept, support_of_job,
+};
 use crate::app::work::Work;
-use crate::fe::from_results::{Displacements, ReadOptions, solution_from_file};
+use crate::fe::from_results::{Displacements, ReadOptions, repeated, solution_from_file};
 use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad};
 use crate::gauge::CornerRows;
-use crate::model::Model;
+use crate::model::{BeamIx, Load as ModelLoad, Model};
 use crate::sensitivity::{Load, LoadCaseOf};
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
@@ -23,6 +26,7 @@ pub struct Fields {
     pub deck: DeckModel,
     /// Result files, or one solved here.
     pub solutions: Vec<Solution>,
+    solved_here: bool,
     /// By load: solution, case.
     of_load: Vec<(usize, usize)>,
     /// The mesh error that was taken out of `solutions`, by load of the job. `None` where that was not computed.
@@ -30,6 +34,9 @@ pub struct Fields {
     /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it, and
     /// beside other loads.
     pub first_mode: Option<f64>,
+    /// Subcase of the deck that is the reference state of the readings, solved here; `None` where another program solved it, or the job has no
+    /// such state.
+    reference: Option<CaseResult>,
     /// What was solved beside the loads of the job; `None` where nothing was, as another program solved them.
     pub beside: Option<Solution>,
 }
@@ -59,12 +66,19 @@ impl Fields {
         self.mesh_error.as_ref().map_or(0.0, |e| e.left)
     }
 
-    /// A case by its subcase id.
+    /// Returns the reference state, a subcase of the deck, from its results or as it was solved here. Cases that were solved for the job's loads
+    /// bear numbers of the job, which name no subcase.
     pub fn subcase(&self, id: u32) -> Option<&CaseResult> {
-        self.solutions
-            .iter()
-            .flat_map(|s| &s.cases)
-            .find(|c| c.subcase == id)
+        if self.is_solved_here() {
+            return self.reference.as_ref().filter(|c| c.subcase == id);
+        }
+        let mut cases = self.solutions.iter().flat_map(|s| &s.cases);
+        cases.find(|c| c.subcase == id)
+    }
+
+    /// Whether the built-in solver solved the loads.
+    pub fn is_solved_here(&self) -> bool {
+        self.solved_here
     }
 
     /// Whether every load's case has strain at corners.
@@ -134,43 +148,87 @@ pub fn read_fields_beside(
         )));
     }
     let deck = work.stage("read model", |s| read_deck(s, job, files))?;
-    if files.results.is_empty() {
-        let mut cases = cases_of_job(job, &deck)?;
-        let of_job = cases.len();
-        if let Some(beside) = beside {
-            let support = support_of_job(job, &deck.model)?;
-            let more = support.unit_cases(&deck.model, &beside(&deck.model)?);
-            let first = cases.iter().map(|c| c.subcase + 1).max().unwrap_or(1);
-            let numbered = |(subcase, case)| LoadCase { subcase, ..case };
-            cases.extend((first..).zip(more).map(numbered));
-        }
-        let options = SolveOptions {
-            modes: if beside.is_some() { 0 } else { MODES },
-            ..SolveOptions::default()
-        };
-        let (mut solved, report) = solve_kept(work, &deck, &cases, options)?;
-        // What is said of a load that nobody asked for is said to nobody.
-        let unasked = |c: &LoadCase| format!("subcase {}", c.subcase);
-        let unasked: BTreeSet<String> = cases.iter().skip(of_job).map(unasked).collect();
-        solved.findings.retain(|f| !unasked.contains(&f.subject));
-        work.findings.extend(solved.findings.iter().cloned());
-        let beside = beside.map(|_| Solution {
-            cases: solved.cases.split_off(of_job),
-            findings: Vec::new(),
-            source: solved.source.clone(),
-        });
-        let mesh_error = take_out(work, job, &deck, (&mut solved, at));
-        work.go_on()?;
-        let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
-        return Ok(Fields {
-            deck,
-            solutions: vec![solved],
-            of_load,
-            mesh_error,
-            first_mode: report.modes.first().copied(),
-            beside,
-        });
+    match files.results.is_empty() {
+        true => solve_fields(work, job, deck, at, beside),
+        false => read_results(work, job, files, deck),
     }
+}
+
+/// Solves the unit loads of the job, its reference subcase and further cases together with the built-in solver.
+///
+/// # Errors
+/// What stops the solver, with file and line.
+fn solve_fields(
+    work: &mut Work,
+    job: &Job,
+    deck: DeckModel,
+    at: WantedAt,
+    beside: Option<Beside<'_>>,
+) -> Result<Fields, Faults> {
+    let mut cases = cases_of_job(job, &deck)?;
+    work.findings.extend(relief_of_job(job, &deck.model)?);
+    let of_job = cases.len();
+    let number = |cases: &[LoadCase]| cases.iter().map(|c| c.subcase + 1).max().unwrap_or(1);
+    let reference = reference_case(job, &deck);
+    let as_reference = reference.as_ref().map(|r| (r.subcase, number(&cases)));
+    if let (Some(case), Some((_, subcase))) = (reference, as_reference) {
+        cases.push(LoadCase { subcase, ..case });
+    }
+    let of_reference = cases.len();
+    if let Some(beside) = beside {
+        let support = support_of_job(job, &deck.model)?;
+        let more = support.unit_cases(&deck.model, &beside(&deck.model)?);
+        let first = number(&cases);
+        let numbered = |(subcase, case)| LoadCase { subcase, ..case };
+        cases.extend((first..).zip(more).map(numbered));
+    }
+    let options = SolveOptions {
+        modes: if beside.is_some() { 0 } else { MODES },
+        ..SolveOptions::default()
+    };
+    let (mut solved, report) = solve_kept(work, &deck, &cases, options)?;
+    // What is said of a load that nobody asked for is said to nobody.
+    let unasked = |c: &LoadCase| format!("subcase {}", c.subcase);
+    let unasked: BTreeSet<String> = cases.iter().skip(of_reference).map(unasked).collect();
+    solved.findings.retain(|f| !unasked.contains(&f.subject));
+    if let Some((id, number)) = as_reference {
+        let own = format!("subcase {number}");
+        let of_it = solved.findings.iter_mut().filter(|f| f.subject == own);
+        of_it.for_each(|f| f.subject = format!("reference, subcase {id} of the deck"));
+    }
+    work.findings.extend(solved.findings.iter().cloned());
+    let beside = beside.map(|_| Solution {
+        cases: solved.cases.split_off(of_reference),
+        findings: Vec::new(),
+        source: solved.source.clone(),
+    });
+    let reference = solved.cases.split_off(of_job).pop();
+    let subcase = as_reference.map_or(0, |r| r.0);
+    let mesh_error = take_out(work, job, &deck, (&mut solved, at));
+    work.go_on()?;
+    let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
+    Ok(Fields {
+        deck,
+        solutions: vec![solved],
+        solved_here: true,
+        reference: reference.map(|c| CaseResult { subcase, ..c }),
+        of_load,
+        mesh_error,
+        first_mode: report.modes.first().copied(),
+        beside,
+    })
+}
+
+/// Reads the strain of the unit loads from the results that the job names.
+///
+/// # Errors
+/// Files that cannot be read; loads without one subcase of their own.
+fn read_results(
+    work: &mut Work,
+    job: &Job,
+    files: &ModelFiles,
+    deck: DeckModel,
+) -> Result<Fields, Faults> {
     if files.mesh_error {
         work.findings.push(not_checked(
             "the strain comes from results, and the built-in solver alone can solve a finer mesh",
@@ -186,18 +244,24 @@ pub fn read_fields_beside(
         subcases: Some(wanted),
         ..ReadOptions::default()
     };
-    let mut solutions = Vec::new();
+    let (mut solutions, mut repeated_in) = (Vec::new(), Vec::new());
     for named in &files.results {
         let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
-        let solution = work.stage("read results", |_| {
-            ResultsFile::read(&bytes, &named.given)
-                .map(|file| solution_from_file(&deck.model, &named.given, &file, &options))
+        let read = work.stage("read results", |_| {
+            ResultsFile::read(&bytes, &named.given).map(|file| {
+                let solution = solution_from_file(&deck.model, &named.given, &file, &options);
+                (solution, repeated(&[&file], options.subcases.as_ref()))
+            })
         });
-        let solution = solution.map_err(|e| results_fault(job, named, &e))?;
+        let (mut solution, repeated) = read.map_err(|e| results_fault(job, named, &e))?;
+        for case in &mut solution.cases {
+            case.beams.mark_loaded(loaded_bars(&deck, case.subcase));
+        }
         work.findings.extend(solution.findings.iter().cloned());
         solutions.push(solution);
+        repeated_in.push(repeated);
     }
-    let of_load = find_cases(job, &solutions)?;
+    let of_load = find_cases(work, job, &mut solutions, &repeated_in)?;
     work.findings.push(super::source_finding(
         &solutions
             .iter()
@@ -208,6 +272,8 @@ pub fn read_fields_beside(
     Ok(Fields {
         deck,
         solutions,
+        solved_here: false,
+        reference: None,
         of_load,
         mesh_error: None,
         first_mode: None,
@@ -215,67 +281,32 @@ pub fn read_fields_beside(
     })
 }
 
-fn find_cases(job: &Job, solutions: &[Solution]) -> Result<Vec<(usize, usize)>, Faults> {
-    let mut faults = FaultList::new();
-    let mut found = Vec::new();
-    let names: Vec<&str> = job
-        .model
-        .iter()
-        .flat_map(|m| &m.results)
-        .map(|n| n.given.as_str())
-        .collect();
-    for load in &job.loads {
-        let file = load.result.as_ref().map(|r| r.given.as_str());
-        let hit = solutions
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| file.is_none_or(|f| names.get(*i) == Some(&f)))
-            .find_map(|(i, s)| {
-                let c = s
-                    .cases
-                    .iter()
-                    .position(|c| c.subcase == load.subcase() && has_strain(c))?;
-                Some((i, c))
-            });
-        // A file a load case is common: a file named for the load with a single case needs no subcase.
-        let hit = hit.or_else(|| {
-            let i = names.iter().position(|n| Some(*n) == file)?;
-            let only = solutions[i].cases.len() == 1 && load.subcase.is_none();
-            only.then_some((i, 0))
-        });
-        match hit {
-            Some(h) => found.push(h),
-            None => {
-                let there: Vec<String> = solutions
-                    .iter()
-                    .flat_map(|s| &s.cases)
-                    .filter(|c| has_strain(c))
-                    .map(|c| c.subcase.to_string())
-                    .collect();
-                let wrong = format!(
-                    "load `{}`: no static subcase {} with strain in the results",
-                    load.name,
-                    load.subcase()
-                );
-                let remedy = if there.is_empty() {
-                    "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned()
-                } else {
-                    format!("state `subcase`; the results hold {}", there.join(", "))
-                };
-                faults.push(Fault::at(
-                    &*job.file,
-                    load.line,
-                    "load.subcase",
-                    wrong,
-                    remedy,
-                ));
-            }
-        }
-    }
-    Faults::check(faults)?;
-    Ok(found)
+/// Returns the subcase of the deck that the job names as its reference state; `None` where the job names none, or the deck has no such
+/// subcase with a load.
+fn reference_case(job: &Job, deck: &DeckModel) -> Option<LoadCase> {
+    let Reference::Subcase(id) = job.measured.as_ref()?.reference else {
+        return None;
+    };
+    let subcases = deck.deck.case_control.effective_subcases();
+    let named = subcases.iter().find(|s| s.id == id && s.deform.is_none())?;
+    let case = case_of_subcase(&deck.model, named);
+    let moved = case
+        .spc
+        .is_some_and(|set| has_enforced(&deck.model, Some(set)));
+    (!case.loads.is_empty() || moved).then_some(case)
 }
 
-fn has_strain(c: &CaseResult) -> bool {
-    !c.shells.elements.is_empty() || !c.beams.elements.is_empty()
+/// Bars and beams with PLOAD1 in the load set of a subcase; in any load set where the deck has no such subcase.
+fn loaded_bars(deck: &DeckModel, subcase: u32) -> Vec<BeamIx> {
+    let subcases = deck.deck.case_control.effective_subcases();
+    let selected = subcases.iter().find(|s| s.id == subcase);
+    let acts = |sid: u32| selected.is_none_or(|s| s.load == Some(sid));
+    let sets = deck.model.load_sets.iter().filter(|s| acts(s.sid));
+    let loads = sets.flat_map(|s| &s.loads);
+    loads
+        .filter_map(|(factor, load)| match load {
+            ModelLoad::Line { beam, .. } if *factor != 0.0 => Some(*beam),
+            _ => None,
+        })
+        .collect()
 }

@@ -10,7 +10,7 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::{Gauge, GaugeError, beside_beam, beside_shell, build, on_unverified_elements};
 use crate::model::{Model, Vec3};
 use crate::recovery::NORMAL_95;
-use crate::sensitivity::NoStrain;
+use crate::sensitivity::{NoStrain, NoStrainCause, bar_points};
 use crate::units::Quantity;
 
 /// Channels of the job's gauges, in job order; findings go to the work.
@@ -43,6 +43,13 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     if job.model.as_ref().is_some_and(|m| m.results.is_empty()) {
         work.findings
             .extend(on_unverified_elements(fields.model(), &gauges));
+    } else {
+        let loads = fields.load_cases(job);
+        for finding in bar_points(fields.model(), &gauges, &loads) {
+            if !work.findings.contains(&finding) {
+                work.findings.push(finding);
+            }
+        }
     }
     Ok(gauges)
 }
@@ -123,17 +130,12 @@ pub fn without_strain(job: &Job, missing: &[NoStrain]) -> Faults {
             .iter()
             .find(|g| g.name == m.gauge || m.gauge.starts_with(&format!("{}.", g.name)));
         let (file, line) = stated.map_or((job.file.as_str(), 0), |g| (g.file.as_str(), g.line));
-        let wrong = format!(
-            "gauge `{}`: element {} has no strain in subcase {} (load `{}`)",
-            m.gauge, m.element, m.subcase, m.load
-        );
-        let fault = Fault::at(
-            file,
-            line,
-            "element",
-            wrong,
-            "ask for STRAIN of that element in every subcase, or move the gauge",
-        );
+        let wrong = format!("gauge `{}`: {}", m.gauge, m.wrong());
+        let field = match m.why {
+            NoStrainCause::Absent => "element",
+            NoStrainCause::BetweenStations => "station",
+        };
+        let fault = Fault::at(file, line, field, wrong, m.remedy());
         if !out
             .iter()
             .any(|f| f.line == fault.line && f.file == fault.file)

@@ -4,13 +4,17 @@ use super::covariance::read_covariance;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::given_columns::columns_of_given;
 use crate::app::job::quantity::quantity_of_name;
-use crate::app::job::strain::readings_of;
-use crate::app::job::table::read_table;
+use crate::app::job::readings::readings_of;
+use crate::app::job::suggest;
+use crate::app::job::table::{Table, read_table};
+use crate::app::job::unread::Unread;
 use crate::app::job::{Job, JobLoad, LoadRole};
 use crate::app::work::Work;
 use crate::linalg::Matrix;
+use crate::placement::Role;
 use crate::sensitivity::{Load, Sensitivity};
 use crate::units::{MICROSTRAIN, factor};
+use std::collections::HashMap;
 
 /// The table of `[sensitivity]` as S in strain per job unit, rows in the order of the job's gauges where it has some.
 ///
@@ -72,6 +76,15 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
             quantity: Some(quantity),
         });
     }
+    check_wanted(job, given.line, &table, &loads, &mut faults);
+    let is_read = |c: usize| c == key || at.iter().any(|a| a.0 == c);
+    let unread = (0..table.header.len()).filter(|c| !is_read(*c));
+    let unread: Vec<&str> = unread.map(|c| table.header[c].as_str()).collect();
+    let lacking = job.loads.iter().map(|l| l.name.as_str());
+    let lacking = lacking.filter(|n| loads.iter().all(|l| l.name != *n));
+    if let Some(unread) = Unread::of(&unread, &lacking.collect::<Vec<_>>()) {
+        work.inputs.note(&table.file, unread.finding(&table.file));
+    }
     let names: Vec<String> = table
         .rows
         .iter()
@@ -112,6 +125,24 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     })
 }
 
+/// Refuses a table that lacks the column of a wanted load: the other loads would take its strain.
+fn check_wanted(job: &Job, line: u32, table: &Table, loads: &[Load], faults: &mut FaultList) {
+    let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
+    for load in wanted.filter(|l| loads.iter().all(|own| own.name != l.name)) {
+        let remedy = suggest::remedy(&load.name, table.header.iter().map(String::as_str));
+        faults.push(Fault::at(
+            &*job.file,
+            line,
+            "sensitivity.file",
+            format!(
+                "`{}` has no column for the load `{}`",
+                table.file, load.name
+            ),
+            format!("name its column in [sensitivity] columns; {remedy}"),
+        ));
+    }
+}
+
 /// Readings of the job's gauges with their rows in the table of S, whose rows bear these names; all rows for a job that states no gauges.
 fn rows_of(
     job: &Job,
@@ -122,16 +153,19 @@ fn rows_of(
     if job.gauges.is_empty() {
         return names.iter().cloned().zip(0..).collect();
     }
+    let places: HashMap<&String, usize> = names.iter().rev().zip((0..names.len()).rev()).collect();
     let mut out = Vec::new();
     for g in &job.gauges {
         // A table may have a row for a rosette as one channel.
-        let readings = match names.contains(&g.name) {
+        let readings = match places.contains_key(&g.name) {
             true => vec![g.name.clone()],
             false => readings_of(g),
         };
         for reading in readings {
-            match names.iter().position(|n| *n == reading) {
+            match places.get(&reading).copied() {
                 Some(row) => out.push((reading, row)),
+                // A calibration does not learn the rows of validation gauges.
+                None if g.role == Role::Validation => {}
                 None => faults.push(Fault::at(
                     &*g.file,
                     g.line,

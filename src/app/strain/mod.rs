@@ -4,6 +4,7 @@ mod covariance;
 mod fields;
 mod gauges;
 mod given;
+mod load_cases;
 mod mesh;
 mod specs;
 mod unit_loads;
@@ -22,7 +23,7 @@ pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
 
 use super::fault::{Fault, Faults};
-use super::job::correct::noted;
+use super::job::correct::{check_channels, noted};
 use super::job::{Job, Measured};
 use super::named_results::{Absent, check_named};
 use super::outcome::finite;
@@ -44,6 +45,19 @@ pub struct Prepared {
     pub gauges: Vec<Gauge>,
     /// By gauge, what the deck's mesh made; empty where that was not computed. S is without it.
     pub mesh_error: Vec<GaugeMeshError>,
+}
+
+impl Prepared {
+    /// Keeps these rows of S, with what belongs to their gauges.
+    pub fn retain(&mut self, rows: &[usize]) {
+        if rows.len() == self.sensitivity.gauges.len() {
+            return;
+        }
+        self.sensitivity = self.sensitivity.of_gauges(rows);
+        let names = &self.sensitivity.gauges;
+        self.gauges.retain(|g| names.contains(&g.name));
+        self.mesh_error.retain(|g| names.contains(&g.name));
+    }
 }
 
 /// S of the job's gauges: from the table of `[sensitivity]`, else from the model and its results.
@@ -70,7 +84,8 @@ pub fn prepare_beside(
         let (fields, gauges) = match &job.model {
             Some(_) if has_covariance(job) => {
                 let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
-                let gauges = lay_gauges(work, job, &fields)?;
+                let mut gauges = lay_gauges(work, job, &fields)?;
+                gauges.retain(|g| sensitivity.gauges.contains(&g.name));
                 (Some(fields), gauges)
             }
             _ => {
@@ -128,7 +143,9 @@ pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults>
             "turn it in the table of [sensitivity], or give a [model]",
         )));
     }
-    read_given(work, job)
+    let given = read_given(work, job)?;
+    check_channels(job, &given.gauges, "the table of [sensitivity]")?;
+    Ok(given)
 }
 
 /// What `[measured]` states of errors: those of the model stand in the uncertainty of S where that has one.

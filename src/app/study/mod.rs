@@ -12,7 +12,7 @@ use super::strain::{Conditioning, LoadUnits, load_units};
 use super::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::{Load, check_separability};
-use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, study_layout};
+use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, TrueLoad, study_layout};
 use crate::units::{MICROSTRAIN, Quantity};
 use serde::Serialize;
 
@@ -84,6 +84,7 @@ pub struct StudiedLoad {
 /// Every fault of the job and of the files it names; loads of unknown size.
 pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
     let Some(study) = &job.study else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -185,8 +186,15 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
     Ok(out)
 }
 
-/// True loads: those of the first run of the runs file that has all wanted ones, else their expected sizes.
-fn truth(work: &mut Work, job: &Job, study: &Study, loads: &[Load]) -> Result<Vec<f64>, Faults> {
+/// Returns the true loads: those of the first run of the runs file that has all wanted ones, else drawn in every trial with `expected` as
+/// standard deviation. Nuisance loads are always drawn.
+fn truth(
+    work: &mut Work,
+    job: &Job,
+    study: &Study,
+    loads: &[Load],
+) -> Result<Vec<TrueLoad>, Faults> {
+    let drawn = |l: &Load| TrueLoad::Drawn(l.expected.unwrap_or(0.0));
     if let Some(runs) = &job.runs {
         let rows = read_runs(&mut work.inputs, job, runs)?;
         let (n, nm) = (
@@ -218,7 +226,11 @@ fn truth(work: &mut Work, job: &Job, study: &Study, loads: &[Load]) -> Result<Ve
                 format!("the loads of run `{run}` are taken as true"),
                 "",
             ));
-            return Ok(values);
+            let known = loads.iter().zip(values).map(|(l, f)| match l.wanted {
+                true => TrueLoad::Known(f),
+                false => drawn(l),
+            });
+            return Ok(known.collect());
         }
     }
     let without: Vec<&str> = loads
@@ -227,7 +239,14 @@ fn truth(work: &mut Work, job: &Job, study: &Study, loads: &[Load]) -> Result<Ve
         .map(|l| l.name.as_str())
         .collect();
     if without.is_empty() {
-        return Ok(loads.iter().map(|l| l.expected.unwrap_or(0.0)).collect());
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "true-loads",
+            "load.expected",
+            "no run states all loads: in every trial each load is drawn, normal with mean 0 and standard deviation `expected`",
+            "",
+        ));
+        return Ok(loads.iter().map(drawn).collect());
     }
     Err(Faults::from(Fault::at(
         &*job.file,
@@ -239,13 +258,13 @@ fn truth(work: &mut Work, job: &Job, study: &Study, loads: &[Load]) -> Result<Ve
 }
 
 /// Root mean square error of a load over its true size.
-fn relative(row: &StudyRow, truth: &[f64], l: usize) -> f64 {
-    row.bias[l].hypot(row.sigma[l]) / truth[l].abs()
+fn relative(row: &StudyRow, truth: &[TrueLoad], l: usize) -> f64 {
+    row.bias[l].hypot(row.sigma[l]) / truth[l].size()
 }
 
-fn mean_relative(row: &StudyRow, truth: &[f64], loads: &[Load]) -> f64 {
+fn mean_relative(row: &StudyRow, truth: &[TrueLoad], loads: &[Load]) -> f64 {
     let all: Vec<f64> = (0..loads.len())
-        .filter(|l| loads[*l].wanted && truth[*l] != 0.0)
+        .filter(|l| loads[*l].wanted && truth[*l].size() != 0.0)
         .map(|l| relative(row, truth, l))
         .collect();
     all.iter().sum::<f64>() / all.len().max(1) as f64
@@ -292,7 +311,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
     }
 }
 
-fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[f64]) -> StudiedLayout {
+fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[TrueLoad]) -> StudiedLayout {
     let by_load = (0..loads.len()).map(|l| StudiedLoad {
         name: loads[l].name.clone(),
         bias: finite(line.row.bias[l] * units[l].factor),

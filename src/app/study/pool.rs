@@ -5,7 +5,7 @@ use crate::app::job::Job;
 use crate::app::strain::{self, Fields, WantedAt, corrected_spec_of, read_fields};
 use crate::app::work::Work;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
-use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading};
+use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading, to_side};
 use crate::model::{Model, Vec3};
 use crate::sensitivity::{Load, LoadCaseOf, Sensitivity};
 use crate::study::PoolGauge;
@@ -156,19 +156,21 @@ fn slope(
     let size =
         reach.clone().fold(f64::NEG_INFINITY, f64::max) - reach.fold(f64::INFINITY, f64::min);
     let middle = corners.iter().sum::<Vec3>() / corners.len() as f64;
+    // On the skin, so that the neighbour's side is the same one in space.
+    let skin = here.normal * to_side(model, shell, here.surface);
     let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
     for sign in [-1.0, 1.0] {
-        let at = middle + along * (sign * size);
+        let at = middle + skin + along * (sign * size);
         let moved = GaugeSpec {
             place: GaugePlace::Nearest(at),
             direction: Some(here.direction),
             angle_rad: 0.0,
-            surface: Some(here.surface),
+            surface: None,
             rosette: None,
             ..spec.clone()
         };
         let Some(g) = laid(&moved) else { continue };
-        if g.normal.dot(&here.normal) < SAME_PLATE {
+        if g.outward().dot(&here.outward()) < SAME_PLATE {
             continue;
         }
         // With centre strain a gauge reads its element's centre: the distance is that of the centres.

@@ -141,6 +141,7 @@ pub(crate) fn reduce(
                 refc,
                 arms,
                 um,
+                ..
             } => mean::relations(model, axes, rigid, (*reference, *refc), arms, um, claim),
             RigidKind::Equations { equations, .. } => Ok(equations
                 .iter()

@@ -17,3 +17,4 @@ mod spring;
 pub(crate) use matrix::{ElementMatrix, point_mass};
 pub(crate) use rod::{rod_mass, rod_thermal_force};
 pub(crate) use shear_panel::shear_panel_mass;
+pub(crate) use spring::between_dofs;

@@ -1,17 +1,27 @@
-//! CELAS1, CELAS2: a spring between two dofs, or a dof and ground.
+//! Scalar elements: a spring or a mass between two dofs, or a dof and ground.
 
 use super::ElementMatrix;
 use crate::fe::grid_frames::to_basic;
 use crate::fe::prepared::Prepared;
+use crate::model::GridIx;
 
 /// Stiffness of spring `i`, basic frame; its dofs are those of the grids' displacement frames.
 pub(super) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatrix {
     let spring = &prepared.model.springs[i];
-    let mut grids: Vec<_> = spring.ends.iter().flatten().map(|e| e.0).collect();
+    between_dofs(prepared, &spring.ends, spring.k)
+}
+
+/// `factor` times the square of the difference of two dofs as a matrix, basic frame: stiffness of a spring, mass of a scalar mass.
+pub(crate) fn between_dofs(
+    prepared: &Prepared<'_>,
+    ends: &[Option<(GridIx, u8)>; 2],
+    factor: f64,
+) -> ElementMatrix {
+    let mut grids: Vec<_> = ends.iter().flatten().map(|e| e.0).collect();
     grids.dedup();
     let n = 6 * grids.len();
     let mut row = vec![0.0; n];
-    for (end, sign) in spring.ends.iter().zip([1.0, -1.0]) {
+    for (end, sign) in ends.iter().zip([1.0, -1.0]) {
         let Some((g, dof)) = end else { continue };
         let mut unit = [0.0; 6];
         unit[usize::from(*dof).min(5)] = sign;
@@ -26,7 +36,7 @@ pub(super) fn spring_stiffness(prepared: &Prepared<'_>, i: usize) -> ElementMatr
     let mut k = ElementMatrix::zeros(grids);
     for a in 0..n {
         for b in 0..n {
-            k.values[a * n + b] = spring.k * row[a] * row[b];
+            k.values[a * n + b] = factor * row[a] * row[b];
         }
     }
     k

@@ -49,6 +49,13 @@ pub enum FloorError {
     },
     /// A case without displacements.
     NoDisplacement,
+    /// Springs to ground carry the structure already.
+    Springs {
+        /// Rigid motions that they hold.
+        motions: u8,
+        /// The springs in words.
+        springs: String,
+    },
     /// The solver refused.
     Solver(crate::fe::FeError),
 }
@@ -62,6 +69,13 @@ impl FloorError {
                     "the {contacts} contacts lie on a line or at a point: they can't carry the weight without falling over"
                 ),
                 "name the wheels on both sides".to_owned(),
+            )],
+            Self::Springs { motions, springs } => vec![(
+                format!(
+                    "springs to ground ({springs}) hold {motions} of 6 rigid motions: a floor under the wheels would carry the structure a second time"
+                ),
+                "remove the springs to ground, so that the wheels alone carry the structure"
+                    .to_owned(),
             )],
             Self::NoDisplacement => vec![(
                 "no displacement of the contacts".to_owned(),

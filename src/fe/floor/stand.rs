@@ -1,7 +1,8 @@
 //! Unit forces at the contacts, solved.
 
 use super::{Floor, FloorError};
-use crate::fe::{CaseResult, LoadCase, Relief, SolveOptions, UnitLoad, solve_cases};
+use crate::fe::free_motions::springs_in_words;
+use crate::fe::{CaseResult, LoadCase, Relief, SolveOptions, Support, UnitLoad, solve_cases};
 use crate::model::{GridIx, Model, Vec3};
 
 /// A floor with the free solutions behind it.
@@ -18,7 +19,7 @@ pub struct Standing {
 /// Solves a unit force at every contact, and `others`, on the free structure, and the floor under the contacts.
 ///
 /// # Errors
-/// Those of the solver; contacts on a line.
+/// Those of the solver; contacts on a line; springs to ground that carry the structure already.
 pub fn solve_standing(
     model: &Model,
     axis: usize,
@@ -26,6 +27,11 @@ pub fn solve_standing(
     others: &[UnitLoad],
     rate: Option<f64>,
 ) -> Result<Standing, FloorError> {
+    let motions = Support::free(model).by_springs;
+    if motions > 0 {
+        let springs = springs_in_words(model);
+        return Err(FloorError::Springs { motions, springs });
+    }
     let up = contacts.iter().map(|grid| {
         let mut force = Vec3::zeros();
         force[axis] = 1.0;

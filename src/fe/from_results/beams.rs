@@ -5,7 +5,7 @@ use super::tally::{Met, Tally};
 use crate::fe::BeamField;
 use crate::fe::element::beam::section_at;
 use crate::linalg::{Matrix, dense};
-use crate::model::{BeamIx, MaterialKind, Model};
+use crate::model::{BeamIx, MaterialKind, Model, Section};
 use nastran::results::columns;
 use nastran::results::{Block, Quantity, Rows};
 use std::collections::BTreeMap;
@@ -99,7 +99,10 @@ impl<'m> BeamCollector<'m> {
             .iter_mut()
             .for_each(|s| s.sort_by(|a, b| a.at.total_cmp(&b.at)));
         let all = stations.iter();
+        let model = self.model;
+        let tapered = elements.iter().filter(|ix| is_tapered(model, **ix));
         BeamField {
+            stations_alone: tapered.copied().collect(),
             elements: Arc::new(elements),
             axial: all
                 .clone()
@@ -108,8 +111,21 @@ impl<'m> BeamCollector<'m> {
             stations: all
                 .map(|b| b.iter().map(|s| (s.at, s.points)).collect())
                 .collect(),
+            solved: None,
         }
     }
+}
+
+/// Whether strain along a bar without loads between its ends is no straight line: its section changes.
+fn is_tapered(model: &Model, beam: BeamIx) -> bool {
+    let beam = model.beams.get(beam.us());
+    let property = beam.and_then(|b| model.beam_properties.get(b.property.us()));
+    property.is_some_and(|p| {
+        p.sections.windows(2).any(|w| {
+            let of = |s: &Section| ([s.area, s.i1, s.i2, s.i12], s.recovery, s.neutral);
+            of(&w[0].1) != of(&w[1].1)
+        })
+    })
 }
 
 /// Strain of the neutral axis from that of four points by the plane through them: the mean with the weights that put the points'

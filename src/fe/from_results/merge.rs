@@ -1,67 +1,103 @@
 //! Several files, one solution.
 
-use crate::fe::{CaseResult, Solution};
-use crate::finding::{Finding, Severity};
+use super::repeated::Repeated;
+use crate::fe::{BeamField, CaseResult, ShellField, Solution};
+use std::sync::Arc;
 
-/// The cases of all files, subcases ascending, file order within a subcase.
-pub(super) fn merge(solutions: Vec<Solution>) -> Solution {
+/// The cases of all files, subcases ascending, file order within a subcase. A subcase whose values differ between files stays a case for each
+/// of them.
+pub(super) fn merge(solutions: Vec<Solution>, repeated: &[Repeated]) -> Solution {
+    let differs = |subcase: u32| {
+        let mut found = repeated.iter().filter(|r| r.subcase == subcase);
+        found.any(|r| r.files.len() > 1)
+    };
     let mut all = Solution::default();
     for solution in solutions {
         let separator = if all.source.is_empty() { "" } else { "; " };
         all.source = format!("{}{separator}{}", all.source, solution.source);
         all.findings.extend(solution.findings);
         for case in solution.cases {
-            add(&mut all, case);
+            let mut cases = all.cases.iter_mut();
+            match cases.find(|c| c.subcase == case.subcase && !differs(c.subcase)) {
+                Some(same) => complete(same, case),
+                None => all.cases.push(case),
+            }
         }
     }
     all.cases.sort_by_key(|c| c.subcase);
     all
 }
 
-fn add(all: &mut Solution, case: CaseResult) {
-    let same = all
-        .cases
-        .iter_mut()
-        .find(|c| c.subcase == case.subcase && !overlap(c, &case));
-    if let Some(same) = same {
-        complete(same, case);
-        return;
-    }
-    if all.cases.iter().any(|c| c.subcase == case.subcase) {
-        let message = format!(
-            "subcase {} has strain in two files; both are kept, in file order",
-            case.subcase
-        );
-        let remedy = "name the file and the subcase of each load in the job";
-        all.findings.push(Finding::new(
-            Severity::Warning,
-            "subcase-in-two-files",
-            case.subcase.to_string(),
-            message,
-            remedy,
-        ));
-    }
-    all.cases.push(case);
-}
-
-/// Whether two cases both have strain of shells, or of bars. Displacements that come twice are the first file's.
-fn overlap(a: &CaseResult, b: &CaseResult) -> bool {
-    let both = |a_empty: bool, b_empty: bool| !a_empty && !b_empty;
-    both(a.shells.elements.is_empty(), b.shells.elements.is_empty())
-        || both(a.beams.elements.is_empty(), b.beams.elements.is_empty())
-}
-
-fn complete(case: &mut CaseResult, other: CaseResult) {
+/// Adds to a case what only the other one has: elements, displacements, a label.
+pub fn complete(case: &mut CaseResult, other: CaseResult) {
     if case.label.is_empty() {
         case.label = other.label;
     }
-    if case.shells.elements.is_empty() {
-        case.shells = other.shells;
-    }
-    if case.beams.elements.is_empty() {
-        case.beams = other.beams;
-    }
+    complete_shells(&mut case.shells, other.shells);
+    complete_beams(&mut case.beams, other.beams);
     if case.displacement.is_empty() {
         case.displacement = other.displacement;
     }
+}
+
+fn complete_shells(shells: &mut ShellField, other: ShellField) {
+    if shells.elements.is_empty() {
+        *shells = other;
+        return;
+    }
+    let order = joined(&shells.elements, &other.elements);
+    if order.iter().all(|(_, of_other, _)| !of_other) {
+        return;
+    }
+    // Where one has no rows at corners, those of the other would be of some elements alone.
+    let has_corners = !shells.corners.is_empty() && !other.corners.is_empty();
+    *shells = ShellField {
+        elements: Arc::new(order.iter().map(|o| o.0).collect()),
+        centre: picked(&order, &shells.centre, &other.centre),
+        corners: match has_corners {
+            true => picked(&order, &shells.corners, &other.corners),
+            false => Vec::new(),
+        },
+        from_stress: shells.from_stress || other.from_stress,
+    };
+}
+
+fn complete_beams(beams: &mut BeamField, other: BeamField) {
+    if beams.elements.is_empty() {
+        *beams = other;
+        return;
+    }
+    let order = joined(&beams.elements, &other.elements);
+    if order.iter().all(|(_, of_other, _)| !of_other) {
+        return;
+    }
+    *beams = BeamField {
+        elements: Arc::new(order.iter().map(|o| o.0).collect()),
+        stations: picked(&order, &beams.stations, &other.stations),
+        axial: picked(&order, &beams.axial, &other.axial),
+        solved: None,
+        stations_alone: beams
+            .stations_alone
+            .union(&other.stations_alone)
+            .copied()
+            .collect(),
+    };
+}
+
+/// The elements of both lists, ascending, each with whether it is taken from the other list and its place there.
+fn joined<T: Copy + Ord>(own: &[T], other: &[T]) -> Vec<(T, bool, usize)> {
+    let lacks = |e: &T| own.binary_search(e).is_err();
+    let own_places = own.iter().enumerate().map(|(i, e)| (*e, false, i));
+    let others = other.iter().enumerate().filter(|(_, e)| lacks(e));
+    let mut all: Vec<(T, bool, usize)> = own_places
+        .chain(others.map(|(i, e)| (*e, true, i)))
+        .collect();
+    all.sort_by_key(|o| o.0);
+    all
+}
+
+fn picked<T, V: Clone>(order: &[(T, bool, usize)], own: &[V], other: &[V]) -> Vec<V> {
+    let list = |of_other: bool| if of_other { other } else { own };
+    let value = |o: &(T, bool, usize)| list(o.1).get(o.2).cloned();
+    order.iter().filter_map(value).collect()
 }

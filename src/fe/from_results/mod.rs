@@ -3,18 +3,23 @@
 //! - [`shells`] fibre, curvature and corner rows, strain from stress where a file has no strain;
 //! - [`beams`] the three forms of bar and beam rows;
 //! - [`displacement`] from displacement frames to basic;
+//! - [`repeated`](repeated()) subcases that are there more than once;
 //! - [`tally`] what was met and could not be used, told once each.
 
 mod beams;
+mod blocks;
 mod displacement;
 mod ids;
 mod merge;
 mod read;
+mod repeated;
 mod shells;
 mod surface_z;
 mod tally;
 
+pub use merge::complete;
 pub use read::{Displacements, ReadOptions, solution_from_file, solution_from_results};
+pub use repeated::{HOLD_ONCE, Repeated, repeated};
 pub use surface_z::surface_z;
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! Reading files into solutions.
 
 use super::beams::BeamCollector;
+use super::blocks::{is_bar, is_shell_or_bar};
 use super::displacement::to_basic;
 use super::merge::merge;
+use super::repeated::repeated;
 use super::shells::ShellCollector;
 use super::tally::{Met, Tally};
 use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
@@ -38,19 +40,22 @@ pub struct ReadOptions {
 
 /// The static subcases of several files as one solution, subcases ascending.
 ///
-/// A subcase found in two files is one case where each has what the other lacks (strain in one, displacements in the other); where both
-/// have the same quantity there are two cases and a finding.
+/// A subcase found in two files is one case where each has what the other lacks (strain in one, displacements in the other, other elements)
+/// or both have the same values; where values differ there are two cases and a finding.
 pub fn solution_from_results(
     model: &Model,
     files: &[(&str, &ResultsFile)],
     options: &ReadOptions,
 ) -> Solution {
-    merge(
-        files
-            .iter()
-            .map(|(name, file)| solution_from_file(model, name, file, options))
-            .collect(),
-    )
+    let solutions = files.iter();
+    let solutions = solutions.map(|(name, file)| solution_from_file(model, name, file, options));
+    let solutions: Vec<Solution> = solutions.collect();
+    let (names, files): (Vec<&str>, Vec<&ResultsFile>) = files.iter().copied().unzip();
+    let mut found = repeated(&files, options.subcases.as_ref());
+    found.retain(|r| r.is_of_strain());
+    let mut all = merge(solutions, &found);
+    all.findings.extend(found.iter().map(|r| r.finding(&names)));
+    all
 }
 
 /// The static subcases of one result file, subcases ascending; other analyses are named in a finding.
@@ -252,17 +257,6 @@ fn label(block: &Block) -> String {
         .find(|t| !t.is_empty())
         .cloned()
         .unwrap_or_default()
-}
-
-fn is_bar(block: &Block) -> bool {
-    block.element.is_some_and(|e| matches!(e.0, 2 | 34 | 100))
-}
-
-fn is_shell_or_bar(block: &Block) -> bool {
-    is_bar(block)
-        || block
-            .element
-            .is_some_and(|e| matches!(e.0, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228))
 }
 
 /// Laminates with ply rows only.

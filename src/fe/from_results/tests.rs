@@ -34,7 +34,12 @@ fn model() -> Model {
 }
 
 /// A punch block: header, then entries of an id and reals.
-fn block(subcase: u32, quantity: &str, element: &str, entries: &[(&str, Vec<f64>)]) -> String {
+pub(super) fn block(
+    subcase: u32,
+    quantity: &str,
+    element: &str,
+    entries: &[(&str, Vec<f64>)],
+) -> String {
     let mut text = format!(
         "$TITLE   = T\n$SUBTITLE=\n$LABEL   = PULL\n${quantity}\n$REAL OUTPUT\n$SUBCASE ID = {subcase}\n"
     );
@@ -52,7 +57,7 @@ fn block(subcase: u32, quantity: &str, element: &str, entries: &[(&str, Vec<f64>
 }
 
 /// Two fibres of fibre distance and three components; the other words are zero.
-fn shell(z: [f64; 2], a: [f64; 3], b: [f64; 3]) -> Vec<f64> {
+pub(super) fn shell(z: [f64; 2], a: [f64; 3], b: [f64; 3]) -> Vec<f64> {
     [
         [z[0], a[0], a[1], a[2], 0.0, 0.0, 0.0, 0.0],
         [z[1], b[0], b[1], b[2], 0.0, 0.0, 0.0, 0.0],
@@ -282,9 +287,50 @@ fn strain_of_one_file_and_displacements_of_another_make_one_case() {
     let both = solution_from_results(&model(), &[("a", &a), ("b", &b)], &ReadOptions::default());
     assert_eq!(both.cases.len(), 1);
     assert!(!both.cases[0].shells.elements.is_empty() && !both.cases[0].displacement.is_empty());
+    // Equal values are one case.
     let twice = solution_from_results(&model(), &[("a", &a), ("a2", &a)], &ReadOptions::default());
-    assert_eq!(twice.cases.len(), 2);
-    assert!(codes(&twice).contains(&"subcase-in-two-files"));
+    assert_eq!(twice.cases.len(), 1);
+    assert!(!codes(&twice).contains(&"subcase-ambiguous"));
+}
+
+#[test]
+fn elements_that_are_spread_over_two_files_are_one_case_and_other_values_are_two() {
+    let strain = |element: &str, id: &str, exx: f64| {
+        let rows = shell([-0.2, 0.2], [exx; 3], [exx; 3]);
+        block(1, "ELEMENT STRAINS", element, &[(id, rows)])
+    };
+    let quad = |exx| strain("33 QUAD4", "        11", exx);
+    let texts = [
+        quad(1e-4),
+        strain("74 TRIA3", "        12", 2e-4),
+        quad(9e-4),
+    ];
+    let files = texts.each_ref();
+    let files = files.map(|t| ResultsFile::read(t.as_bytes(), "").unwrap());
+    let of = |list: &[usize]| {
+        let named: Vec<_> = list
+            .iter()
+            .map(|i| (["a", "b", "c"][*i], &files[*i]))
+            .collect();
+        solution_from_results(&model(), &named, &ReadOptions::default())
+    };
+    let spread = of(&[1, 0]);
+    assert_eq!(spread.cases.len(), 1);
+    let shells = &spread.cases[0].shells;
+    assert!(shells.elements.is_sorted() && shells.elements.len() == 2);
+    close(shells.centre[0][0], [1e-4; 3]);
+    close(shells.centre[1][0], [2e-4; 3]);
+    assert!(!codes(&spread).contains(&"subcase-ambiguous"));
+    let two = of(&[0, 2]);
+    assert_eq!(two.cases.len(), 2);
+    let finding = two.findings.iter().find(|f| f.code == "subcase-ambiguous");
+    let finding = finding.unwrap();
+    assert_eq!(finding.subject, "a, c");
+    assert!(
+        finding
+            .message
+            .starts_with("subcase 1 is in `a` and in `c` with different strain")
+    );
 }
 
 #[test]

@@ -34,6 +34,7 @@ fn the_decks_own_set_holds_unless_the_job_says_free_or_names_another() {
         Ok(Support {
             spc: Some(set),
             relief: Relief::None,
+            by_springs: 0,
         })
     };
     assert_eq!(support_of(&model(&[1]), SupportChoice::Deck), held(1));

@@ -37,6 +37,8 @@ pub enum RigidKind {
         arms: Vec<(f64, Dofs, GridIx)>,
         /// UM: dofs made dependent instead of REFC; empty: REFC is dependent.
         um: Vec<(GridIx, Dofs)>,
+        /// Thermal expansion coefficient.
+        alpha: f64,
     },
     /// RSPLINE, RIGID on a PBUSH, piercing grids of CWELD and CFAST: equations between dofs.
     Equations {
@@ -67,6 +69,14 @@ impl RigidKind {
                 card: "RSPLINE", ..
             } => "G",
             Self::Equations { .. } => "GA",
+        }
+    }
+
+    /// Returns the thermal expansion coefficient, 0 if the card has none.
+    pub fn alpha(&self) -> f64 {
+        match self {
+            Self::Body { alpha, .. } | Self::Mean { alpha, .. } => *alpha,
+            Self::Equations { .. } => 0.0,
         }
     }
 

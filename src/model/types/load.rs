@@ -95,7 +95,14 @@ pub enum Load {
     },
     /// Acceleration field of GRAV.
     Gravity(Vec3),
-    /// Centrifugal forces of RFORCE.
+    /// Acceleration of single grids (ACCEL1), or of all by their location (ACCEL).
+    Acceleration {
+        /// The acceleration that the factors multiply.
+        a: Vec3,
+        /// Grids and their factors.
+        grids: Vec<(GridIx, f64)>,
+    },
+    /// Centrifugal forces of RFORCE and RFORCE1.
     Spin {
         /// A point on the axis.
         centre: Vec3,

@@ -191,3 +191,27 @@ pub struct PointMass {
     /// Where it stands.
     pub at: Place,
 }
+
+/// CMASS1 to CMASS4: kinetic energy `mass (a - b)^2 / 2` for velocities a and b of its ends, before WTMASS.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScalarMass {
+    /// Element id.
+    pub id: u32,
+    /// Mass, or moment of inertia of a rotation.
+    pub mass: f64,
+    /// Grid and dof (0-based, displacement frame of the grid); `None` ground.
+    pub ends: [Option<(GridIx, u8)>; 2],
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// SNORM: the normal that shells share at a grid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GridNormal {
+    /// Grid.
+    pub grid: GridIx,
+    /// Unit vector, basic frame; its sign does not matter.
+    pub n: Vec3,
+    /// Where it stands.
+    pub at: Place,
+}

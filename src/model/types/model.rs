@@ -4,7 +4,10 @@ use super::constraint::{MpcSet, Rigid, SpcSet};
 use super::index::GridIx;
 use super::joint::Joint;
 use super::load::{LoadSet, TemperatureSet};
-use super::mesh::{Beam, Bush, Frame, Grid, PointMass, Rod, ShearPanel, Shell, Solid, Spring};
+use super::mesh::{
+    Beam, Bush, Frame, Grid, GridNormal, PointMass, Rod, ScalarMass, ShearPanel, Shell, Solid,
+    Spring,
+};
 use super::params::Params;
 use super::property::{BeamProperty, Material, ShellProperty, SolidProperty};
 use super::unsupported_card::UnsupportedCard;
@@ -19,7 +22,8 @@ pub struct Model {
     pub frames: Vec<Frame>,
     /// Shells by ascending id.
     pub shells: Vec<Shell>,
-    /// Shell properties by ascending id.
+    /// Shell properties by ascending id. Elements that need a property of their own (their temperature, NSM of ELEMENT) have a copy with
+    /// the id of the original behind all others; likewise of beams, solids and materials.
     pub shell_properties: Vec<ShellProperty>,
     /// CBAR and CBEAM by ascending id.
     pub beams: Vec<Beam>,
@@ -43,6 +47,10 @@ pub struct Model {
     pub materials: Vec<Material>,
     /// CONM1, CONM2.
     pub masses: Vec<PointMass>,
+    /// CMASS1 to CMASS4, ascending id.
+    pub scalar_masses: Vec<ScalarMass>,
+    /// SNORM, ascending grid.
+    pub normals: Vec<GridNormal>,
     /// RBE1, RBE2, RBE3, RBAR, RSPLINE; what stands for rigid components of bushes and for grids that pierce a connector's patch.
     pub rigids: Vec<Rigid>,
     /// MPC sets.
@@ -59,6 +67,8 @@ pub struct Model {
     pub load_sets: Vec<LoadSet>,
     /// Temperature sets by id: default, grid values.
     pub temperatures: Vec<TemperatureSet>,
+    /// Temperature set that materials with MATT1 are taken at; `None`: they have the values of MAT1.
+    pub material_temperature: Option<u32>,
     /// Cards of the deck that change stiffness, mass, constraints or loads and have no place above: a solver must refuse them.
     pub unsupported_cards: Vec<UnsupportedCard>,
     /// Parameters that change what the model means.

@@ -21,6 +21,8 @@ pub struct Params {
     pub post: Option<i64>,
     /// OMID yes: element output in the material frame.
     pub omid: bool,
+    /// Whether case control lets rigid elements expand with temperature (RIGID = LAGRAN or LGELIM).
+    pub expanding_rigids: bool,
     /// UNITSYS as written.
     pub unitsys: Option<String>,
 }
@@ -37,6 +39,7 @@ impl Default for Params {
             coupmass: false,
             post: None,
             omid: false,
+            expanding_rigids: false,
             unitsys: None,
         }
     }

@@ -22,7 +22,9 @@ impl Report for Outcome<Checked> {
         let mut text = String::new();
         let decks = self.decks.iter().map(|d| d.text());
         let results = self.results.iter().map(|r| r.text());
-        for line in self.jobs.iter().cloned().chain(decks).chain(results) {
+        let records = self.records.iter().map(|r| r.text());
+        let jobs = self.jobs.iter().cloned();
+        for line in jobs.chain(decks).chain(results).chain(records) {
             text.push_str(&line);
             text.push('\n');
         }
@@ -52,5 +54,7 @@ fn page(found: &Outcome<Checked>) -> Page {
     }
     let results = found.results.iter();
     sections.extend(results.map(|r| said("Results", r.text())));
+    let records = found.records.iter();
+    sections.extend(records.map(|r| said("Record", r.text())));
     Page::new("Check", "What is in the files", &found.findings, sections)
 }

@@ -87,6 +87,7 @@ mod tests {
                 placeable: true,
                 text: format!("{open}\n{}\n", rows.join("\n")),
                 path: "job.toml".into(),
+                zones: Default::default(),
             },
         };
         let html = piece(&outcome);

@@ -32,11 +32,12 @@ impl Report for Outcome<Placed> {
         let (s, model, job) = (&self.sensitivity, self.fields.model(), &self.job);
         let length = job.units.unit(crate::units::Quantity::Length).name;
         out.declare("gauges.csv", GAUGES.map(|(c, u)| (c, unit(u, length))));
-        out.write("gauges.csv", |w| gauges_csv(w, &self.gauges))?;
+        let grid_length = job.candidates.grid_length;
+        out.write("gauges.csv", |w| gauges_csv(w, &self.gauges, grid_length))?;
         out.declare("sensitivity.csv", super::sensitivity::columns(job, s));
         out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
         out.write("gluing_sheet.csv", |w| {
-            gluing_sheet_csv(w, &self.gauges, model)
+            gluing_sheet_csv(w, &self.gauges, model, grid_length)
         })?;
         declare_written(out, "gluing_sheet.csv", |c| {
             let stated = GLUING.iter().find(|g| g.0 == c).map_or("", |g| g.1);
@@ -142,7 +143,7 @@ impl Report for Outcome<Placed> {
 }
 
 /// Columns of gauges.csv; `L` stands for the job's length.
-const GAUGES: [(&str, &str); 15] = [
+const GAUGES: [(&str, &str); 16] = [
     ("name", ""),
     ("element", ""),
     ("surface", ""),
@@ -158,10 +159,11 @@ const GAUGES: [(&str, &str); 15] = [
     ("angle_seen_deg", "deg"),
     ("leverage", ""),
     ("role", ""),
+    ("grid_length", "L"),
 ];
 
 /// Columns of gluing_sheet.csv with a unit.
-const GLUING: [(&str, &str); 10] = [
+const GLUING: [(&str, &str); 11] = [
     ("x", "L"),
     ("y", "L"),
     ("z", "L"),
@@ -172,6 +174,7 @@ const GLUING: [(&str, &str); 10] = [
     ("corner_distances", "L"),
     ("angle_budget_deg", "deg"),
     ("position_budget", "L"),
+    ("grid_length", "L"),
 ];
 
 fn unit<'a>(word: &'a str, length: &'a str) -> &'a str {

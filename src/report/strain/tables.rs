@@ -28,21 +28,21 @@ pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
     Ok(())
 }
 
-/// Gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0.
+/// Writes gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0. All have the grid length of the candidates.
 ///
 /// # Errors
 /// What `out` says.
-pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge]) -> io::Result<()> {
+pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge], grid_length: f64) -> io::Result<()> {
     writeln!(
         out,
-        "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,angle_from_element_x_deg,angle_seen_deg,leverage,role"
+        "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,angle_from_element_x_deg,angle_seen_deg,leverage,role,grid_length"
     )?;
     for p in placed {
         let g = &p.gauge;
         let (d, x) = (g.direction, g.position);
         writeln!(
             out,
-            "{},{},{},{},{},{},0,{},{},{},{},{:.4},{:.4},{:.6},{}",
+            "{},{},{},{},{},{},0,{},{},{},{},{:.4},{:.4},{:.6},{},{grid_length}",
             csv_cell(&g.name),
             g.element,
             g.surface.word(),
@@ -79,7 +79,7 @@ pub(in crate::report) fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32,
         .collect()
 }
 
-/// What the technician takes to the structure, as CSV.
+/// What the technician takes to the structure, as CSV. The axis has all digits: a job that names this table as its gauges reads the same S.
 ///
 /// # Errors
 /// What `out` says.
@@ -87,10 +87,11 @@ pub fn gluing_sheet_csv(
     out: &mut dyn Write,
     placed: &[PlacedGauge],
     model: &Model,
+    grid_length: f64,
 ) -> io::Result<()> {
     write!(
         out,
-        "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances,bridge,role,angle_budget_deg,position_budget"
+        "name,element,side,x,y,z,from_grid,dx,dy,dz,axis_x,axis_y,axis_z,outward_x,outward_y,outward_z,angle_seen_deg,expected_microstrain,corner_grids,corner_distances,bridge,role,angle_budget_deg,position_budget,grid_length"
     )?;
     for StrainOfLoad { name: load, .. } in placed.first().map_or(&[][..], |p| &p.strain_by_load) {
         write!(out, ",{}", csv_cell(&format!("range_{load}_microstrain")))?;
@@ -119,7 +120,7 @@ pub fn gluing_sheet_csv(
         let budget = |b: Option<f64>| b.map_or(String::new(), |v| format!("{v:.2}"));
         write!(
             out,
-            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{:.5},{:.5},{:.5},{:.5},{:.5},{:.5},{:.1},{:.1},{},{},{},{},{},{}",
+            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{},{},{},{:.5},{:.5},{:.5},{:.1},{:.1},{},{},{},{},{},{},{grid_length}",
             csv_cell(&g.name),
             g.element,
             g.surface.word(),

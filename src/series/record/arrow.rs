@@ -192,11 +192,7 @@ mod tests {
             column.close().unwrap();
             group.close().unwrap();
             file.close().unwrap();
-            let options = Options {
-                declared_hz: None,
-                wanted: Vec::new(),
-            };
-            let record = open_record(Arc::new(bytes), &options).unwrap();
+            let record = open_record(Arc::new(bytes), &Options::default()).unwrap();
             assert!(record.is_time_unit_stated());
             let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();
             assert_eq!(names, ["G0"]);

@@ -2,6 +2,7 @@
 
 use super::reader::{Pick, RecordReader, Times};
 use super::span::{EVEN, Gap, LISTED, Scale, Span, Stretch, Walk, Wrong, span, typical_steps};
+use super::time_unit::TimeUnit;
 use crate::series::error::SeriesError;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
@@ -11,8 +12,6 @@ const RATE: f64 = 1e-3;
 /// Samples that gaps may add, for each sample there is, and beyond that as many as an hour at 1 kHz has. More is a wrong time.
 const MOST_ADDED: f64 = 100.0;
 const ALWAYS_ALLOWED: f64 = 3.6e6;
-/// Rows of whole numbers of seconds, unit unstated, from which on they are taken for milliseconds or counts.
-const TELLING: usize = 100;
 
 /// Whether samples stand where they were stored.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,11 +37,11 @@ pub struct RateChange {
 }
 
 impl RateChange {
-    /// When, and from what to what, in words; `second` is one of the times' unit, s.
-    pub fn words(&self, second: f64) -> String {
+    /// When, and from what to what, in words.
+    pub fn words(&self) -> String {
         let rounded = |x: f64, parts: f64| (x * parts).round() / parts;
-        let [from, to] = self.rates_hz.map(|r| rounded(r / second, 1e4));
-        let at = rounded(self.at_s * second, 1e6);
+        let [from, to] = self.rates_hz.map(|r| rounded(r, 1e4));
+        let at = rounded(self.at_s, 1e6);
         format!("the sample rate changes at {at} s, from {from} Hz to {to} Hz")
     }
 
@@ -85,8 +84,8 @@ pub struct Clock {
     pub n_gaps: usize,
     /// Absolute time of the first sample, s since 1970, where the file has it.
     pub epoch_s: Option<f64>,
-    /// Times are whole numbers of an unstated unit, one or more apart: they may be milliseconds, or counts.
-    pub doubtful_unit: bool,
+    /// What the stored times count, where the file does not state it and their size shows it.
+    pub unit: Option<TimeUnit>,
 }
 
 impl Clock {
@@ -153,11 +152,10 @@ pub(super) fn clock_of(
         Times::Stored {
             rounding_s,
             epoch_s,
-            unit_stated,
+            ..
         } => {
             let (mut clock, steps) = stored(reader, rounding_s, declared_hz)?;
             clock.epoch_s = epoch_s;
-            clock.doubtful_unit &= !unit_stated && epoch_s.is_none();
             Ok((clock, Some(steps)))
         }
     }
@@ -199,7 +197,7 @@ fn even(start_s: f64, rate_hz: f64, samples: usize) -> Result<Clock, SeriesError
         gaps: Vec::new(),
         n_gaps: 0,
         epoch_s: None,
-        doubtful_unit: false,
+        unit: None,
     })
 }
 
@@ -294,7 +292,6 @@ fn together(spans: &[Span], scale: Scale, declared_hz: Option<f64>) -> Result<Cl
     let mut all = Walk::new(scale);
     let (mut gaps, mut n_gaps, mut missing): (Vec<Gap>, usize, f64) = (Vec::new(), 0, 0.0);
     let (mut rows, mut sum, mut number, mut largest) = (0, 0.0, 0, (0.0_f64, 0));
-    let mut whole = true;
     let mut last: Option<f64> = None;
     for s in spans.iter().filter(|s| s.rows > 0) {
         if let Some(last) = last {
@@ -313,7 +310,6 @@ fn together(spans: &[Span], scale: Scale, declared_hz: Option<f64>) -> Result<Cl
         if s.largest.0 > largest.0 {
             largest = (s.largest.0, s.largest.1 + rows);
         }
-        whole &= s.whole_numbers;
         rows += s.rows;
         last = Some(s.last);
     }
@@ -361,7 +357,6 @@ fn together(spans: &[Span], scale: Scale, declared_hz: Option<f64>) -> Result<Cl
         gaps,
         n_gaps,
         evenness,
-        doubtful_unit: whole && typical >= 1.0 && rows >= TELLING,
         ..even(start, rate_hz, samples)?
     })
 }

@@ -46,7 +46,7 @@ const OTHER_UNITS: &[&str] = &[
 impl Header {
     /// A header of a table, split at its last bracket: `SG1 (left) (um/m)` is `SG1 (left)` and `um/m`.
     fn of(header: &str) -> Self {
-        let whole = header.trim().trim_matches('"').trim();
+        let whole = unquoted(header.trim());
         for (open, close) in [('[', ']'), ('(', ')')] {
             if let Some(body) = whole.strip_suffix(close)
                 && let Some((name, bracket)) = split_at_bracket(body, open, close)
@@ -83,6 +83,12 @@ impl Header {
     pub fn is_like(&self, other: &Self) -> bool {
         self.name == other.name && self.bracket == other.bracket
     }
+}
+
+/// Returns a header without the quotation marks around all of it; one at its beginning alone is part of the name.
+fn unquoted(header: &str) -> &str {
+    let inside = header.strip_prefix('"').and_then(|h| h.strip_suffix('"'));
+    inside.map_or(header, str::trim)
 }
 
 /// Name and unit of a header such as `P01 [um/m]` or `a_body (m/s2)`; the last bracket is the unit's: `SG1 (left) (um/m)`.
@@ -250,6 +256,7 @@ pub fn seconds_in(unit: &str) -> Option<f64> {
         "ns" | "nanoseconds" => Some(1e-9),
         "min" | "minutes" => Some(60.0),
         "h" | "hours" => Some(3600.0),
+        "d" | "day" | "days" => Some(86_400.0),
         _ => None,
     }
 }

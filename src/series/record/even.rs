@@ -3,6 +3,7 @@
 use super::clock::{Clock, Evenness, Steps, clock_of, counts};
 use super::column::Column;
 use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
+use super::timed::timed;
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 
@@ -25,7 +26,8 @@ enum Extent {
 }
 
 impl Record {
-    /// The record of a reader after a pass over its times.
+    /// The record of a reader after a pass over its times. Its rate, Hz, and the seconds in one of its times are those stated elsewhere: the
+    /// second counts where the file states no unit of time.
     ///
     /// # Errors
     /// No samples, no rate, a rate other than the declared one, times that are missing or do not ascend, a hole longer than the
@@ -33,8 +35,11 @@ impl Record {
     pub fn new(
         reader: Box<dyn RecordReader>,
         declared_hz: Option<f64>,
+        time_unit_s: Option<f64>,
     ) -> Result<Self, SeriesError> {
-        let (clock, steps) = clock_of(&*reader, declared_hz)?;
+        let (reader, unit) = timed(reader, time_unit_s)?;
+        let (mut clock, steps) = clock_of(&*reader, declared_hz)?;
+        clock.unit = unit;
         let starts = match &steps {
             Some(steps) => starts_of_times(&clock, steps),
             None => {

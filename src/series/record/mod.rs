@@ -19,6 +19,8 @@ mod pages;
 mod parquet;
 #[cfg(feature = "parquet")]
 mod parquet_bytes;
+#[cfg(feature = "parquet")]
+mod parquet_runs;
 mod reader;
 #[cfg(feature = "parquet")]
 mod rows;
@@ -30,16 +32,22 @@ mod strip;
 mod tdms;
 #[cfg(any(feature = "parquet", feature = "mdf"))]
 mod tile;
+mod time_unit;
+mod timed;
+mod together;
 mod uff;
 mod whole;
 
 pub use clock::{Clock, Evenness, RateChange};
 pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
-pub use open::{Options, is_format, open_record, open_source, read_channels};
+pub use open::{Format, Options, format_of, is_format, open_record, open_source, read_channels};
+#[cfg(feature = "parquet")]
+pub use parquet_runs::runs_of_parquet;
 pub use reader::{Block, Bytes, Pick, RecordReader, Sink, Times};
 pub use source::{Parts, Source, is_read_in_parts};
 pub use span::{EVEN, Gap};
+pub use time_unit::{TimeUnit, USUAL_RATES_HZ, is_usual};
 pub use whole::Whole;
 
 #[cfg(test)]

@@ -18,6 +18,8 @@ use std::ops::ControlFlow;
 pub struct Options {
     /// Its sample rate as stated elsewhere, Hz: needed where the file has no times, else held against them.
     pub declared_hz: Option<f64>,
+    /// Seconds in one of its times, where the file states no unit of them.
+    pub time_unit_s: Option<f64>,
     /// Channels that must be among those sampled together, where a file holds several clocks; none: those of the group with most
     /// numbers.
     pub wanted: Vec<String>,
@@ -29,7 +31,7 @@ pub struct Options {
 /// A format that this build leaves out, a file that can't be read, times that can't be (see [`Record::new`]).
 pub fn open_record(bytes: Bytes, options: &Options) -> Result<Record, SeriesError> {
     let reader = reader_of(bytes, options)?;
-    Record::new(reader, options.declared_hz)
+    Record::new(reader, options.declared_hz, options.time_unit_s)
 }
 
 /// As [`open_record`], of bytes that need not be in memory: of a file that is [read in parts](is_read_in_parts) what is decoded alone is read.
@@ -49,44 +51,90 @@ pub fn open_source(source: Source, options: &Options) -> Result<Record, SeriesEr
         let begin = begin.get_mut(..known).unwrap_or_default();
         file.read_at(0, begin).map_err(unreadable)?;
         if is_read_in_parts(begin) {
-            return Record::new(parquet(source)?, options.declared_hz);
+            return Record::new(parquet(source)?, options.declared_hz, options.time_unit_s);
         }
     }
     open_record(source.whole().map_err(unreadable)?, options)
 }
 
+/// A format of records other than tables of text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// The binary record of strainbridge.
+    Binary,
+    /// RPC III.
+    Rpc,
+    /// Apache Parquet.
+    Parquet,
+    /// ASAM MDF 4.
+    Mdf,
+    /// TDMS of National Instruments.
+    Tdms,
+    /// Universal file, data sets 58.
+    Uff,
+}
+
+impl Format {
+    /// Returns its name with an article, for messages.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Binary => "a binary record of strainbridge",
+            Self::Rpc => "a record in RPC III form",
+            Self::Parquet => "a Parquet file",
+            Self::Mdf => "a record in MDF form",
+            Self::Tdms => "a record in TDMS form",
+            Self::Uff => "a universal file (UFF)",
+        }
+    }
+
+    /// Returns its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Binary => "binary record",
+            Self::Rpc => "RPC III",
+            Self::Parquet => "Parquet",
+            Self::Mdf => "MDF4",
+            Self::Tdms => "TDMS",
+            Self::Uff => "UFF 58",
+        }
+    }
+}
+
+/// Returns the format that the bytes begin as; `None` where they are no record or a table of text.
+pub fn format_of(bytes: &[u8]) -> Option<Format> {
+    if binary::is_record(bytes) {
+        return Some(Format::Binary);
+    }
+    if rpc::is_rpc(bytes) {
+        return Some(Format::Rpc);
+    }
+    if bytes.starts_with(b"PAR1") {
+        return Some(Format::Parquet);
+    }
+    if bytes.starts_with(b"MDF ") || bytes.starts_with(b"UnFinMF") {
+        return Some(Format::Mdf);
+    }
+    if is_tdms(bytes) {
+        return Some(Format::Tdms);
+    }
+    is_uff(bytes).then_some(Format::Uff)
+}
+
 /// Whether the bytes begin as one of the formats of records, and are no table of text.
 pub fn is_format(bytes: &[u8]) -> bool {
-    binary::is_record(bytes)
-        || rpc::is_rpc(bytes)
-        || is_tdms(bytes)
-        || is_uff(bytes)
-        || [&b"PAR1"[..], b"MDF ", b"UnFinMF"]
-            .iter()
-            .any(|m| bytes.starts_with(m))
+    format_of(bytes).is_some()
 }
 
 fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, SeriesError> {
-    let begin = (*bytes).as_ref();
-    if binary::is_record(begin) {
-        return Ok(Box::new(Stored::binary(bytes)?));
-    }
-    if rpc::is_rpc(begin) {
-        return Ok(Box::new(Stored::rpc(bytes)?));
-    }
-    if begin.starts_with(b"PAR1") {
-        return parquet(Source::Memory(bytes));
-    }
-    if begin.starts_with(b"MDF ") || begin.starts_with(b"UnFinMF") {
-        return mdf(bytes, &options.wanted);
-    }
-    if is_tdms(begin) {
-        return Ok(Box::new(Tdms::new(bytes, &options.wanted)?));
-    }
-    if is_uff(begin) {
-        return Ok(Box::new(Uff::new(bytes, &options.wanted)?));
-    }
-    Ok(Box::new(Csv::new(bytes)?))
+    Ok(match format_of((*bytes).as_ref()) {
+        Some(Format::Binary) => Box::new(Stored::binary(bytes)?),
+        Some(Format::Rpc) => Box::new(Stored::rpc(bytes)?),
+        Some(Format::Parquet) => return parquet(Source::Memory(bytes)),
+        Some(Format::Mdf) => return mdf(bytes, &options.wanted),
+        Some(Format::Tdms) => Box::new(Tdms::new(bytes, &options.wanted)?),
+        Some(Format::Uff) => Box::new(Uff::new(bytes, &options.wanted)?),
+        None => Box::new(Csv::new(bytes)?),
+    })
 }
 
 #[cfg(feature = "parquet")]

@@ -12,6 +12,8 @@ pub(super) struct Pages<P> {
     level_bits: usize,
     /// Bytes of a value.
     width: usize,
+    /// Whether values are texts, each with its length before it.
+    is_text: bool,
     /// Whether the dictionary has come.
     has_dictionary: bool,
 }
@@ -29,8 +31,11 @@ impl<P: PageReader> Pages<P> {
             level_bits: (u16::BITS - levels.leading_zeros()) as usize,
             width: match column.physical_type() {
                 Kind::INT64 | Kind::DOUBLE => 8,
+                // Reals of 16 bits.
+                Kind::FIXED_LEN_BYTE_ARRAY => 2,
                 _ => 4,
             },
+            is_text: column.physical_type() == Kind::BYTE_ARRAY,
             has_dictionary: false,
         }
     }
@@ -52,10 +57,25 @@ impl<P: PageReader> Pages<P> {
             .ok_or_else(|| damaged("a page ends within its levels"))
     }
 
+    /// Refuses texts that do not end within their page.
+    fn check_texts(&self, mut bytes: &[u8]) -> Result<()> {
+        while let Some((length, rest)) = bytes.split_first_chunk().filter(|_| self.is_text) {
+            let length = u32::from_le_bytes(*length) as usize;
+            bytes = rest
+                .get(length..)
+                .ok_or_else(|| damaged("a text ends beyond its page"))?;
+        }
+        match self.is_text && !bytes.is_empty() {
+            true => Err(damaged("a page ends within a text")),
+            false => Ok(()),
+        }
+    }
+
     /// The page, or why it can't be decoded.
     fn checked(&mut self, page: Page) -> Result<Page> {
         let (values_at, encoding) = match &page {
-            Page::DictionaryPage { .. } => {
+            Page::DictionaryPage { buf, .. } => {
+                self.check_texts(buf)?;
                 self.has_dictionary = true;
                 return Ok(page);
             }
@@ -84,6 +104,11 @@ impl<P: PageReader> Pages<P> {
                 (at, *encoding)
             }
         };
+        if let (Page::DataPage { buf, .. } | Page::DataPageV2 { buf, .. }, Encoding::PLAIN) =
+            (&page, encoding)
+        {
+            self.check_texts(buf.get(values_at..).unwrap_or_default())?;
+        }
         match encoding {
             Encoding::RLE_DICTIONARY | Encoding::PLAIN_DICTIONARY if !self.has_dictionary => {
                 Err(damaged("a page of a dictionary, and no dictionary"))

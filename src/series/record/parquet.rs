@@ -7,7 +7,7 @@ use super::parquet_bytes::Whole;
 use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
 use super::rows::{Shared, Strips};
 use super::source::Source;
-use super::strip::{Strip, broken};
+use super::strip::{Strip, broken, texts};
 use super::tile::Tile;
 use crate::series::error::SeriesError;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
@@ -212,6 +212,33 @@ impl Parquet {
         Ok(())
     }
 
+    /// Returns the texts of the column of this name, a row each, blank for a null; `None` where no column of text has it.
+    ///
+    /// # Errors
+    /// Pages that can't be decoded, or too few of them.
+    pub(super) fn texts(&self, name: &str) -> Result<Option<Vec<String>>, SeriesError> {
+        let schema = self.metadata.file_metadata().schema_descr();
+        let is_it = |c: &ColumnDescPtr| {
+            c.name() == name && c.max_rep_level() == 0 && c.physical_type() == Kind::BYTE_ARRAY
+        };
+        let Some(leaf) = schema.columns().iter().position(is_it) else {
+            return Ok(None);
+        };
+        let most = self.descriptor(leaf).max_def_level();
+        let mut out = Vec::new();
+        for (g, group) in self.metadata.row_groups().iter().enumerate() {
+            let end = out.len() + usize::try_from(group.num_rows()).unwrap_or(0);
+            if let ColumnReader::ByteArrayColumnReader(mut reader) = self.column(g, leaf, 0)? {
+                texts(&mut reader, most, end, &mut out)?;
+            }
+            if out.len() != end {
+                let wrong = "a column ends before its row group";
+                return Err(broken(ParquetError::EOF(wrong.into())));
+            }
+        }
+        Ok(Some(out))
+    }
+
     /// A reader of one column of a row group, its first `from` rows passed over.
     fn column(&self, group: usize, leaf: usize, from: usize) -> Result<ColumnReader, SeriesError> {
         let cut = || {
@@ -395,7 +422,8 @@ fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
             ConvertedType::TIMESTAMP_MICROS | ConvertedType::TIME_MICROS => Meaning::Instant(1e-6),
             _ => Meaning::Number(1.0),
         }),
-        (Kind::BOOLEAN | Kind::FLOAT | Kind::DOUBLE, _) => Some(Meaning::Number(1.0)),
+        (Kind::BOOLEAN | Kind::FLOAT | Kind::DOUBLE, _)
+        | (Kind::FIXED_LEN_BYTE_ARRAY, Some(LogicalType::Float16)) => Some(Meaning::Number(1.0)),
         _ => None,
     }
 }
@@ -407,6 +435,7 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
         ColumnReader::Int64ColumnReader(r) => r.skip_records(rows),
         ColumnReader::FloatColumnReader(r) => r.skip_records(rows),
         ColumnReader::DoubleColumnReader(r) => r.skip_records(rows),
+        ColumnReader::FixedLenByteArrayColumnReader(r) => r.skip_records(rows),
         _ => Ok(rows),
     };
     skipped.map(|_| ()).map_err(broken)

@@ -91,6 +91,10 @@ pub trait RecordReader: Send + Sync {
     fn left_out(&self) -> Option<usize> {
         None
     }
+    /// Whether its times are those of a day, which begin again at midnight.
+    fn are_times_of_day(&self) -> bool {
+        false
+    }
     /// Rows of a piece, where they are known without decoding it.
     fn rows(&self, _piece: usize) -> Option<usize> {
         None

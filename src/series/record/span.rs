@@ -120,8 +120,6 @@ pub(super) struct Span {
     pub steps: (f64, usize),
     /// Largest departure beyond rounding of a step, or of a gap from whole steps, s, and the rows before it.
     pub largest: (f64, usize),
-    /// Whether every time is a whole number.
-    pub whole_numbers: bool,
     /// The first stretch of another rate.
     pub stretch: Option<Stretch>,
     /// Shortest and longest step of other rates, s.
@@ -325,7 +323,6 @@ pub(super) fn span(
     let mut walk = Walk::new(scale.unwrap_or(Scale::endless()));
     let (mut rows, mut first, mut last) = (0, f64::NAN, f64::NAN);
     let mut wrong = None;
-    let mut whole_numbers = true;
     let read = reader.read(piece, &[Pick::Time], &mut |block| {
         for &t in block.values {
             if !t.is_finite() {
@@ -345,7 +342,6 @@ pub(super) fn span(
             } else if scale.is_some() {
                 walk.step(last, t, rows);
             }
-            whole_numbers &= t.fract() == 0.0;
             last = t;
             rows += 1;
         }
@@ -363,7 +359,6 @@ pub(super) fn span(
             missing: walk.missing,
             steps: walk.steps,
             largest: walk.largest,
-            whole_numbers,
             stretch: walk.stretch,
             others: walk.others,
         }),

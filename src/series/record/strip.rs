@@ -3,7 +3,7 @@
 use crate::series::error::SeriesError;
 use parquet::basic::SortOrder;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::DataType;
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, FixedLenByteArray};
 use parquet::errors::ParquetError;
 use parquet::schema::types::ColumnDescriptor;
 
@@ -17,6 +17,7 @@ pub(super) struct Buffers {
     bools: Vec<bool>,
     i32s: Vec<i32>,
     i64s: Vec<i64>,
+    halves: Vec<FixedLenByteArray>,
 }
 
 /// Decoded rows of one column: reals of 32 bits as they are, other numbers in 64.
@@ -69,6 +70,13 @@ impl Strip {
                 reals(r, most, rows, levels, &mut self.singles, f32::NAN)
             }
             ColumnReader::DoubleColumnReader(r) => reals(r, most, rows, levels, out, nan),
+            ColumnReader::FixedLenByteArrayColumnReader(r) => {
+                let of = |v: &FixedLenByteArray| {
+                    let bytes = v.data().first_chunk();
+                    bytes.map_or(nan, |b| of_half(u16::from_le_bytes(*b)))
+                };
+                numbers(r, most, rows, &mut b.halves, levels, out, nan, of)
+            }
             _ => Ok(()),
         }?;
         if self.singles.len().max(self.doubles.len()) == rows {
@@ -97,7 +105,7 @@ impl Strip {
 }
 
 /// Decodes `rows` rows of a column into `out`, or as many as there are; `blank` for a null.
-fn numbers<T: DataType, O: Copy>(
+fn numbers<T: DataType, O: Clone>(
     reader: &mut ColumnReaderImpl<T>,
     most: i16,
     rows: usize,
@@ -122,14 +130,35 @@ fn numbers<T: DataType, O: Copy>(
         } else {
             out.extend(levels.iter().map(|l| {
                 if *l == most {
-                    known.next().unwrap_or(blank)
+                    known.next().unwrap_or_else(|| blank.clone())
                 } else {
-                    blank
+                    blank.clone()
                 }
             }));
         }
     }
     Ok(())
+}
+
+/// Decodes texts into `out` up to number `end`, blank for a null.
+pub(super) fn texts(
+    reader: &mut ColumnReaderImpl<ByteArrayType>,
+    most: i16,
+    end: usize,
+    out: &mut Vec<String>,
+) -> Result<(), SeriesError> {
+    let (mut values, mut levels) = (Vec::new(), Vec::new());
+    let text = |v: &ByteArray| String::from_utf8_lossy(v.data()).into_owned();
+    numbers(
+        reader,
+        most,
+        end,
+        &mut values,
+        &mut levels,
+        out,
+        String::new(),
+        text,
+    )
 }
 
 /// [`numbers`] of a column of reals, decoded where they stay.
@@ -174,10 +203,46 @@ where
     Ok(())
 }
 
+/// The value of a real of 16 bits (IEEE 754: one bit of sign, five of exponent, ten of fraction).
+fn of_half(bits: u16) -> f64 {
+    let fraction = f64::from(bits & 0x3ff) / 1024.0;
+    let size = match i32::from(bits >> 10 & 0x1f) {
+        0 => fraction * 2_f64.powi(-14),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        exponent => (1.0 + fraction) * 2_f64.powi(exponent - 15),
+    };
+    match bits >> 15 {
+        0 => size,
+        _ => -size,
+    }
+}
+
 /// What is wrong with a file, and what to do.
 pub(super) fn broken(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
         wrong: format!("it can't be read as Parquet ({e})"),
         remedy: "write it again, columns of numbers and one `time` in seconds",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::of_half;
+
+    #[test]
+    fn reals_of_16_bits_are_those_of_the_standard() {
+        for (bits, value) in [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x3555, 0.333_251_953_125),
+            (0x7bff, 65_504.0),
+            (0x0001, 5.960_464_477_539_063e-8),
+            (0x7c00, f64::INFINITY),
+            (0x0000, 0.0),
+        ] {
+            assert_eq!(of_half(bits), value, "{bits:#x}");
+        }
+        assert!(of_half(0x7e00).is_nan());
     }
 }

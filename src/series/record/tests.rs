@@ -8,6 +8,7 @@ fn open(text: &str) -> Result<Record, SeriesError> {
     Record::new(
         Box::new(Csv::new(Arc::new(text.as_bytes().to_vec()))?),
         None,
+        None,
     )
 }
 
@@ -70,7 +71,7 @@ fn tables_as_loggers_write_them_are_one_record() {
         let shown = String::from_utf8_lossy(text);
         let reader = Csv::new(Arc::new(text.to_vec())).unwrap_or_else(|e| panic!("{e} in {shown}"));
         let record =
-            Record::new(Box::new(reader), None).unwrap_or_else(|e| panic!("{e} in {shown}"));
+            Record::new(Box::new(reader), None, None).unwrap_or_else(|e| panic!("{e} in {shown}"));
         let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();
         assert_eq!(names, ["P01", "P02"], "{shown}");
         assert!(
@@ -212,8 +213,8 @@ fn faults_of_a_table_name_their_line() {
             "{text}"
         );
     }
-    // Time of day alone doesn't tell the next day; day and month that could be exchanged; line ends of old Macintosh programs.
-    assert_eq!(line("time,a\n23:59:59,1\n00:00:00,1\n00:00:01,1\n"), 3);
+    // A time of day that goes back by less than midnight; day and month that could be exchanged; line ends of old Macintosh programs.
+    assert_eq!(line("time,a\n13:59:59,1\n13:00:00,1\n13:00:01,1\n"), 3);
     assert_eq!(
         line("time,a\n5/1/2026 1:00:00 PM,1\n5/1/2026 1:00:01 PM,1\n"),
         2
@@ -327,7 +328,7 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
             assert!((found / given - 1.0).abs() < 0.02, "{change:?}");
         }
         // Who takes samples as they are stored alone says why not.
-        let refused = crate::series::foreign::check_even(&record).err();
+        let refused = crate::series::even_record::check_even(&record).err();
         let said = refused.map_or_else(String::new, |e| e.parts().0);
         assert!(said.starts_with("the sample rate changes at"), "{said}");
         let fast = hz[0].max(hz[1]);
@@ -359,24 +360,6 @@ fn a_rate_that_changes_is_told_with_its_time_and_no_sample_is_called_missing() {
     };
     let lossy = open(&timed(1000, |i| kept(i) * 0.002, 3)).unwrap();
     assert_eq!((lossy.clock.change, lossy.clock.missing), (None, 15));
-}
-
-#[test]
-fn whole_numbers_of_an_unstated_unit_are_doubted() {
-    let text = |head: &str, step: usize| {
-        let rows: String = (0..200).map(|i| format!("{},1\n", i * step)).collect();
-        format!("{head},a\n{rows}")
-    };
-    assert!(open(&text("time", 2)).unwrap().clock.doubtful_unit);
-    assert!(!open(&text("time [s]", 2)).unwrap().clock.doubtful_unit);
-    let stated = open(&text("time [ms]", 2)).unwrap();
-    assert!(!stated.clock.doubtful_unit && (stated.clock.rate_hz - 500.0).abs() < 1e-9);
-    assert!(
-        !open(&timed(200, |i| i as f64 * 0.002, 3))
-            .unwrap()
-            .clock
-            .doubtful_unit
-    );
 }
 
 /// 300,000 rows: several pieces, so that lines, gaps and uneven steps cross their borders.

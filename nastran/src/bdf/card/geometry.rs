@@ -1,6 +1,6 @@
 //! GRID, GRDSET, SPOINT, CORD1x, CORD2x.
 
-use super::super::fields::Fields;
+use super::super::fields::{Fields, Value};
 use crate::cards::{Cards, Coord, CoordDefinition, CoordKind, Grdset, Grid};
 use crate::place::Placed;
 
@@ -28,6 +28,23 @@ pub(super) fn spoint(f: &mut Fields, cards: &mut Cards) {
     for card in super::ids::id_lists(f, 0, "ID1") {
         cards.spoints.push(Placed { card, at: f.at });
     }
+}
+
+/// Reads the ends of CMASSi and CDAMPi that may be scalar points: those without a component.
+pub(in super::super) fn connected_points(f: &Fields) -> Vec<u32> {
+    let ends: &[(usize, Option<usize>)] = match f.name.last() {
+        Some(b'1' | b'2') => &[(2, Some(3)), (4, Some(5))],
+        _ => &[(2, None), (3, None)],
+    };
+    let id = |i| match f.value(i) {
+        Value::Integer(n) => u32::try_from(n).ok().filter(|n| *n > 0),
+        _ => None,
+    };
+    let is_scalar = |i| matches!(f.value(i), Value::Blank | Value::Integer(0));
+    ends.iter()
+        .filter(|(_, component)| component.is_none_or(is_scalar))
+        .filter_map(|(end, _)| id(*end))
+        .collect()
 }
 
 fn kind(name: &[u8]) -> CoordKind {

@@ -1,11 +1,11 @@
-//! FORCE, MOMENT, PLOADs, GRAV, RFORCE, LOAD, TEMP, TEMPD, TEMPP1, TEMPRB.
+//! FORCE, MOMENT, PLOADs, GRAV, ACCEL, ACCEL1, RFORCE, RFORCE1, LOAD, TEMP, TEMPD, TEMPP1, TEMPRB.
 
 use super::super::fault::Wrong;
 use super::super::fields::Fields;
 use super::ids::id_lists;
 use crate::cards::{
-    Cards, Force, ForceAlong, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4, Rforce, Sload,
-    Temp, Tempd, Tempp1, Temprb,
+    Accel, Accel1, Cards, Force, ForceAlong, Grav, IdList, LoadSum, Pload, Pload1, Pload2, Pload4,
+    Rforce, Sload, Temp, Tempd, Tempp1, Temprb,
 };
 use crate::place::Placed;
 
@@ -169,8 +169,50 @@ pub(super) fn grav(f: &mut Fields) -> Grav {
     }
 }
 
+pub(super) fn accel(f: &mut Fields) -> Accel {
+    let (sid, cid) = (f.id(0, "SID"), f.opt_id(1, "CID").unwrap_or(0));
+    let n = f.reals(2, ["N1", "N2", "N3"]);
+    let direction = f.word(5);
+    let allowed = "X, Y, Z";
+    if !["", "X", "Y", "Z"].contains(&direction.as_str()) {
+        let found = direction.clone();
+        f.fault(5, "DIR", Wrong::NotOneOf { found, allowed });
+    }
+    let mut table = Vec::new();
+    for i in (8..f.len()).step_by(2) {
+        if !f.is_blank(i) || !f.is_blank(i + 1) {
+            table.push((f.real(i, "LOC"), f.real(i + 1, "VAL")));
+        }
+    }
+    if direction.is_empty() && !table.is_empty() {
+        f.fault(5, "DIR", Wrong::Missing);
+    }
+    Accel {
+        sid,
+        cid,
+        n,
+        direction,
+        table,
+    }
+}
+
+pub(super) fn accel1(f: &mut Fields) -> Accel1 {
+    let card = Accel1 {
+        sid: f.id(0, "SID"),
+        cid: f.opt_id(1, "CID").unwrap_or(0),
+        scale: f.real_or(2, "A", 0.0),
+        n: f.reals(3, ["N1", "N2", "N3"]),
+        grids: id_lists(f, 8, "GRIDID"),
+    };
+    if card.grids.is_empty() {
+        f.fault(8, "GRIDID1", Wrong::Missing);
+    }
+    card
+}
+
 pub(super) fn rforce(f: &mut Fields) -> Rforce {
     Rforce {
+        is_rforce1: f.name == b"RFORCE1",
         sid: f.id(0, "SID"),
         grid: f.opt_id(1, "G").unwrap_or(0),
         cid: f.opt_id(2, "CID").unwrap_or(0),
@@ -178,6 +220,7 @@ pub(super) fn rforce(f: &mut Fields) -> Rforce {
         r: f.reals(4, ["R1", "R2", "R3"]),
         method: f.opt_id(7, "METHOD"),
         acceleration: f.real_or(8, "RACC", 0.0),
+        part: f.opt_id(10, "IDRF").unwrap_or(0),
     }
 }
 

@@ -1,8 +1,11 @@
-//! CONM1, CONM2, NSM, NSM1, NSML, NSML1.
+//! CONM1, CONM2, CMASS1 to CMASS4, PMASS, NSM, NSM1, NSML, NSML1.
 
 use super::super::fields::Fields;
 use super::ids::id_lists;
-use crate::cards::{Cards, Conm1, Conm2, IdList, NonstructuralMass};
+use super::springs::{end, scalar_end};
+use crate::cards::{
+    Cards, Conm1, Conm2, IdList, NonstructuralMass, Pmass, ScalarMass, ScalarMassValue,
+};
 use crate::place::Placed;
 
 pub(super) fn conm1(f: &mut Fields) -> Conm1 {
@@ -22,6 +25,48 @@ pub(super) fn conm2(f: &mut Fields) -> Conm2 {
         mass: f.real_or(3, "M", 0.0),
         offset: f.reals(4, ["X1", "X2", "X3"]),
         inertia: f.reals(8, ["I11", "I21", "I22", "I31", "I32", "I33"]),
+    }
+}
+
+/// Reads the mass of a CMASS1 to CMASS4, or its PMASS, from field 3.
+fn scalar_mass_value(f: &mut Fields) -> ScalarMassValue {
+    match f.name {
+        b"CMASS2" | b"CMASS4" => ScalarMassValue::Direct(f.real_or(1, "M", 0.0)),
+        _ => ScalarMassValue::Property(f.opt_id(1, "PID")),
+    }
+}
+
+pub(super) fn scalar_mass(f: &mut Fields) -> ScalarMass {
+    ScalarMass {
+        id: f.id(0, "EID"),
+        mass: scalar_mass_value(f),
+        ends: [end(f, 2), end(f, 4)],
+    }
+}
+
+/// Reads CMASS3 and CMASS4: masses between scalar points, or between a point and ground.
+pub(super) fn mass_of_points(f: &mut Fields) -> ScalarMass {
+    ScalarMass {
+        id: f.id(0, "EID"),
+        mass: scalar_mass_value(f),
+        ends: [scalar_end(f, 2), scalar_end(f, 3)],
+    }
+}
+
+/// Reads the up to four properties of a PMASS.
+pub(super) fn pmass(f: &mut Fields, cards: &mut Cards) {
+    for first in [0, 2, 4, 6] {
+        if first > 0 && f.is_blank(first) {
+            continue;
+        }
+        f.unusable = false;
+        let card = Pmass {
+            id: f.id(first, "PID"),
+            mass: f.real_or(first + 1, "M", 0.0),
+        };
+        if !f.unusable {
+            cards.pmasses.push(Placed { card, at: f.at });
+        }
     }
 }
 

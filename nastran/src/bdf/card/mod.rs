@@ -16,6 +16,9 @@ mod section;
 mod shell;
 mod solid;
 mod springs;
+mod table;
+
+pub(super) use geometry::connected_points;
 
 use super::fields::Fields;
 use crate::cards::Cards;
@@ -34,6 +37,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"CQUAD4" | b"CQUADR" | b"CQUAD8" | b"CTRIA3" | b"CTRIAR" | b"CTRIA6" => {
             keep(&mut cards.shells, f, shell::shell)
         }
+        b"SNORM" => keep(&mut cards.snorms, f, shell::snorm),
         b"CSHEAR" => keep(&mut cards.shear_panels, f, shell::shear_panel),
         b"CBAR" => keep(&mut cards.bars, f, line::bar),
         b"CBEAM" => keep(&mut cards.beams, f, line::beam),
@@ -48,6 +52,9 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"CFAST" => keep(&mut cards.fasteners, f, connector::fastener),
         b"CGAP" => keep(&mut cards.gaps, f, connector::gap),
         b"CTETRA" | b"CPENTA" | b"CHEXA" | b"CPYRAM" => keep(&mut cards.solids, f, solid::solid),
+        b"CMASS1" | b"CMASS2" => keep(&mut cards.scalar_masses, f, mass::scalar_mass),
+        b"CMASS3" | b"CMASS4" => keep(&mut cards.scalar_masses, f, mass::mass_of_points),
+        b"PMASS" => mass::pmass(f, cards),
         b"CONM1" => keep(&mut cards.conm1s, f, mass::conm1),
         b"CONM2" => keep(&mut cards.conm2s, f, mass::conm2),
         b"NSM" | b"NSM1" | b"NSML" | b"NSML1" => mass::nonstructural(f, cards),
@@ -65,7 +72,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"SPCD" => keep(&mut cards.spcds, f, constraint::spc),
         b"SPC1" => constraint::spc1(f, cards),
         b"SPCADD" => keep(&mut cards.spcadds, f, constraint::set_sum),
-        b"SUPORT" | b"SUPORT1" | b"SUPPORT" => keep(&mut cards.suports, f, constraint::suport),
+        b"SUPORT" | b"SUPORT1" => keep(&mut cards.suports, f, constraint::suport),
         b"PSHELL" => keep(&mut cards.pshells, f, property::pshell),
         b"PCOMP" | b"PCOMPG" => keep(&mut cards.pcomps, f, property::pcomp),
         b"PSHEAR" => keep(&mut cards.pshears, f, property::pshear),
@@ -85,6 +92,10 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"MAT2" => keep(&mut cards.mat2s, f, material::mat2),
         b"MAT8" => keep(&mut cards.mat8s, f, material::mat8),
         b"MAT9" => keep(&mut cards.mat9s, f, material::mat9),
+        b"MATT1" => keep(&mut cards.matt1s, f, table::matt1),
+        b"TABLEM1" | b"TABLEM2" | b"TABLEM3" | b"TABLEM4" => {
+            keep(&mut cards.material_tables, f, table::material_table)
+        }
         b"FORCE" => keep(&mut cards.forces, f, load::force),
         b"MOMENT" => keep(&mut cards.moments, f, load::force),
         b"FORCE1" | b"FORCE2" | b"MOMENT1" | b"MOMENT2" => {
@@ -96,7 +107,9 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"PLOAD2" => load::pload2(f, cards),
         b"PLOAD4" => keep(&mut cards.pload4s, f, load::pload4),
         b"GRAV" => keep(&mut cards.gravs, f, load::grav),
-        b"RFORCE" => keep(&mut cards.rforces, f, load::rforce),
+        b"ACCEL" => keep(&mut cards.accels, f, load::accel),
+        b"ACCEL1" => keep(&mut cards.accel1s, f, load::accel1),
+        b"RFORCE" | b"RFORCE1" => keep(&mut cards.rforces, f, load::rforce),
         b"LOAD" => keep(&mut cards.loads, f, load::load),
         b"TEMP" => load::temp(f, cards),
         b"TEMPD" => load::tempd(f, cards),

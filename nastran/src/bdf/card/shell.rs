@@ -2,7 +2,7 @@
 
 use super::super::fault::Wrong;
 use super::super::fields::{Fields, Value};
-use crate::cards::{MaterialAngle, ShearPanel, Shell, ShellShape};
+use crate::cards::{MaterialAngle, ShearPanel, Shell, ShellShape, Snorm};
 
 /// Where the fields behind the grids stand.
 struct Layout {
@@ -92,5 +92,13 @@ pub(super) fn shear_panel(f: &mut Fields) -> ShearPanel {
         id: f.id(0, "EID"),
         pid: f.opt_id(1, "PID"),
         grids: [f.id(2, "G1"), f.id(3, "G2"), f.id(4, "G3"), f.id(5, "G4")],
+    }
+}
+
+pub(super) fn snorm(f: &mut Fields) -> Snorm {
+    Snorm {
+        grid: f.id(0, "GID"),
+        cid: f.opt_id(1, "CID").unwrap_or(0),
+        n: f.reals(2, ["N1", "N2", "N3"]),
     }
 }

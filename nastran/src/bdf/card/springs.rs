@@ -19,9 +19,15 @@ pub(super) fn bush(f: &mut Fields) -> Bush {
     }
 }
 
-fn end(f: &mut Fields, i: usize) -> Option<(u32, u8)> {
+/// Reads a grid and its component from field `i` on; `None` is ground.
+pub(super) fn end(f: &mut Fields, i: usize) -> Option<(u32, u8)> {
     let grid = f.opt_id(i, "G").filter(|&g| g > 0)?;
     Some((grid, f.component(i + 1, "C")))
+}
+
+/// Reads a scalar point from field `i`; `None` is ground.
+pub(super) fn scalar_end(f: &mut Fields, i: usize) -> Option<(u32, u8)> {
+    f.opt_id(i, "S").filter(|&s| s > 0).map(|s| (s, 0))
 }
 
 pub(super) fn spring(f: &mut Fields) -> Spring {
@@ -54,11 +60,10 @@ pub(super) fn scalar_spring(f: &mut Fields) -> Spring {
     } else {
         SpringStiffness::Property(f.opt_id(1, "PID"))
     };
-    let point = |f: &mut Fields, i| f.opt_id(i, "S").filter(|&s| s > 0).map(|s| (s, 0));
     Spring {
         id,
         stiffness,
-        ends: [point(f, 2), point(f, 3)],
+        ends: [scalar_end(f, 2), scalar_end(f, 3)],
     }
 }
 

@@ -81,10 +81,12 @@ pub struct Subcase {
     pub nsm: Option<u32>,
     /// SUPORT1.
     pub suport1: Option<u32>,
-    /// TEMPERATURE(LOAD), or without an option.
+    /// TEMPERATURE(LOAD) or (BOTH), or without an option.
     pub temperature_load: Option<u32>,
-    /// TEMPERATURE(INITIAL), or (BOTH).
+    /// TEMPERATURE(INITIAL).
     pub temperature_initial: Option<u32>,
+    /// TEMPERATURE(MATERIAL) or (BOTH), or without an option.
+    pub temperature_material: Option<u32>,
     /// DEFORM.
     pub deform: Option<u32>,
     /// METHOD.
@@ -113,7 +115,7 @@ pub struct Request {
 }
 
 /// What a request is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Selection {
     /// ALL (or YES).
     All,
@@ -121,6 +123,8 @@ pub enum Selection {
     None,
     /// A SET.
     Set(u32),
+    /// Ids that the request itself lists, `= 1, 2 THRU 9`.
+    Ids(Set),
 }
 
 impl Request {
@@ -152,6 +156,7 @@ impl CaseControl {
         full.suport1 = subcase.suport1.or(global.suport1);
         full.temperature_load = subcase.temperature_load.or(global.temperature_load);
         full.temperature_initial = subcase.temperature_initial.or(global.temperature_initial);
+        full.temperature_material = subcase.temperature_material.or(global.temperature_material);
         full.deform = subcase.deform.or(global.deform);
         full.method = subcase.method.or(global.method);
         full.analysis = subcase.analysis.clone().or_else(|| global.analysis.clone());

@@ -4,6 +4,7 @@ use super::super::fault::{Fault, Wrong};
 use super::super::fields::note_fault;
 use super::super::number::{Number, read_number};
 use super::super::sections::Statement;
+use super::super::vocabulary::{case_word, request_of};
 use super::{CaseControl, CaseLine, Request, Selection, Set, Subcase, SubcaseKind};
 use crate::cards::{Param, ParamValue};
 
@@ -27,6 +28,7 @@ pub(in super::super) fn read_case_control(
             .take_while(|c| c.is_ascii_alphanumeric())
             .collect::<String>()
             .to_ascii_uppercase();
+        let word = case_word(&name).map_or("", |w| w.name);
         let mut read = Reader {
             case: &mut case,
             first,
@@ -35,7 +37,7 @@ pub(in super::super) fn read_case_control(
         if let Some(kind) = subcase_kind(&name) {
             in_packet = false;
             read.begin(kind, &name, text);
-        } else if name.starts_with("OUTP") && text.contains('(') {
+        } else if word == "OUTPUT" && text.contains('(') {
             // OUTPUT(PLOT), (XYPLOT), (POST): a language of its own up to the end of case control
             in_packet = true;
         } else if !in_packet {
@@ -51,6 +53,12 @@ pub(in super::super) fn read_case_control(
             start: first.start,
             end,
         });
+        // Statements of substructuring, up to ENDSUBS, are a language of their own.
+        match word {
+            "SUBSTRUCTURE" => in_packet = true,
+            "ENDSUBS" => in_packet = false,
+            _ => {}
+        }
     }
     case
 }
@@ -81,45 +89,20 @@ fn joined(first: &Statement, more: &[Statement]) -> (String, usize, usize) {
 }
 
 fn subcase_kind(name: &str) -> Option<SubcaseKind> {
-    Some(match name {
+    Some(match case_word(name)?.name {
         "SYM" => SubcaseKind::Sym,
-        n if n.starts_with("SUBCO") => SubcaseKind::Subcom,
-        n if n.starts_with("SUBCA") => SubcaseKind::Subcase,
-        n if n.starts_with("SYMC") => SubcaseKind::Symcom,
-        n if n.starts_with("REPC") => SubcaseKind::Repcase,
+        "SUBCOM" => SubcaseKind::Subcom,
+        "SUBCASE" => SubcaseKind::Subcase,
+        "SYMCOM" => SubcaseKind::Symcom,
+        "REPCASE" => SubcaseKind::Repcase,
         _ => return None,
     })
 }
 
-/// Full names of the output requests by their first letters; Nastran looks at four.
-const REQUESTS: [(&str, &str); 26] = [
-    ("DISP", "DISPLACEMENT"),
-    ("VECT", "DISPLACEMENT"),
-    ("PRES", "DISPLACEMENT"),
-    ("VELO", "VELOCITY"),
-    ("ACCE", "ACCELERATION"),
-    ("SPCF", "SPCFORCES"),
-    ("MPCF", "MPCFORCES"),
-    ("OLOA", "OLOAD"),
-    ("STRE", "STRESS"),
-    ("ELST", "STRESS"),
-    ("STRA", "STRAIN"),
-    ("STRF", "STRFIELD"),
-    ("FORC", "FORCE"),
-    ("ELFO", "FORCE"),
-    ("GPFO", "GPFORCE"),
-    ("GPSTRE", "GPSTRESS"),
-    ("GPSTRA", "GPSTRAIN"),
-    ("GPST", "GPSTRESS"),
-    ("GPKE", "GPKE"),
-    ("ESE", "ESE"),
-    ("EKE", "EKE"),
-    ("EDE", "EDE"),
-    ("ELSD", "ELSDCON"),
-    ("SDIS", "SDISPLACEMENT"),
-    ("THER", "THERMAL"),
-    ("OTEM", "OTEMP"),
-];
+/// Requests whose selection says for which grids and elements results are to be expected.
+const READ_REQUESTS: [&str; 4] = ["DISPLACEMENT", "STRAIN", "STRESS", "FORCE"];
+
+const WANTED_SELECTION: &str = "ALL, NONE, a set number or a list of ids is needed";
 
 struct Reader<'a> {
     case: &'a mut CaseControl,
@@ -174,24 +157,24 @@ impl Reader<'_> {
 
     fn statement(&mut self, name: &str, text: &str) {
         let value = value_of(text, name.len());
-        match name {
-            n if n.starts_with("TITL") => self.current().title = Some(value.to_owned()),
-            n if n.starts_with("SUBT") => self.current().subtitle = Some(value.to_owned()),
-            n if n.starts_with("LABE") => self.current().label = Some(value.to_owned()),
+        match case_word(name).map_or("", |w| w.name) {
+            "TITLE" => self.current().title = Some(value.to_owned()),
+            "SUBTITLE" => self.current().subtitle = Some(value.to_owned()),
+            "LABEL" => self.current().label = Some(value.to_owned()),
             "LOAD" => self.current().load = self.number(name, value),
             "SPC" => self.current().spc = self.number(name, value),
             "MPC" => self.current().mpc = self.number(name, value),
             "NSM" => self.current().nsm = self.number(name, value),
-            "SUPORT1" | "SUPPORT1" => self.current().suport1 = self.number(name, value),
+            "SUPORT1" => self.current().suport1 = self.number(name, value),
             "DEFORM" => self.current().deform = self.number(name, value),
-            n if n.starts_with("METH") => self.current().method = self.number(name, value),
-            n if n.starts_with("ANAL") => {
-                self.current().analysis = Some(value.to_ascii_uppercase())
-            }
-            n if n.starts_with("TEMP") => self.temperature(name, text, value),
-            n if n.starts_with("SUBS") || n.starts_with("SYMS") => self.sequence(name, value),
+            "METHOD" => self.current().method = self.number(name, value),
+            "ANALYSIS" => self.current().analysis = Some(value.to_ascii_uppercase()),
+            "TEMPERATURE" => self.temperature(name, text, value),
+            "SUBSEQ" | "SYMSEQ" => self.sequence(name, value),
             "SET" => self.set(text),
             "PARAM" => self.param(text),
+            // the statement that stands for the parameter
+            "AUTOSPC" => self.param(&format!("PARAM,AUTOSPC,{value}")),
             _ => self.request(name, text, value),
         }
     }
@@ -213,10 +196,14 @@ impl Reader<'_> {
         let options = options_of(text);
         let is = |o: &str| options.iter().any(|have| have.starts_with(o));
         let current = self.current();
-        if is("INIT") || is("BOTH") {
+        if is("INIT") {
             current.temperature_initial = id;
+            return;
         }
-        if !is("INIT") && !is("MATE") {
+        if !is("LOAD") {
+            current.temperature_material = id;
+        }
+        if !is("MATE") {
             current.temperature_load = id;
         }
     }
@@ -234,7 +221,11 @@ impl Reader<'_> {
     }
 
     fn set(&mut self, text: &str) {
-        let (head, items) = text.split_once('=').unwrap_or((text, ""));
+        let (head, items) = match text.split_once('=') {
+            Some(parts) => parts,
+            // `SET 10 SHEAR`
+            None => text.split_at(end_of_number(text, 3)),
+        };
         let id = head.get(3..).unwrap_or_default().trim().parse::<u32>();
         match (id, Set::from_text(items)) {
             (Ok(id), Ok(set)) => {
@@ -272,7 +263,7 @@ impl Reader<'_> {
 
     /// An output request; other statements are kept in the deck and not read.
     fn request(&mut self, name: &str, text: &str, value: &str) {
-        let Some((_, full)) = REQUESTS.iter().find(|(head, _)| name.starts_with(head)) else {
+        let Some(full) = request_of(name) else {
             return;
         };
         let value = match value.to_ascii_uppercase().as_str() {
@@ -280,18 +271,33 @@ impl Reader<'_> {
             "NONE" | "NO" => Selection::None,
             number => match number.parse() {
                 Ok(set) => Selection::Set(set),
-                Err(_) => return self.fault(name, value, "ALL, NONE or a set number is needed"),
+                Err(_) => match Set::from_text(number) {
+                    Ok(ids) => Selection::Ids(ids),
+                    // times, components and named sets of output that nobody reads
+                    Err(_) if !READ_REQUESTS.contains(&full) => return,
+                    Err(_) => return self.fault(name, value, WANTED_SELECTION),
+                },
             },
         };
         let options = options_of(text);
         let current = self.current();
-        current.requests.retain(|r| r.what != *full);
+        current.requests.retain(|r| r.what != full);
         current.requests.push(Request {
-            what: (*full).to_owned(),
+            what: full.to_owned(),
             options,
             value,
         });
     }
+}
+
+/// Offset of the first byte after the number that begins at or after `from`.
+fn end_of_number(text: &str, from: usize) -> usize {
+    let tail = text.get(from..).unwrap_or_default();
+    let digits = tail.trim_start();
+    let length = digits
+        .find(|c: char| !c.is_ascii_digit())
+        .unwrap_or(digits.len());
+    from.min(text.len()) + tail.len() - digits.len() + length
 }
 
 /// What stands behind `=`, or behind the name where there is no `=`.

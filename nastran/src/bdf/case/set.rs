@@ -1,4 +1,4 @@
-//! SET n = 1, 2 THRU 9 EXCEPT 5, ALL.
+//! SET n = 1, 2 THRU 9 EXCEPT 5, ALL, QUAD4 EXCEPT 21.
 
 /// The items of a SET.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,19 +23,36 @@ pub enum SetItem {
         /// Ids left out.
         except: Vec<u32>,
     },
-    /// ALL, but for these.
-    All {
-        /// Ids left out.
-        except: Vec<u32>,
-    },
+    /// ALL.
+    All,
+    /// Every element of a type, such as `QUAD4`.
+    Type(String),
+    /// Ids that are left out of ALL and of types, both ends included.
+    Except(u32, u32),
+    /// A type that is left out of ALL.
+    ExceptType(String),
 }
 
-impl Set {
-    /// Whether the id is in the set.
-    pub fn has(&self, id: u32) -> bool {
-        self.items.iter().any(|item| match item {
-            SetItem::One(one) => *one == id,
-            SetItem::Thru {
+/// Types of elements that a SET may list, without the leading C.
+const TYPES: [&str; 42] = [
+    "BAR", "BEAM", "BEAM3", "BEND", "BUSH", "BUSH1D", "CONROD", "DAMP1", "DAMP2", "DAMP3", "DAMP4",
+    "ELAS1", "ELAS2", "ELAS3", "ELAS4", "FAST", "GAP", "HEXA", "MASS1", "MASS2", "MASS3", "MASS4",
+    "PENTA", "PYRAM", "QUAD4", "QUAD8", "QUADR", "ROD", "SEAM", "SHEAR", "TETRA", "TRIA3", "TRIA6",
+    "TRIAR", "TRIAX6", "TUBE", "VISC", "WELD", "CONM1", "CONM2", "PLOTEL", "HBDY",
+];
+
+/// Returns the type that a word names, with or without the leading C.
+fn type_of(word: &str) -> Option<&'static str> {
+    let word = word.to_ascii_uppercase();
+    let named = |w: &str| TYPES.into_iter().find(|t| *t == w);
+    named(&word).or_else(|| named(word.strip_prefix('C')?))
+}
+
+impl SetItem {
+    fn includes(&self, id: u32, kind: Option<&str>) -> bool {
+        match self {
+            Self::One(one) => *one == id,
+            Self::Thru {
                 first,
                 last,
                 by,
@@ -45,8 +62,35 @@ impl Set {
                     && (id - first).is_multiple_of((*by).max(1))
                     && !except.contains(&id)
             }
-            SetItem::All { except } => !except.contains(&id),
-        })
+            Self::All => true,
+            Self::Type(t) => Some(t.as_str()) == kind,
+            Self::Except(..) | Self::ExceptType(_) => false,
+        }
+    }
+
+    fn excludes(&self, id: u32, kind: Option<&str>) -> bool {
+        match self {
+            Self::Except(first, last) => (*first..=*last).contains(&id),
+            Self::ExceptType(t) => Some(t.as_str()) == kind,
+            _ => false,
+        }
+    }
+}
+
+impl Set {
+    /// Whether the id of a grid, or of an element of any type, is in the set.
+    pub fn has(&self, id: u32) -> bool {
+        self.contains(id, None)
+    }
+
+    /// Whether the element is in the set; `card` is its card, such as `CQUAD4`.
+    pub fn has_element(&self, id: u32, card: &str) -> bool {
+        self.contains(id, type_of(card))
+    }
+
+    fn contains(&self, id: u32, kind: Option<&str>) -> bool {
+        self.items.iter().any(|i| i.includes(id, kind))
+            && !self.items.iter().any(|i| i.excludes(id, kind))
     }
 
     /// The set in the text behind `=`; `Err` holds the word that cannot be read.
@@ -55,68 +99,91 @@ impl Set {
             .split([',', ' ', '\t'])
             .filter(|w| !w.is_empty())
             .collect();
-        let mut items: Vec<SetItem> = Vec::new();
-        let mut excepting = false;
-        let mut i = 0;
-        while let Some(&word) = words.get(i) {
-            i += 1;
+        let mut set = SetReader::default();
+        let mut rest = words.as_slice();
+        while let Some((word, more)) = rest.split_first() {
+            rest = more;
             match word.to_ascii_uppercase().as_str() {
-                "ALL" => items.push(SetItem::All { except: Vec::new() }),
-                "EXCEPT" => excepting = true,
-                "THRU" => {
-                    let last: u32 = words
-                        .get(i)
-                        .and_then(|w| w.parse().ok())
-                        .ok_or_else(|| word.to_owned())?;
-                    i += 1;
-                    excepting = false;
-                    match items.pop() {
-                        Some(SetItem::One(first)) if first <= last => {
-                            items.push(SetItem::Thru {
-                                first,
-                                last,
-                                by: 1,
-                                except: Vec::new(),
-                            });
-                        }
-                        _ => return Err(word.to_owned()),
-                    }
-                    if words.get(i).is_some_and(|w| w.eq_ignore_ascii_case("BY")) {
-                        i += 2;
-                        by(&mut items, words.get(i - 1))?;
-                    }
-                }
-                _ => {
-                    let id: u32 = word.parse().map_err(|_| word.to_owned())?;
-                    let range_holds = match items.last_mut() {
-                        Some(SetItem::Thru { last, except, .. }) if excepting && id <= *last => {
-                            Some(except)
-                        }
-                        Some(SetItem::All { except }) if excepting => Some(except),
-                        _ => None,
-                    };
-                    match range_holds {
-                        Some(except) => except.push(id),
-                        None => {
-                            excepting = false;
-                            items.push(SetItem::One(id));
-                        }
-                    }
-                }
+                "ALL" => set.items.push(SetItem::All),
+                "EXCEPT" | "EXCLUDE" => (set.excepting, set.of_grids) = (true, false),
+                "INCLUDE" => (set.excepting, set.of_grids) = (false, false),
+                "ELEMENT" | "ELEMENTS" => set.of_grids = false,
+                "GRID" | "GRIDS" | "POINT" | "POINTS" => set.of_grids = true,
+                "THRU" => rest = set.range(word, rest)?,
+                _ => set.item(word)?,
             }
         }
-        Ok(Set { items })
+        Ok(Set { items: set.items })
     }
 }
 
-/// Gives the last range its step.
-fn by(items: &mut [SetItem], step: Option<&&str>) -> Result<(), String> {
-    let step = step.and_then(|w| w.parse::<u32>().ok()).filter(|&s| s > 0);
-    match (items.last_mut(), step) {
-        (Some(SetItem::Thru { by, .. }), Some(step)) => {
-            *by = step;
-            Ok(())
+/// A SET as far as it is read.
+#[derive(Default)]
+struct SetReader {
+    items: Vec<SetItem>,
+    /// The words are behind EXCEPT.
+    excepting: bool,
+    /// The ids are of grids that are drawn with the elements, which say nothing of elements.
+    of_grids: bool,
+}
+
+impl SetReader {
+    /// Reads an id or a type.
+    fn item(&mut self, word: &str) -> Result<(), String> {
+        if let Some(kind) = type_of(word) {
+            let kind = kind.to_owned();
+            self.items.push(match self.excepting {
+                true => SetItem::ExceptType(kind),
+                false => SetItem::Type(kind),
+            });
+            return Ok(());
         }
-        _ => Err("BY".to_owned()),
+        let id: u32 = word.parse().map_err(|_| word.to_owned())?;
+        if self.of_grids {
+            return Ok(());
+        }
+        match self.items.last_mut() {
+            Some(SetItem::Thru { last, except, .. }) if self.excepting && id <= *last => {
+                except.push(id);
+            }
+            Some(SetItem::One(_) | SetItem::Thru { .. }) | None => {
+                self.excepting = false;
+                self.items.push(SetItem::One(id));
+            }
+            Some(_) if self.excepting => self.items.push(SetItem::Except(id, id)),
+            Some(_) => self.items.push(SetItem::One(id)),
+        }
+        Ok(())
+    }
+
+    /// Reads what is behind THRU; returns the words after it.
+    fn range<'w, 's>(&mut self, thru: &str, words: &'w [&'s str]) -> Result<&'w [&'s str], String> {
+        let wrong = || thru.to_owned();
+        let (last, rest) = words.split_first().ok_or_else(wrong)?;
+        let last: u32 = last.parse().map_err(|_| wrong())?;
+        let (step, rest) = match rest {
+            [by, step, rest @ ..] if by.eq_ignore_ascii_case("BY") => {
+                let step = step.parse().ok().filter(|s| *s > 0);
+                (step.ok_or_else(|| "BY".to_owned())?, rest)
+            }
+            _ => (1, rest),
+        };
+        if self.of_grids {
+            return Ok(rest);
+        }
+        let range = match self.items.pop() {
+            Some(SetItem::One(first)) if first <= last => SetItem::Thru {
+                first,
+                last,
+                by: step,
+                except: Vec::new(),
+            },
+            Some(SetItem::Except(first, _)) if first <= last && step == 1 => {
+                SetItem::Except(first, last)
+            }
+            _ => return Err(wrong()),
+        };
+        self.items.push(range);
+        Ok(rest)
     }
 }

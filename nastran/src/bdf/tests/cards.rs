@@ -224,3 +224,48 @@ fn defaults_of_bars_and_grids_are_kept_apart() {
     );
     assert_eq!(deck.cards.beamor.as_ref().unwrap().pid, Some(4));
 }
+
+#[test]
+fn scalar_masses_name_components_or_scalar_points() {
+    let deck = clean(
+        "CMASS1,1,7,2,1\nCMASS2,2,.5,,,3,2\nCMASS3,3,7,90\nCMASS4,4,.25,90,91\nPMASS,7,1.,8,2.,9,3.,10,4.\n",
+    );
+    let masses: Vec<ScalarMass> = deck.cards.scalar_masses.iter().map(|m| m.card).collect();
+    let property = ScalarMassValue::Property(Some(7));
+    assert_eq!(
+        (masses[0].mass, masses[0].ends),
+        (property, [Some((2, 1)), None])
+    );
+    assert_eq!(masses[1].ends, [None, Some((3, 2))]);
+    assert_eq!(
+        (masses[2].mass, masses[2].ends),
+        (property, [Some((90, 0)), None])
+    );
+    assert_eq!(masses[3].mass, ScalarMassValue::Direct(0.25));
+    assert_eq!(masses[3].ends, [Some((90, 0)), Some((91, 0))]);
+    let properties: Vec<(u32, f64)> = deck.cards.pmasses.iter().map(|p| (p.id, p.mass)).collect();
+    assert_eq!(properties, [(7, 1.0), (8, 2.0), (9, 3.0), (10, 4.0)]);
+}
+
+#[test]
+fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
+    let one = |text: &str| clean(text).cards.material_tables[0].card.clone();
+    let table = one("TABLEM1,9\n,0.,1.,5.,SKIP,10.,3.,20.,4.\n,ENDT\n,99.,99.\n");
+    assert_eq!(
+        table.form,
+        MaterialTableForm::Replaces(vec![(0.0, 1.0), (10.0, 3.0), (20.0, 4.0)])
+    );
+    assert_eq!(
+        one("TABLEM1,9,,,,FLAT\n,0.,1.,5.,2.,ENDT\n").options,
+        "FLAT"
+    );
+    for wrong in [
+        "TABLEM1,9\n,0.,1.,5.,2.,3.,4.,ENDT\n",
+        "TABLEM1,9\n,0.,1.,ENDT\n",
+        "TABLEM3,9,1.,0.\n,0.,1.,1.,2.,ENDT\n",
+        "ACCEL,5,,1.,0.,0.,W\n,1.,2.\n",
+        "ACCEL1,5,,1.,1.,0.,0.\n",
+    ] {
+        assert_eq!(super::bulk(wrong).faults.len(), 1, "{wrong}");
+    }
+}

@@ -142,3 +142,35 @@ fn faults_of_case_control_name_the_statement() {
     assert_eq!(shown(&deck).len(), 3);
     assert!(shown(&deck)[0].starts_with("test.bdf:3: `LOAD`: a set number is needed: FIVE"));
 }
+
+#[test]
+fn requests_may_list_ids_and_unread_ones_may_hold_anything() {
+    let deck = clean(
+        "SOL 101\nCEND\nESE = 1,2\nEKE(THRESH=.01) = 1 THRU 5,\n 9\nGPFORCE = TIME1\nSTRAIN(CORNER) = 4, 7 THRU 9 EXCEPT 8\nBEGIN BULK\n",
+    );
+    let strain = deck.case_control.global.request("STRAIN").unwrap();
+    let Selection::Ids(ids) = &strain.value else {
+        panic!("{strain:?}")
+    };
+    let have: Vec<u32> = (0..20).filter(|&id| ids.has(id)).collect();
+    assert_eq!(have, [4, 7, 9]);
+    assert!(strain.has("CORNER"));
+    assert_eq!(
+        shown(&bulk("SOL 101\nCEND\nSTRAIN = SOME\nBEGIN BULK\n")).len(),
+        1
+    );
+}
+
+#[test]
+fn sets_list_types_of_elements_and_exceptions() {
+    let deck = clean(
+        "SOL 101\nCEND\nSET 2 = QUAD4 TRIA3 EXCEPT 21\nSET 3 = ALL EXCEPT CTRIA3, 30 THRU 40\nSET 4 = SHEAR, INCLUDE ELEMENTS 5, GRID POINTS 6 THRU 9\nSET 10 BAR, EXCEPT 7\nBEGIN BULK\n",
+    );
+    let sets = &deck.case_control.global.sets;
+    let has = |set: u32, id: u32, card: &str| sets[&set].has_element(id, card);
+    assert!(has(2, 20, "CQUAD4") && has(2, 22, "CTRIA3"));
+    assert!(!has(2, 21, "CQUAD4") && !has(2, 20, "CBAR"));
+    assert!(has(3, 20, "CQUAD4") && !has(3, 20, "CTRIA3") && !has(3, 35, "CQUAD4"));
+    assert!(has(4, 1, "CSHEAR") && has(4, 5, "CBAR") && !has(4, 6, "CBAR"));
+    assert!(has(10, 8, "CBAR") && !has(10, 7, "CBAR"));
+}

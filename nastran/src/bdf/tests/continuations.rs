@@ -92,3 +92,150 @@ fn chunks_of_a_large_deck_are_cut_between_cards() {
         assert_eq!(rbe2.at.line as usize, 4 * i + 1);
     }
 }
+
+/// Offsets, stress points and end of a bar whose cards are in any order.
+fn bar(text: &str) -> (f64, f64) {
+    let deck = clean(text);
+    (
+        deck.cards.bars[0].offsets[0][0],
+        deck.cards.pbars[0].recovery[0][0],
+    )
+}
+
+#[test]
+fn a_continuation_goes_to_the_card_that_names_it_also_below_a_card_without_a_name() {
+    let cbar = "CBAR          11       5       1       2      0.      1.      0.        +Q1\n";
+    let rest_of_cbar = "+Q1                         -1.5      0.      0.      .5      0.      0.\n";
+    let pbar = "PBAR           5       6     .02   1.-5    1.-5    1.-5                 +Q2\n";
+    let rest_of_pbar = "+Q2          .25     .25\n";
+    let grids = [
+        "GRID           1              0.      0.      0.\n",
+        "GRID           2              2.      0.      0.\n",
+    ];
+    let forms = [
+        [cbar, grids[0], pbar, grids[1], rest_of_cbar, rest_of_pbar].concat(),
+        [grids[1], rest_of_pbar, cbar, pbar, grids[0], rest_of_cbar].concat(),
+        [grids[0], rest_of_cbar, rest_of_pbar, grids[1], pbar, cbar].concat(),
+        // large field, and names that column 73 does not belong to
+        [
+            "CBAR*                 11               5               1               2*Q1\n",
+            grids[0],
+            "*Q1                   0.              1.              0.                *Q1B\n",
+            pbar,
+            grids[1],
+            "*Q1B                                                -1.5              0.*Q1C\n",
+            rest_of_pbar,
+        ]
+        .concat(),
+        [
+            &cbar.replace("        +Q1", "        XQ1"),
+            grids[0],
+            pbar,
+            grids[1],
+            rest_of_pbar,
+            grids[0],
+            rest_of_cbar,
+        ]
+        .concat(),
+        // free field
+        [
+            "CBAR,11,5,1,2,0.,1.,0.,,+Q1\n",
+            grids[0],
+            "PBAR,5,6,.02,1.-5,1.-5,1.-5,,,+Q2\n",
+            grids[1],
+            "+Q2,.25,.25\n",
+            grids[1],
+            "+Q1,,,-1.5,0.,0.,.5,0.,0.\n",
+        ]
+        .concat(),
+    ];
+    for form in forms {
+        assert_eq!(bar(&form), (-1.5, 0.25), "{form}");
+    }
+}
+
+#[test]
+fn the_marks_of_columns_1_and_73_are_no_part_of_a_name() {
+    let deck = clean(
+        "\
+PBAR    5       6       .02     1.-5    1.-5    1.-5                     +000007
+++000007.25     0.      -.25    0.      0.      .25     0.      -.25     +000008
+++0000080.      .5
+PSHELL* 7               6               .1              6               *+000009
+*+000009
+",
+    );
+    let p = &deck.cards.pbars[0];
+    assert_eq!((p.recovery[3], p.k), ([0.0, -0.25], [Some(0.0), Some(0.5)]));
+    assert_eq!(deck.cards.pshells[0].mid2, Some(6));
+}
+
+#[test]
+fn a_continuation_that_two_cards_name_is_refused_with_both_lines() {
+    let card = |id: u32| {
+        format!("PBAR    {id:<8}6       .02     1.-5    1.-5    1.-5                    +Q1\n")
+    };
+    let [grid, rest] = ["GRID    1\n", "+Q1     .25     .25\n"];
+    let deck = |parts: &[&str]| shown(&super::bulk(&parts.concat()));
+    let [five, six] = [card(5), card(6)];
+    let apart = deck(&[&five, grid, &six, grid, rest]);
+    assert_eq!(apart.len(), 1, "{apart:?}");
+    assert!(
+        apart[0].starts_with(
+            "test.bdf:5: the continuation can belong to more than one card, for lines 1 and 3 both name it: Q1"
+        ),
+        "{apart:?}"
+    );
+    let below_one = deck(&[&five, grid, &six, rest]);
+    assert!(
+        below_one.len() == 1 && below_one[0].contains("lines 1 and 3 both name it"),
+        "{below_one:?}"
+    );
+    let twice = deck(&[&five, grid, rest, grid, rest]);
+    assert!(
+        twice.len() == 1 && twice[0].contains("its name is also on line 3"),
+        "{twice:?}"
+    );
+    // names may repeat where each continuation is below its card
+    assert!(deck(&[&five, rest, &six, rest]).is_empty());
+}
+
+#[test]
+fn names_of_included_files_are_their_own() {
+    let part = |id: u32, z: &str| {
+        format!(
+            "PSHELL  {id:<8}1       .25     1               1                       +P\nGRID    {id}\n+P      {z}\n"
+        )
+    };
+    let files = [("a.inc", part(5, "-.5")), ("b.inc", part(6, "-.6"))];
+    let files = files.map(|(name, text)| (name.to_owned(), text.into_bytes()));
+    let mut loader = super::super::MemoryLoader {
+        files: files.into(),
+        ..Default::default()
+    };
+    let text = b"INCLUDE 'a.inc'\nINCLUDE 'b.inc'\n".to_vec();
+    let deck = super::super::read_deck("test.bdf", text, &mut loader);
+    assert_eq!(shown(&deck), Vec::<String>::new());
+    let z1 = |id: u32| deck.cards.pshells.iter().find(|p| p.id == id)?.z1;
+    assert_eq!((z1(5), z1(6)), (Some(-0.5), Some(-0.6)));
+}
+
+#[test]
+fn commas_behind_a_blank_field_are_text_of_the_card_above() {
+    let cards = [
+        "DEQATN  4       F(A,B)=A+MAX(A,B,\n        2.0*A,B)+\n        A,B\n",
+        "DEQATN  4       F(A,B)=A+MAX(A,B,\n\t2.0*A,B)\n",
+        "ADAPT   4       3       1\n        PART=SKIN,ELSET=7\n",
+        "OUTPUT  4\n        TYPE=DISP,PART=SKIN\n",
+        "DEQATN,4,F(A,B)=A+B\n",
+    ];
+    for card in cards {
+        let deck = clean(&format!("{card}GRID,1\n            GRID,2\nGRID,3\n"));
+        assert_eq!(deck.others.len(), 1, "{card}");
+        let ids: Vec<u32> = deck.cards.grids.iter().map(|g| g.id).collect();
+        assert_eq!(ids, [1, 2, 3], "{card}");
+    }
+    // a leading comma is an empty field 1
+    let deck = clean("RBE3    9               1       123     1.      123     1\n        ,2,3\n");
+    assert_eq!(deck.cards.rbe3s.len(), 1);
+}

@@ -318,3 +318,98 @@ fn written_cards_read_back_equal() {
     assert_eq!(c.params[0].values, [ParamValue::Real(0.00259)]);
     assert!(text.lines().all(|l| l.len() <= 72));
 }
+
+/// Scalar masses, accelerations, rotations, temperature dependent materials and normals come back as they were written.
+#[test]
+fn cards_of_mass_and_temperature_read_back_as_written() {
+    let masses = [
+        ScalarMassValue::Property(Some(7)),
+        ScalarMassValue::Direct(0.125),
+    ]
+    .map(|mass| ScalarMass {
+        id: 50,
+        mass,
+        ends: [Some((2, 1)), Some((90, 0))],
+    });
+    let accel = Accel {
+        sid: 5,
+        cid: 2,
+        n: [0.0, 0.25, 2.0],
+        direction: "Y".to_owned(),
+        table: vec![(1.0, 1.1), (2.0, 2.1), (3.0, 3.1), (4.0, 4.1), (5.0, 5.1)],
+    };
+    let accel1 = Accel1 {
+        sid: 5,
+        cid: 2,
+        scale: 9.81,
+        n: [0.0, 1.0, 2.0],
+        grids: vec![IdList::Each(vec![1, 4]), IdList::Thru(10, 20)],
+    };
+    let rforces = [true, false].map(|is_rforce1| Rforce {
+        is_rforce1,
+        sid: 5,
+        grid: 1,
+        cid: 0,
+        speed: 3.0,
+        r: [0.0, 0.0, 1.0],
+        method: Some(2),
+        acceleration: 0.5,
+        part: 8,
+    });
+    let matt1 = Matt1 {
+        id: 3,
+        tables: std::array::from_fn(|k| [Some(9), None, Some(11)][k % 3]),
+    };
+    let points = vec![
+        (0.0, 1.0),
+        (10.0, 3.0),
+        (20.0, 4.0),
+        (30.0, 4.5),
+        (40.0, 5.0),
+    ];
+    let forms = [
+        MaterialTableForm::Replaces(points.clone()),
+        MaterialTableForm::Shifted {
+            x1: 20.0,
+            points: points.clone(),
+        },
+        MaterialTableForm::Scaled {
+            x: [20.0, 2.0],
+            points,
+        },
+        MaterialTableForm::Series {
+            x: [0.0, 10.0, 0.0, 50.0],
+            a: vec![1.0, -2.0, 3.0],
+        },
+    ];
+    let tables = forms.map(|form| MaterialTable {
+        id: 9,
+        form,
+        options: String::new(),
+    });
+    let snorm = Snorm {
+        grid: 4,
+        cid: 2,
+        n: [0.0, 0.6, 0.8],
+    };
+    let pmass = Pmass { id: 7, mass: 0.25 };
+    let mut text = [accel.to_card(), accel1.to_card(), matt1.to_card()].concat();
+    text += &[snorm.to_card(), pmass.to_card()].concat();
+    masses.iter().for_each(|m| text += &m.to_card());
+    rforces.iter().for_each(|r| text += &r.to_card());
+    tables.iter().for_each(|t| text += &t.to_card());
+    let c = clean(&text).cards;
+    assert_eq!((&c.accels[0].card, &c.accel1s[0].card), (&accel, &accel1));
+    assert_eq!((&c.matt1s[0].card, &c.snorms[0].card), (&matt1, &snorm));
+    assert_eq!(c.pmasses[0].card, pmass);
+    assert_eq!(
+        c.scalar_masses.iter().map(|m| m.card).collect::<Vec<_>>(),
+        masses
+    );
+    assert_eq!(
+        c.rforces.iter().map(|r| r.card).collect::<Vec<_>>(),
+        rforces
+    );
+    let read: Vec<_> = c.material_tables.iter().map(|t| t.card.clone()).collect();
+    assert_eq!(read, tables);
+}

@@ -48,16 +48,43 @@ fn include_names_are_quoted_or_not_and_may_take_two_lines() {
 }
 
 #[test]
-fn the_first_decks_folder_comes_before_that_of_the_including_file() {
+fn a_bare_name_is_looked_for_beside_the_including_file_and_a_path_beside_the_first_deck() {
     let files = [
-        ("jobs/run/sub/one.inc", "INCLUDE 'two.inc'\n"),
+        (
+            "jobs/run/sub/one.inc",
+            "INCLUDE 'two.inc'\nINCLUDE 'parts/six.inc'\n",
+        ),
         ("jobs/run/two.inc", "GRID,1\n"),
         ("jobs/run/sub/two.inc", "GRID,2\n"),
+        ("jobs/run/parts/six.inc", "GRID,6\n"),
+        ("jobs/run/sub/parts/six.inc", "GRID,7\n"),
     ];
+    let ids = |deck: &Deck| -> Vec<u32> { deck.cards.grids.iter().map(|g| g.id).collect() };
     let deck = read("INCLUDE 'sub/one.inc'\n", &files);
-    assert_eq!(deck.cards.grids[0].id, 1);
-    let beside = read("INCLUDE 'sub/one.inc'\n", &[files[0], files[2]]);
-    assert_eq!(beside.cards.grids[0].id, 2);
+    assert_eq!(ids(&deck), [2, 6]);
+    let notes: Vec<(u32, &str)> = deck
+        .notes
+        .iter()
+        .map(|n| (n.at.line, n.text.as_str()))
+        .collect();
+    assert_eq!(notes.len(), 2, "{notes:?}");
+    assert!(
+        notes[0].0 == 1
+            && notes[0].1.starts_with(
+                "INCLUDE reads `jobs/run/sub/two.inc`, and not `jobs/run/two.inc`, whose contents differ"
+            ),
+        "{notes:?}"
+    );
+    let alone = read("INCLUDE 'sub/one.inc'\n", &[files[0], files[1], files[4]]);
+    assert_eq!((ids(&alone), alone.notes.len()), (vec![1, 7], 0));
+    // a copy is no other file
+    let copies = [
+        files[0],
+        files[1],
+        ("jobs/run/sub/two.inc", files[1].1),
+        files[3],
+    ];
+    assert!(read("INCLUDE 'sub/one.inc'\n", &copies).notes.is_empty());
 }
 
 #[test]

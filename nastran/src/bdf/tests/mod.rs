@@ -11,6 +11,7 @@ mod includes;
 mod names;
 mod numbers;
 mod replication;
+mod vocabulary;
 
 use super::{Deck, MemoryLoader, read_deck};
 

@@ -45,3 +45,55 @@ fn a_name_before_another_kind_of_card_names_nothing() {
             .is_empty()
     );
 }
+
+/// A shell deck in which a name is written above each of three properties, other cards around.
+#[test]
+fn each_name_belongs_to_the_card_below_it() {
+    let forms: [fn(u32) -> String; 5] = [
+        |i| format!("$*\n$* Property: rail {i}\nPSHELL,{i},1,.1\n"),
+        |i| format!("$*  NX PHYSICAL PROPERTY: rail {i}\n$*\nPCOMP,{i}\n,1,.1,0.\n"),
+        |i| {
+            format!(
+                "$ Elements and Element Properties for region : rail {i}\nPSHELL  {i:<8}1       .1                                              +P{i}\n+P{i}\n$ Pset: \"rail {i}\" will be imported as: \"pshell.{i}\"\nCQUAD4,{i},{i},1,2,3,4\n"
+            )
+        },
+        |i| {
+            format!(
+                "$ Elements and Element Properties for region : rail {i}\nCQUAD4,{i},{i},1,2,3,4\nPSHELL,{i},1,.1\n"
+            )
+        },
+        |i| format!("$ Femap Property {i} : rail {i}\nPSHELL,{i},1,.1\n"),
+    ];
+    for form in forms {
+        let parts: String = (7..10).map(form).collect();
+        let deck = clean(&format!(
+            "CQUAD4,70,7,1,2,3,4\nGRID,1\n{parts}MAT1,1,1.,,.3\n"
+        ));
+        let mut names: Vec<(u32, &str)> = deck
+            .labels
+            .iter()
+            .map(|l| (l.id, l.name.as_str()))
+            .collect();
+        names.sort_unstable();
+        let expected = [(7, "rail 7"), (8, "rail 8"), (9, "rail 9")];
+        assert_eq!(names, expected, "{}", form(7));
+    }
+}
+
+#[test]
+fn a_component_names_its_property() {
+    let deck = clean(
+        "$HMNAME COMP                   3\"left rail\" 5 \"rail of 8 mm\" 4\nPSHELL,5,1,8.\n",
+    );
+    let component = deck.labels.iter().find(|l| l.kind == Named::Component);
+    assert_eq!(component.map(|l| (l.id, l.property)), Some((3, Some(5))));
+    assert_eq!(deck.label(Named::Property, 5), Some("rail of 8 mm"));
+}
+
+#[test]
+fn a_name_without_its_card_names_no_later_card() {
+    let deck = clean(
+        "$ANSA_NAME;5;PSHELL;~\nPSHELL,5,1,.1\n$ a remark\n$* Property: rail\nCONROD,1,1,2,1,.1\nPSHELL,6,1,.1\n",
+    );
+    assert!(deck.labels.is_empty(), "{:?}", deck.labels);
+}

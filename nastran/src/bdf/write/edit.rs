@@ -1,6 +1,6 @@
 //! Edits of a deck: cards replaced, removed, added.
 
-use super::super::assemble::bare;
+use super::super::continuation_name::bare;
 use super::super::deck::Deck;
 use super::super::line::{Line, Lines, trim, without_comment};
 use super::super::source::Position;

@@ -100,6 +100,10 @@ fn elements(code: (i64, i64, i64), r: Record<'_>, g: &mut Geometry) -> bool {
             &mut c.solids
         }),
 
+        (1001, 10, 65) => g.fixed(r, "CMASS1", &[6], masses::cmass1, |c| &mut c.scalar_masses),
+        (1101, 11, 66) => g.fixed(r, "CMASS2", &[6], masses::cmass2, |c| &mut c.scalar_masses),
+        (1201, 12, 67) => g.fixed(r, "CMASS3", &[4], masses::cmass3, |c| &mut c.scalar_masses),
+        (1301, 13, 68) => g.fixed(r, "CMASS4", &[4], masses::cmass4, |c| &mut c.scalar_masses),
         (1401, 14, 63) => g.fixed(r, "CONM1", &[24], masses::conm1, |c| &mut c.conm1s),
         (1501, 15, 64) => g.fixed(r, "CONM2", &[13], masses::conm2, |c| &mut c.conm2s),
 
@@ -148,6 +152,7 @@ fn others(code: (i64, i64, i64), r: Record<'_>, g: &mut Geometry) -> bool {
             &mut c.pbushes
         }),
         (302, 3, 46) => g.fixed(r, "PELAS", &[4], properties::pelas, |c| &mut c.pelas),
+        (402, 4, 44) => g.fixed(r, "PMASS", &[2], masses::pmass, |c| &mut c.pmasses),
         (2402, 24, 281) => g.fixed(r, "PSOLID", &[7], properties::psolid, |c| &mut c.psolids),
 
         (103, 1, 77) => g.fixed(r, "MAT1", &[12], materials::mat1, |c| &mut c.mat1s),

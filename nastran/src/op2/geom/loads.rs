@@ -110,6 +110,7 @@ pub(super) fn rforce(f: &mut Fields<'_>) -> Option<Rforce> {
     let method = if f.left() > 0 { f.blank_or_id()? } else { None };
     let acceleration = if f.left() > 0 { f.real()? } else { 0.0 };
     Some(Rforce {
+        is_rforce1: false,
         sid,
         grid,
         cid,
@@ -117,6 +118,7 @@ pub(super) fn rforce(f: &mut Fields<'_>) -> Option<Rforce> {
         r,
         method,
         acceleration,
+        part: 0,
     })
 }
 

@@ -1,7 +1,8 @@
-//! CONM1 and CONM2.
+//! CONM1, CONM2, CMASS1 to CMASS4, PMASS.
 
 use super::fields::Fields;
-use crate::cards::{Conm1, Conm2};
+use super::lines::ends;
+use crate::cards::{Conm1, Conm2, Pmass, ScalarMass, ScalarMassValue};
 
 /// CONM1: `eid g cid m1..m21`.
 pub(super) fn conm1(f: &mut Fields<'_>) -> Option<Conm1> {
@@ -22,5 +23,55 @@ pub(super) fn conm2(f: &mut Fields<'_>) -> Option<Conm2> {
         mass: f.real()?,
         offset: f.reals()?,
         inertia: f.reals()?,
+    })
+}
+
+/// CMASS1: `eid pid g1 g2 c1 c2`.
+pub(super) fn cmass1(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    Some(ScalarMass {
+        id: f.id()?,
+        mass: ScalarMassValue::Property(Some(f.id()?)),
+        ends: ends(f)?,
+    })
+}
+
+/// CMASS2: `eid m g1 g2 c1 c2`.
+pub(super) fn cmass2(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    Some(ScalarMass {
+        id: f.id()?,
+        mass: ScalarMassValue::Direct(f.real()?),
+        ends: ends(f)?,
+    })
+}
+
+/// CMASS3: `eid pid s1 s2`.
+pub(super) fn cmass3(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    Some(ScalarMass {
+        id: f.id()?,
+        mass: ScalarMassValue::Property(Some(f.id()?)),
+        ends: points(f)?,
+    })
+}
+
+/// CMASS4: `eid m s1 s2`.
+pub(super) fn cmass4(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    Some(ScalarMass {
+        id: f.id()?,
+        mass: ScalarMassValue::Direct(f.real()?),
+        ends: points(f)?,
+    })
+}
+
+/// Two scalar points; 0 is ground.
+fn points(f: &mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]> {
+    let points = [f.blank_or_id()?, f.blank_or_id()?];
+    Some(points.map(|p| p.map(|p| (p, 0))))
+}
+
+/// PMASS: `pid m`.
+pub(super) fn pmass(f: &mut Fields<'_>) -> Option<Pmass> {
+    Some(Pmass {
+        id: f.id()?,
+        mass: f.real()?,
     })
 }

@@ -29,6 +29,7 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
     once("solid", unique(&mut c.solids, |e| e.id));
     once("CONM1", unique(&mut c.conm1s, |e| e.id));
     once("CONM2", unique(&mut c.conm2s, |e| e.id));
+    once("CMASS", unique(&mut c.scalar_masses, |e| e.id));
     once("RBE1", unique(&mut c.rbe1s, |e| e.id));
     once("RBE2", unique(&mut c.rbe2s, |e| e.id));
     once("RBE3", unique(&mut c.rbe3s, |e| e.id));
@@ -44,6 +45,7 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
     once("PTUBE", unique(&mut c.ptubes, |p| p.id));
     once("PBUSH", unique(&mut c.pbushes, |p| p.id));
     once("PELAS", unique(&mut c.pelas, |p| p.id));
+    once("PMASS", unique(&mut c.pmasses, |p| p.id));
     once("PSOLID", unique(&mut c.psolids, |p| p.id));
     once("MAT1", unique(&mut c.mat1s, |m| m.id));
     once("MAT2", unique(&mut c.mat2s, |m| m.id));

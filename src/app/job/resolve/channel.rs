@@ -3,6 +3,7 @@
 use super::super::faults::Collector;
 use super::super::raw::{RawChannelCorrection, RawCombination};
 use super::super::spanned::Spanned;
+use super::super::strain::stated_readings;
 use super::super::suggest;
 use super::super::types::*;
 use crate::app::fault::{Fault, FaultList};
@@ -81,6 +82,7 @@ pub(super) fn corrections(
                 exchanged_with: raw.exchanged_with.as_ref().map(|s| s.value().clone()),
                 angle_deg: c.number(&raw.angle_deg, "correction.angle_deg", "a number", any),
                 ignore: raw.ignore.as_ref().is_some_and(|v| *v.value()),
+                of_rosette: false,
                 line: c.line(section),
             })
         })
@@ -89,24 +91,30 @@ pub(super) fn corrections(
 
 /// Corrections name gauges of the job, combinations its loads, where the job itself lists these.
 pub fn check_names(job: &Job, faults: &mut FaultList) {
-    let gauges: Vec<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
-    // A rosette's legs are channels: `R1.a`.
-    let is_gauge = |name: &str| {
-        gauges.is_empty()
-            || gauges.iter().any(|g| {
-                name.strip_prefix(g)
-                    .is_some_and(|r| r.is_empty() || r.starts_with('.'))
-            })
-    };
+    // A rosette's legs are channels too: `R1.a`.
+    let mut channels: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
+    channels.extend(stated_readings(job));
     for correction in &job.corrections {
         let named = std::iter::once(&correction.gauge).chain(&correction.exchanged_with);
-        for name in named.filter(|n| !is_gauge(n)) {
+        for name in named.filter(|n| !channels.is_empty() && !channels.contains(n)) {
             faults.push(Fault::at(
                 &*job.file,
                 correction.line,
                 "correction.gauge",
                 format!("the job has no gauge `{name}`"),
-                suggest::remedy(name, gauges.iter().copied()),
+                suggest::remedy(name, channels.iter().map(String::as_str)),
+            ));
+        }
+        if correction.angle_deg.is_some() && job.model.is_none() {
+            faults.push(Fault::at(
+                &*job.file,
+                correction.line,
+                "correction.angle_deg",
+                format!(
+                    "gauge `{}` is turned on the model, and the job has no [model]",
+                    correction.gauge
+                ),
+                "drop `angle_deg`, or turn the gauge where S is computed",
             ));
         }
     }

@@ -6,7 +6,8 @@ use super::super::spanned::Spanned;
 use super::super::types::{JobGauge, NamedFile, StatedPlace};
 use crate::app::fault::{Fault, FaultList};
 use crate::fe::strain_tensor::Surface;
-use crate::gauge::{Bridge, Rosette};
+use crate::gauge::{Bridge, Rosette, opposite};
+use crate::placement::Role;
 
 /// Surfaces by their words.
 pub(super) const SURFACES: [(&str, Surface); 2] =
@@ -15,6 +16,11 @@ pub(super) const SURFACES: [(&str, Surface); 2] =
 pub(super) const ROSETTES: [(&str, Rosette); 2] = [
     ("rectangular", Rosette::Rectangular),
     ("delta", Rosette::Delta),
+];
+const ROLES: [(&str, Role); 3] = [
+    ("estimate", Role::Estimate),
+    ("validation", Role::Validation),
+    ("reserve", Role::Validation),
 ];
 const POINTS: [(&str, u8); 4] = [("C", 0), ("D", 1), ("E", 2), ("F", 3)];
 
@@ -35,7 +41,7 @@ pub(crate) fn surface_from(word: &str) -> Option<Surface> {
     from(word, &SURFACES)
 }
 
-/// A wiring by its name; in a table `full` and `half` mean bending.
+/// A wiring by its name; `full` and `half` mean bending.
 pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
     match name {
         "full" => Some(Bridge::FullBending),
@@ -47,6 +53,11 @@ pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
 /// `rectangular` or `delta`.
 pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
     from(word, &ROSETTES)
+}
+
+/// `estimate`, `validation` or `reserve`.
+pub(crate) fn role_from(word: &str) -> Option<Role> {
+    from(word, &ROLES)
 }
 
 /// C, D, E, F as 0 to 3.
@@ -79,6 +90,16 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
         .as_ref()
         .and_then(|p| c.choose_at(p, "gauge.point", &POINTS));
     let station = c.number(&raw.station, "gauge.station", STATION, is_station);
+    if let (Some(stated), None) = (&raw.station, &raw.point) {
+        let line = c.line(stated);
+        c.faults.push(Fault::at(
+            c.file,
+            line,
+            "gauge.station",
+            STATION_ALONE,
+            POINT_STATED,
+        ));
+    }
     let position = raw.position.as_ref().map(|p| *p.value());
     let place = match (number(&raw.element), position) {
         (Some(element), _) => match point {
@@ -96,12 +117,18 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
         .surface
         .as_ref()
         .and_then(|s| c.choose_at(s, "gauge.surface", &SURFACES));
-    let surface2 = c.choose(&raw.surface2, "gauge.surface2", &SURFACES, Surface::Bottom);
-    let bridge = c.choose(&raw.bridge, "gauge.bridge", &bridges(), Bridge::Quarter);
+    let surface2 = raw
+        .surface2
+        .as_ref()
+        .and_then(|s| c.choose_at(s, "gauge.surface2", &SURFACES));
+    let mut words = bridges().to_vec();
+    words.extend([("half", Bridge::HalfBending), ("full", Bridge::FullBending)]);
+    let bridge = c.choose(&raw.bridge, "gauge.bridge", &words, Bridge::Quarter);
     let rosette = raw
         .rosette
         .as_ref()
         .and_then(|r| c.choose_at(r, "gauge.rosette", &ROSETTES));
+    let role = c.choose(&raw.role, "gauge.role", &ROLES, Role::Estimate);
     let gauge = JobGauge {
         name: name?,
         place,
@@ -118,7 +145,7 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
         grid_length: c
             .at_least_zero(&raw.grid_length, "gauge.grid_length")
             .unwrap_or(0.0),
-        pair: number(&raw.element2).map(|e| (e, surface2)),
+        pair: None,
         rosette,
         transverse_sensitivity: c
             .number(
@@ -128,13 +155,64 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
                 is_kt,
             )
             .unwrap_or(0.0),
+        role,
         member: String::new(),
         file: c.file.to_owned(),
         line: c.line(section),
     };
+    let gauge = with_pair(gauge, number(&raw.element2), surface2, c.faults);
     check_gauge(&gauge, c.faults);
     Some(gauge)
 }
+
+/// Returns the gauge with its second pair. `surface2` left out is the opposite of `surface`; `element2` left out beside a `surface2` is the
+/// element of the gauge itself.
+pub(crate) fn with_pair(
+    gauge: JobGauge,
+    element2: Option<u32>,
+    surface2: Option<Surface>,
+    faults: &mut FaultList,
+) -> JobGauge {
+    let own = match gauge.place {
+        StatedPlace::Element(id) => Some(id),
+        _ => None,
+    };
+    let side = surface2.unwrap_or(opposite(gauge.surface));
+    let pair = match (element2, surface2, own) {
+        (Some(id), ..) => Some((id, side)),
+        (None, Some(_), Some(id)) => Some((id, side)),
+        (None, ..) => None,
+    };
+    let mut fault = |wrong: &str, remedy: &str| {
+        let wrong = format!("gauge `{}`: {wrong}", gauge.name);
+        faults.push(Fault::at(
+            &*gauge.file,
+            gauge.line,
+            "surface2",
+            wrong,
+            remedy,
+        ));
+    };
+    if surface2.is_some() && pair.is_none() {
+        fault(
+            "`surface2` needs the element of the second pair",
+            "give `element2`, or drop `surface2`: the second pair is then on the opposite side",
+        );
+    }
+    if own.is_some() && pair == own.map(|id| (id, gauge.surface)) {
+        fault(
+            "both pairs are on the same side of the same element",
+            "give the opposite side as `surface2`, or another `element2`",
+        );
+    }
+    JobGauge { pair, ..gauge }
+}
+
+/// A station of a gauge that is on no bar or beam.
+pub(in crate::app::job) const STATION_ALONE: &str =
+    "a station is a place along a bar or beam, and the gauge states no `point`";
+pub(in crate::app::job) const POINT_STATED: &str =
+    "state `point` (C, D, E or F) of a bar or beam, or leave `station` out";
 
 /// Shares of a bar's length.
 const STATION: &str = "0 (end A) to 1 (end B)";
@@ -210,7 +288,7 @@ pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
         fault(
             "element2",
             "a quarter bridge has no second pair",
-            "drop `element2`, or set `bridge`",
+            "drop `element2` and `surface2`, or set `bridge`",
         );
     }
     if g.rosette.is_some() && g.bridge != Bridge::Quarter {

@@ -13,6 +13,15 @@ use crate::payload::Place;
 use crate::reconcile::strain::WheelForces;
 use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
 
+/// Units of time with the seconds in one.
+const TIME_UNITS: [(&str, f64); 6] = [
+    ("s", 1.0),
+    ("ms", 1e-3),
+    ("us", 1e-6),
+    ("min", 60.0),
+    ("h", 3600.0),
+    ("d", 86_400.0),
+];
 /// Elements that `respond` reports where the job says nothing.
 const DEFAULT_HOTTEST: usize = 20;
 /// Power of the load range in pseudo-damage where the job says nothing: usual for welded and cast parts of vehicles.
@@ -102,7 +111,7 @@ pub(super) fn measured(
         time_unit_s: raw
             .time_unit
             .as_ref()
-            .and_then(|word| c.choose_at(word, "measured.time_unit", &[("s", 1.0), ("ms", 1e-3)])),
+            .and_then(|word| c.choose_at(word, "measured.time_unit", &TIME_UNITS)),
         line: c.line(section),
     })
 }

@@ -18,6 +18,8 @@ pub struct StrainCorrection {
     pub angle_deg: Option<f64>,
     /// The channel is taken for silent.
     pub ignore: bool,
+    /// Leg of a rosette whose correction the job states for the rosette as a whole.
+    pub of_rosette: bool,
     /// Line of the job.
     pub line: u32,
 }

@@ -2,6 +2,7 @@
 
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, Rosette};
+use crate::placement::Role;
 
 /// Where a gauge sits as its user states it: by ids and axes of the deck, or not at all. [`crate::gauge::GaugePlace`] is the same found on a
 /// model.
@@ -55,6 +56,8 @@ pub struct JobGauge {
     pub rosette: Option<Rosette>,
     /// Transverse sensitivity Kt, a fraction.
     pub transverse_sensitivity: f64,
+    /// Whether loads are estimated from it.
+    pub role: Role,
     /// Free columns of the table, such as `member`.
     pub member: String,
     /// File that states it.

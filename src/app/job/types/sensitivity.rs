@@ -33,3 +33,18 @@ pub struct Signatures {
     /// Zone to file.
     pub rail_stiffness: BTreeMap<String, NamedFile>,
 }
+
+impl Signatures {
+    /// Returns every file that is named.
+    pub fn files(&self) -> impl Iterator<Item = &NamedFile> {
+        let single = [
+            &self.lateral_wheel_loads,
+            &self.thermal,
+            &self.payload,
+            &self.unaccounted_mass,
+            &self.gauge_angle,
+        ];
+        let zones = self.rail_stiffness.values();
+        single.into_iter().flatten().chain(zones)
+    }
+}

@@ -51,25 +51,29 @@ pub(crate) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
     }
 }
 
+/// Compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
+///
+/// Strain at (y, z) is e0 + z ky - y kz.
+pub(super) fn compliance(s: &Section, e: f64, length: f64) -> Matrix3<f64> {
+    let tiny = ALMOST_NOTHING;
+    let l2 = length * length;
+    let largest = s
+        .area
+        .max(s.i1 / l2)
+        .max(s.i2 / l2)
+        .max(s.j / l2)
+        .max(f64::MIN_POSITIVE);
+    let a = s.area.max(tiny * largest);
+    let (i1, i2) = (s.i1.max(tiny * largest * l2), s.i2.max(tiny * largest * l2));
+    let [yn, zn] = s.neutral;
+    let (yy, zz, yz) = (i1 + a * yn * yn, i2 + a * zn * zn, s.i12 + a * yn * zn);
+    let k = Matrix3::new(a, a * zn, -a * yn, a * zn, zz, -yz, -a * yn, -yz, yy) * e;
+    k.try_inverse().unwrap_or_else(Matrix3::zeros)
+}
+
 impl LocalBeam<'_> {
-    /// Compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
-    ///
-    /// Strain at (y, z) is e0 + z ky - y kz.
     pub(super) fn compliance(&self, s: &Section) -> Matrix3<f64> {
-        let tiny = ALMOST_NOTHING;
-        let l2 = self.length * self.length;
-        let largest = s
-            .area
-            .max(s.i1 / l2)
-            .max(s.i2 / l2)
-            .max(s.j / l2)
-            .max(f64::MIN_POSITIVE);
-        let a = s.area.max(tiny * largest);
-        let (i1, i2) = (s.i1.max(tiny * largest * l2), s.i2.max(tiny * largest * l2));
-        let [yn, zn] = s.neutral;
-        let (yy, zz, yz) = (i1 + a * yn * yn, i2 + a * zn * zn, s.i12 + a * yn * zn);
-        let k = Matrix3::new(a, a * zn, -a * yn, a * zn, zz, -yz, -a * yn, -yz, yy) * self.e;
-        k.try_inverse().unwrap_or_else(Matrix3::zeros)
+        compliance(s, self.e, self.length)
     }
 
     /// Flexibility of end B with end A held: N, Vy, Vz, T, My, Mz.

@@ -44,38 +44,38 @@ impl LineStrain {
     }
 }
 
+/// Section forces N, Vy, Vz, T, My, Mz at `xi` from what acts beyond it.
+pub(super) fn beyond(loads: &[LineLoad], xi: f64, length: f64) -> Vector6<f64> {
+    let mut sum = Vector6::zeros();
+    let mut add = |x: f64, f: Vec3, m: Vec3| {
+        let arm = length * (x - xi);
+        sum += Vector6::new(f.x, f.y, f.z, m.x, m.y - arm * f.z, m.z + arm * f.y);
+    };
+    for load in loads {
+        let [a, b] = load.span;
+        if a == b {
+            if a >= xi {
+                add(a, load.force[0], load.moment[0]);
+            }
+            continue;
+        }
+        let low = a.max(xi);
+        if low >= b {
+            continue;
+        }
+        for (s, w) in GAUSS {
+            let x = low + s * (b - low);
+            let share = (x - a) / (b - a);
+            let mix = |v: [Vec3; 2]| (v[0] + (v[1] - v[0]) * share) * (w * (b - low) * length);
+            add(x, mix(load.force), mix(load.moment));
+        }
+    }
+    sum
+}
+
 impl Interior {
     pub(crate) fn is_empty(&self) -> bool {
         self.loads.is_empty() && self.thermal.is_none()
-    }
-
-    /// Section forces N, Vy, Vz, T, My, Mz at `xi` from what acts beyond it.
-    pub(super) fn beyond(&self, xi: f64, length: f64) -> Vector6<f64> {
-        let mut sum = Vector6::zeros();
-        let mut add = |x: f64, f: Vec3, m: Vec3| {
-            let arm = length * (x - xi);
-            sum += Vector6::new(f.x, f.y, f.z, m.x, m.y - arm * f.z, m.z + arm * f.y);
-        };
-        for load in &self.loads {
-            let [a, b] = load.span;
-            if a == b {
-                if a >= xi {
-                    add(a, load.force[0], load.moment[0]);
-                }
-                continue;
-            }
-            let low = a.max(xi);
-            if low >= b {
-                continue;
-            }
-            for (s, w) in GAUSS {
-                let x = low + s * (b - low);
-                let share = (x - a) / (b - a);
-                let mix = |v: [Vec3; 2]| (v[0] + (v[1] - v[0]) * share) * (w * (b - low) * length);
-                add(x, mix(load.force), mix(load.moment));
-            }
-        }
-        sum
     }
 
     /// Where sections, loads and so section forces change their law.
@@ -104,7 +104,7 @@ impl Interior {
                     0.0, 0.0, -arm, 0.0, 1.0, 0.0, //
                     0.0, arm, 0.0, 0.0, 0.0, 1.0,
                 ]);
-                let q = self.beyond(xi, l);
+                let q = beyond(&self.loads, xi, l);
                 let mut strain = beam.compliance(&s) * Vector3::new(q[0], q[4], q[5]);
                 if let Some(t) = &self.thermal {
                     strain += t.at(xi);
@@ -127,7 +127,7 @@ impl Interior {
     pub(super) fn end_forces(&self, beam: &LocalBeam<'_>) -> Option<SVector<f64, 12>> {
         let (kb, g) = beam.basic()?;
         let held = kb * self.displacement(beam);
-        let at_a = self.beyond(0.0, beam.length) - g * held;
+        let at_a = beyond(&self.loads, 0.0, beam.length) - g * held;
         let mut f = SVector::<f64, 12>::zeros();
         f.fixed_rows_mut::<6>(0).copy_from(&at_a);
         f.fixed_rows_mut::<6>(6).copy_from(&held);

@@ -1,12 +1,12 @@
 //! Beams of a model: stiffness in the basic frame, strain at the recovery points.
 
-use super::flexibility::{LocalBeam, release, section_at};
-use super::interior::Interior;
+use super::flexibility::{LocalBeam, compliance, release, section_at};
+use super::interior::{Interior, LineLoad, beyond};
 use super::warping::{self, torque_at_ends, warping_torsion};
 use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
 use crate::linalg::{SMatrix, SVector, Vector3};
-use crate::model::{Beam, BeamProperty, GridIx, MaterialKind, Model};
+use crate::model::{Beam, BeamProperty, GridIx, MaterialKind, Model, Section};
 
 type Matrix12 = SMatrix<f64, 12, 12>;
 
@@ -229,45 +229,66 @@ pub(crate) struct StationStrain {
     pub(crate) axial: f64,
 }
 
-/// Mechanical axial strain at C, D, E, F and at the neutral axis of the stations of beam `i` (ends of a CBAR, all
-/// sections of a CBEAM) from displacements (basic).
+/// Forces on end B of a beam, element axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BeamForces {
+    /// N, Vy, Vz.
+    force: [f64; 3],
+    /// My, Mz.
+    moment: [f64; 2],
+}
+
+/// Returns the forces on end B of beam `i` from displacements (basic), those that hold what acts between its ends included.
 ///
 /// # Errors
 /// As `beam_stiffness`.
-pub(crate) fn beam_strain(
+pub(crate) fn beam_forces(
     model: &Model,
     i: usize,
     u: &[[f64; 6]],
     interior: &Interior,
-) -> Result<Vec<StationStrain>, Refusal> {
+) -> Result<BeamForces, Refusal> {
     let beam = &model.beams[i];
-    let (local, property) = local(model, beam)?;
     let grid: Vec<f64> = beam.grids.iter().flat_map(|g| u[g.us()]).collect();
     let (k, held) = pinned(model, beam, interior)?;
-    let force = k * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid)) - held;
-    let stations = if beam.is_beam {
-        property.sections.iter().map(|s| s.0).collect()
-    } else {
-        vec![0.0, 1.0]
-    };
-    Ok(stations
-        .into_iter()
-        .map(|xi| {
-            let s = section_at(&property.sections, xi);
-            let arm = local.length * (1.0 - xi);
-            let inside = interior.beyond(xi, local.length);
-            let at_section = Vector3::new(
-                force[6] + inside[0],
-                force[10] - arm * force[8] + inside[4],
-                force[11] + arm * force[7] + inside[5],
-            );
-            let c = local.compliance(&s) * at_section;
-            let at = |[y, z]: [f64; 2]| c[0] + z * c[1] - y * c[2];
-            StationStrain {
-                station: xi,
-                points: s.recovery.map(at),
-                axial: at(s.neutral),
-            }
-        })
-        .collect())
+    let f = k * (to_element(beam) * SVector::<f64, 12>::from_column_slice(&grid)) - held;
+    Ok(BeamForces {
+        force: [f[6], f[7], f[8]],
+        moment: [f[10], f[11]],
+    })
+}
+
+/// Returns the mechanical axial strain at C, D, E, F and at the neutral axis at station `xi` of a beam: sections, modulus and length,
+/// forces on end B, loads between the ends.
+pub(crate) fn strain_at(
+    (sections, e, length): (&[(f64, Section)], f64, f64),
+    forces: &BeamForces,
+    loads: &[LineLoad],
+    xi: f64,
+) -> StationStrain {
+    let s = section_at(sections, xi);
+    let arm = length * (1.0 - xi);
+    let inside = beyond(loads, xi, length);
+    let ([n, vy, vz], [my, mz]) = (forces.force, forces.moment);
+    let at_section = Vector3::new(
+        n + inside[0],
+        my - arm * vz + inside[4],
+        mz + arm * vy + inside[5],
+    );
+    let c = compliance(&s, e, length) * at_section;
+    let at = |[y, z]: [f64; 2]| c[0] + z * c[1] - y * c[2];
+    StationStrain {
+        station: xi,
+        points: s.recovery.map(at),
+        axial: at(s.neutral),
+    }
+}
+
+/// Returns modulus and length of beam `i`.
+///
+/// # Errors
+/// As `beam_stiffness`.
+pub(crate) fn modulus_and_length(model: &Model, i: usize) -> Result<(f64, f64), Refusal> {
+    let (local, _) = local(model, &model.beams[i])?;
+    Ok((local.e, local.length))
 }

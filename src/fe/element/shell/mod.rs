@@ -26,7 +26,7 @@ pub(crate) use area::corner_products;
 pub(crate) use expansion::in_axes_at;
 pub(crate) use laminate::Lamination;
 pub(crate) use many::{linear_part, many_grids, over_face};
-pub(crate) use normals::{CornerDirectors, shared_normals};
+pub(crate) use normals::{CornerDirectors, normals_beyond, shared_normals};
 pub(crate) use of_model::{
     AnyShell, many_mass, material_angle, shell_heat, shell_mass, shell_matrices, shell_stiffness,
     shell_thermal_force, surfaces,

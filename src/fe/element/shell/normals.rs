@@ -1,6 +1,7 @@
 //! Directors: the shell normal at each corner, shared by the shells of a grid that meet smoothly (PARAM,SNORM).
 
-use crate::model::{Model, Shell, Vec3};
+use crate::model::{GridIx, GridNormal, Model, Shell, Vec3};
+use std::collections::{HashMap, HashSet};
 
 /// Director at each corner of a shell; a triangle's fourth repeats its third.
 pub(crate) type CornerDirectors = [Vec3; 4];
@@ -22,7 +23,8 @@ fn corner_normals(model: &Model, shell: &Shell) -> CornerDirectors {
     normals
 }
 
-/// Directors of every shell: the mean normal of the shells at a grid where all of them lie within `snorm_rad` of it, else the shell's own.
+/// Directors of every shell: the normal that SNORM gives a grid; else the mean normal of the shells at a grid where all of them lie within
+/// `snorm_rad` of it, else the shell's own.
 ///
 /// Shells of opposite orientation share a normal too, each with its own sign. An angle of zero or less keeps all normals apart.
 pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
@@ -34,6 +36,7 @@ pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
     if model.params.snorm_rad <= 0.0 {
         return own;
     }
+    let given: HashMap<GridIx, Vec3> = model.normals.iter().map(|n| (n.grid, n.n)).collect();
     let limit = model.params.snorm_rad.cos();
     let mut reference = vec![Vec3::zeros(); model.grids.len()];
     let mut sum = vec![Vec3::zeros(); model.grids.len()];
@@ -58,7 +61,9 @@ pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
     let mut result = own;
     for (shell, normals) in model.shells.iter().zip(&mut result) {
         for (g, n) in corners(shell).zip(normals.iter_mut()) {
-            if shared[g.us()] {
+            if let Some(given) = given.get(&g) {
+                *n = given * given.dot(n).signum();
+            } else if shared[g.us()] {
                 *n = sum[g.us()] * sum[g.us()].dot(n).signum();
             }
         }
@@ -67,4 +72,27 @@ pub(crate) fn shared_normals(model: &Model) -> Vec<CornerDirectors> {
         }
     }
     result
+}
+
+/// Returns the normals of SNORM that the formulation refuses. Such a normal is farther than PARAM,SNORM from that of a shell at its grid, or
+/// PARAM,SNORM turns shared normals off.
+pub(crate) fn normals_beyond(model: &Model) -> Vec<&GridNormal> {
+    let given: HashMap<GridIx, &GridNormal> = model.normals.iter().map(|n| (n.grid, n)).collect();
+    if given.is_empty() {
+        return Vec::new();
+    }
+    let limit = model.params.snorm_rad.cos();
+    let mut beyond = HashSet::new();
+    for shell in &model.shells {
+        let corners = shell.grids.into_iter().take(shell.shape.n_corners());
+        for (g, own) in corners.zip(corner_normals(model, shell)) {
+            let far =
+                |n: &&GridNormal| model.params.snorm_rad <= 0.0 || n.n.dot(&own).abs() < limit;
+            if given.get(&g).copied().is_some_and(|n| far(&n)) {
+                beyond.insert(g);
+            }
+        }
+    }
+    let all = model.normals.iter();
+    all.filter(|n| beyond.contains(&n.grid)).collect()
 }

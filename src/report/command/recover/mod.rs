@@ -20,7 +20,8 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::recover::{Recovered, States};
-use crate::report::page::Page;
+use crate::report::page::{Page, number};
+use std::fmt::Write;
 
 impl Report for Outcome<Recovered> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "loads.csv"];
@@ -40,9 +41,22 @@ impl Report for Outcome<Recovered> {
     }
 
     fn words(&self) -> String {
-        match &self.states {
+        let mut text = match &self.states {
             States::Runs(runs) => runs::words(runs),
             States::Record(record) => record::words(record),
+        };
+        for g in &self.validation {
+            let _ = match (g.rms_microstrain, g.expected_rms_microstrain) {
+                (Some(rms), Some(expected)) => writeln!(
+                    text,
+                    "validation gauge {}: differs from its prediction by {} microstrain rms, expected {}",
+                    g.name,
+                    number(rms),
+                    number(expected)
+                ),
+                _ => writeln!(text, "validation gauge {}: nothing to compare", g.name),
+            };
         }
+        text
     }
 }

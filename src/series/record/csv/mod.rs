@@ -2,7 +2,7 @@
 //!
 //! Comma, semicolon or tab between fields, a decimal comma beside the last two; UTF-8, UTF-16 or an eight-bit code; lines before the
 //! header, a row of units after it, units in the header, quoted fields; times in seconds, in a stated unit, as date and time in one column or
-//! in two that follow each other, or as time of day within one day.
+//! in two that follow each other, or as time of day.
 
 mod date;
 mod end;
@@ -100,6 +100,10 @@ impl RecordReader for Csv {
             },
             None => Times::None { samples: None },
         }
+    }
+
+    fn are_times_of_day(&self) -> bool {
+        matches!(self.layout.time, Some((_, TimeKind::OfDay { .. })))
     }
 
     fn left_out(&self) -> Option<usize> {

@@ -5,12 +5,17 @@
 
 mod fault;
 mod segments;
+mod stamp;
+#[cfg(test)]
+mod tests;
 
-use super::column::{Column, is_time};
+use super::column::{Column, is_time, seconds_in};
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use fault::broken;
 use segments::{Channel, Kind, Value, channels_of};
+use stamp::Stamp;
 
 /// Samples a piece.
 const PIECE: usize = 65_536;
@@ -34,41 +39,27 @@ pub(super) struct Tdms {
 type Scale = Vec<f64>;
 
 impl Tdms {
-    /// The channels of one clock: those of `wanted` (of most numbers, where none is named) and all others as long and as fast.
+    /// The channels sampled at the same times: those of `wanted` (of most numbers, where none is named) and all others sampled with them.
     ///
     /// # Errors
-    /// A file that can't be read, channels of a kind that is not read, wanted channels of another clock.
+    /// A file that can't be read, channels of a kind that is not read, wanted channels that were sampled at other times.
     pub(super) fn new(bytes: Bytes, wanted: &[String]) -> Result<Self, SeriesError> {
         let all = channels_of((*bytes).as_ref())?;
-        // Length and step, by which channels belong together.
-        let clock = |c: &Channel| (c.samples, c.number("wf_increment").map(f64::to_bits));
-        let weight = |of: &Channel| {
-            let same = all.iter().filter(|c| clock(c) == clock(of));
-            let asked = same.clone().filter(|c| wanted.contains(&c.name)).count();
-            (asked, same.count().saturating_mul(of.samples))
-        };
-        let Some(main) = all
-            .iter()
-            .filter(|c| c.samples > 0)
-            .max_by_key(|c| weight(c))
-        else {
+        let samplings = samplings(&all, (*bytes).as_ref());
+        let named = all.iter().zip(&samplings);
+        let named: Vec<(&str, Sampling)> = named.map(|(c, s)| (c.name.as_str(), *s)).collect();
+        let Some((main, together)) = sampled_together(&named, wanted)? else {
             return Err(SeriesError::Empty);
         };
-        let (main_clock, samples) = (clock(main), main.samples);
-        let step = main.number("wf_increment").filter(|s| *s > 0.0);
-        let start = main.number("wf_start_offset").unwrap_or(0.0);
-        let (mut columns, mut channels, mut apart) = (Vec::new(), Vec::new(), Vec::new());
-        let mut time = None;
         let names: Vec<String> = all.iter().map(|c| c.name.clone()).collect();
-        for c in all {
-            if clock(&c) != main_clock {
-                if wanted.contains(&c.name) {
-                    apart.push(c.name);
-                }
+        let (mut columns, mut channels, mut time) = (Vec::new(), Vec::new(), None);
+        for (at, (c, together)) in all.into_iter().zip(together).enumerate() {
+            let is_times = main.times == Some(at);
+            if !(together || is_times) || c.kind == Kind::Time && !is_times {
                 continue;
             }
             let scale = scale_of(&c)?;
-            if step.is_none() && time.is_none() && is_time(&c.name, channels.is_empty()) {
+            if is_times {
                 time = Some((c, scale));
                 continue;
             }
@@ -79,43 +70,110 @@ impl Tdms {
             } else {
                 c.name.clone()
             };
-            let unit = c
-                .text("unit_string")
-                .or_else(|| c.text("NI_UnitDescription"));
-            columns.push(Column::of_channel(&name, unit.unwrap_or_default()));
+            let unit = c.unit();
+            columns.push(Column::of_channel(&name, unit));
             channels.push((c, scale));
         }
-        if !apart.is_empty() {
-            return Err(SeriesError::Apart { names: apart });
-        }
-        let times = match (step, &time) {
-            (Some(step_s), _) => Times::Even {
-                start_s: start,
-                step_s,
-                samples,
-            },
-            (None, Some((c, _))) => Times::Stored {
-                rounding_s: if c.kind == Kind::F32 {
-                    86_400.0 * 6e-8
-                } else {
-                    0.0
-                },
-                epoch_s: None,
-                unit_stated: c.text("unit_string").is_some_and(|u| !u.is_empty()),
-            },
-            (None, None) => Times::None {
-                samples: Some(samples),
-            },
-        };
-        Ok(Self {
+        let samples = main.samples;
+        let mut file = Self {
             bytes,
             columns,
             channels,
-            time,
-            times,
+            time: None,
+            times: Times::None {
+                samples: Some(samples),
+            },
             samples,
-        })
+        };
+        match time {
+            Some((c, scale)) => file.set_time(c, scale)?,
+            None if main.step_s > 0.0 => {
+                file.times = Times::Even {
+                    start_s: main.start_s,
+                    step_s: main.step_s,
+                    samples,
+                }
+            }
+            None => {}
+        }
+        Ok(file)
     }
+
+    /// Takes a channel as the times of the others.
+    fn set_time(&mut self, c: Channel, mut scale: Scale) -> Result<(), SeriesError> {
+        let unit = c.unit().to_owned();
+        let is_absolute = c.kind == Kind::Time;
+        let mut epoch_s = None;
+        if is_absolute {
+            let mut first = [f64::NAN];
+            c.decode((*self.bytes).as_ref(), 0, 1, first.iter_mut());
+            let [first] = first;
+            epoch_s = Some(first).filter(|t| t.is_finite());
+            scale = vec![-epoch_s.unwrap_or(0.0), 1.0];
+        } else {
+            let second = seconds_in(&unit)
+                .ok_or_else(|| broken(format!("`{unit}` of `{}` is no unit of time", c.name)))?;
+            scale.iter_mut().for_each(|factor| *factor *= second);
+        }
+        let one = scale.get(1).copied().unwrap_or(1.0).abs();
+        self.times = Times::Stored {
+            rounding_s: match c.kind {
+                Kind::F64 => 0.0,
+                // A real of 32 bits is good to 2^-24 of itself, of which the end of a day's record is taken.
+                Kind::F32 => 86_400.0 * 6e-8 * one,
+                // Seconds since 1970 in 64 bits are good to a quarter of a microsecond.
+                Kind::Time => 2.5e-7,
+                _ => 0.5 * one,
+            },
+            epoch_s,
+            unit_stated: is_absolute || !unit.is_empty(),
+        };
+        self.time = Some((c, scale));
+        Ok(())
+    }
+}
+
+/// When the samples of each channel were taken. Channels that state a step are on even steps from their start on; the others have the times
+/// of the channel of time in their group, else of the first one in the file.
+fn samplings(all: &[Channel], file: &[u8]) -> Vec<Sampling> {
+    let step = |c: &Channel| c.number("wf_increment").filter(|s| *s > 0.0);
+    let is_clock = |c: &Channel| {
+        let first = all.iter().find(|o| o.group == c.group);
+        let is_first = first.is_some_and(|f| f.name == c.name);
+        step(c).is_none() && (c.kind == Kind::Time || is_time(&c.name, is_first))
+    };
+    let clocks: Vec<(usize, &Channel)> = all.iter().enumerate().filter(|c| is_clock(c.1)).collect();
+    // Two groups whose times are equal have one clock.
+    let clock_of = |c: &Channel| {
+        let long = |k: &&(usize, &Channel)| k.1.samples == c.samples;
+        let own = clocks.iter().filter(long).find(|k| k.1.group == c.group);
+        let (at, clock) = own.or_else(|| clocks.iter().find(long))?;
+        let same = clocks
+            .iter()
+            .filter(long)
+            .find(|k| k.1.is_equal(clock, file));
+        Some(same.map_or(*at, |k| k.0))
+    };
+    let begin = all.iter().filter_map(|c| c.time("wf_start_time")).min();
+    let since = |c: &Channel| match (begin, c.time("wf_start_time")) {
+        (Some(begin), Some(start)) => start.since(begin),
+        _ => 0.0,
+    };
+    let sampling = |c: &Channel| match step(c) {
+        Some(step_s) => Sampling {
+            start_s: since(c) + c.number("wf_start_offset").unwrap_or(0.0),
+            step_s,
+            samples: c.samples,
+            times: None,
+        },
+        None => Sampling {
+            start_s: 0.0,
+            step_s: 0.0,
+            samples: c.samples,
+            times: clock_of(c),
+        },
+    };
+    all.iter().map(sampling).collect()
 }
 
 /// The scaling that a channel's properties state; numbers that its program has scaled need none.
@@ -218,14 +276,40 @@ impl Channel {
     fn number(&self, key: &str) -> Option<f64> {
         match self.properties.get(key)? {
             Value::Number(v) => Some(*v),
-            Value::Text(_) => None,
+            Value::Text(_) | Value::Time(_) => None,
         }
     }
 
     fn text(&self, key: &str) -> Option<&str> {
         match self.properties.get(key)? {
             Value::Text(t) => Some(t),
-            Value::Number(_) => None,
+            Value::Number(_) | Value::Time(_) => None,
         }
+    }
+
+    fn time(&self, key: &str) -> Option<Stamp> {
+        match self.properties.get(key)? {
+            Value::Time(t) => Some(*t),
+            Value::Number(_) | Value::Text(_) => None,
+        }
+    }
+
+    /// The unit of its values; empty where none is stated.
+    fn unit(&self) -> &str {
+        let unit = self
+            .text("unit_string")
+            .or_else(|| self.text("NI_UnitDescription"));
+        unit.unwrap_or_default()
+    }
+
+    /// Whether both hold the same values, as stored.
+    fn is_equal(&self, other: &Self, file: &[u8]) -> bool {
+        let (mut a, mut b) = ([f64::NAN; BLOCK], [f64::NAN; BLOCK]);
+        (0..self.samples).step_by(BLOCK).all(|from| {
+            let to = (from + BLOCK).min(self.samples);
+            self.decode(file, from, to, a.iter_mut());
+            other.decode(file, from, to, b.iter_mut());
+            a.iter().take(to - from).eq(b.iter().take(to - from))
+        })
     }
 }

@@ -1,6 +1,7 @@
 //! The lists of a TDMS file: which channels there are and where their samples lie.
 
 use super::fault::broken;
+use super::stamp::Stamp;
 use crate::series::error::SeriesError;
 use std::collections::BTreeMap;
 
@@ -26,7 +27,7 @@ pub enum Kind {
     U64,
     F32,
     F64,
-    /// A time: fractions of 2^-64 s and seconds; not read as a number.
+    /// A time: fractions of 2^-64 s and seconds since 1904; as a number, seconds since 1970.
     Time,
     /// Text, of varying length.
     Text,
@@ -63,10 +64,13 @@ impl Kind {
     }
 
     fn is_number(self) -> bool {
-        !matches!(self, Self::Time | Self::Text)
+        self != Self::Text
     }
 
     fn value(self, b: &[u8], big: bool) -> f64 {
+        if self == Self::Time {
+            return Stamp::of(b, big).map_or(f64::NAN, Stamp::since_1970);
+        }
         let mut w = [0_u8; 8];
         for (i, slot) in w.iter_mut().enumerate().take(self.size()) {
             let at = if big { self.size() - 1 - i } else { i };
@@ -94,6 +98,7 @@ impl Kind {
 pub enum Value {
     Number(f64),
     Text(String),
+    Time(Stamp),
 }
 
 /// Samples that lie together.
@@ -189,6 +194,11 @@ impl<'a> Cursor<'a> {
         let code = self.u32()?;
         match Kind::of(code) {
             Some(Kind::Text) => self.text().map(Value::Text),
+            Some(Kind::Time) => {
+                let stamp = Stamp::of(self.take(Kind::Time.size())?, self.big);
+                let stamp = stamp.ok_or_else(|| broken("the file is cut off"))?;
+                Ok(Value::Time(stamp))
+            }
             Some(kind) => {
                 let b = self.take(kind.size())?;
                 Ok(Value::Number(kind.value(b, self.big)))

@@ -5,6 +5,7 @@ mod fault;
 
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use dataset::{Dataset, Samples, datasets};
 use fault::broken;
@@ -39,28 +40,23 @@ impl Uff {
     /// A file that can't be read or holds no time histories, wanted channels of another clock.
     pub(super) fn new(bytes: Bytes, wanted: &[String]) -> Result<Self, SeriesError> {
         let all = datasets((*bytes).as_ref())?;
-        let clock = |d: &Dataset| (d.start_s.to_bits(), d.step_s.to_bits(), d.samples);
-        let weight = |of: &Dataset| {
-            let same = all.iter().filter(|d| clock(d) == clock(of));
-            let asked = same
-                .clone()
-                .filter(|d| wanted.contains(&d.column.name))
-                .count();
-            (asked, same.count().saturating_mul(of.samples))
+        let sampling = |d: &Dataset| Sampling {
+            start_s: d.start_s,
+            step_s: d.step_s,
+            samples: d.samples,
+            times: None,
         };
-        let Some(main) = all.iter().max_by_key(|d| weight(d)) else {
-            return Err(broken("it holds no time histories"));
+        let channels = all.iter().map(|d| (d.column.name.as_str(), sampling(d)));
+        let found = sampled_together(&channels.collect::<Vec<_>>(), wanted)?;
+        let Some((main, together)) = found else {
+            return Err(match all.is_empty() {
+                true => broken("it holds no time histories"),
+                false => SeriesError::Empty,
+            });
         };
-        let (key, times) = (clock(main), (main.start_s, main.step_s, main.samples));
-        let apart: Vec<String> = all
-            .iter()
-            .filter(|d| clock(d) != key && wanted.contains(&d.column.name))
-            .map(|d| d.column.name.clone())
-            .collect();
-        if !apart.is_empty() {
-            return Err(SeriesError::Apart { names: apart });
-        }
-        let sets: Vec<Dataset> = all.into_iter().filter(|d| clock(d) == key).collect();
+        let times = (main.start_s, main.step_s, main.samples);
+        let together = all.into_iter().zip(together);
+        let sets: Vec<Dataset> = together.filter(|(_, t)| *t).map(|(d, _)| d).collect();
         Ok(Self {
             bytes,
             columns: sets.iter().map(|d| d.column.clone()).collect(),

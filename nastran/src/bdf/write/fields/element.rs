@@ -184,10 +184,7 @@ impl ToFields for Spring {
             SpringStiffness::Property(pid) => row.add(pid),
             SpringStiffness::Direct { k, .. } => row.add(k),
         };
-        let row = self.ends.iter().fold(row, |row, end| match end {
-            Some((grid, c)) => row.add(*grid).add(u32::from(*c)),
-            None => row.blank(2),
-        });
+        let row = ends(row, &self.ends);
         match self.stiffness {
             SpringStiffness::Property(_) => row.end(),
             SpringStiffness::Direct {
@@ -211,4 +208,41 @@ impl ToFields for Solid {
             .all(self.grids.map(id_or_blank))
             .end()
     }
+}
+
+impl ToFields for ScalarMass {
+    fn card_name(&self) -> &'static str {
+        match self.mass {
+            ScalarMassValue::Property(_) => "CMASS1",
+            ScalarMassValue::Direct(_) => "CMASS2",
+        }
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default().add(self.id);
+        let row = match self.mass {
+            ScalarMassValue::Property(pid) => row.add(pid),
+            ScalarMassValue::Direct(mass) => row.add(mass),
+        };
+        ends(row, &self.ends).end()
+    }
+}
+
+impl ToFields for Snorm {
+    fn card_name(&self) -> &'static str {
+        "SNORM"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default().add(self.grid).add(self.cid);
+        row.all(self.n).end()
+    }
+}
+
+/// Grid and component of both ends; ground is blank.
+fn ends(row: Row, ends: &[Option<(u32, u8)>; 2]) -> Row {
+    ends.iter().fold(row, |row, end| match end {
+        Some((grid, c)) => row.add(*grid).add(u32::from(*c)),
+        None => row.blank(2),
+    })
 }

@@ -138,7 +138,7 @@ impl ToFields for Grav {
 
 impl ToFields for Rforce {
     fn card_name(&self) -> &'static str {
-        "RFORCE"
+        if self.is_rforce1 { "RFORCE1" } else { "RFORCE" }
     }
 
     fn to_fields(&self) -> Vec<Field> {
@@ -148,7 +148,8 @@ impl ToFields for Rforce {
             .add(self.cid)
             .add(self.speed)
             .all(self.r);
-        row.add(self.method).real(self.acceleration, 0.0).end()
+        let row = row.add(self.method).real(self.acceleration, 0.0);
+        row.blank(1).add(id_or_blank(self.part)).end()
     }
 }
 
@@ -173,5 +174,32 @@ impl ToFields for Tempd {
 
     fn to_fields(&self) -> Vec<Field> {
         Row::default().add(self.sid).add(self.t).end()
+    }
+}
+
+impl ToFields for Accel {
+    fn card_name(&self) -> &'static str {
+        "ACCEL"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default().add(self.sid).add(self.cid).all(self.n);
+        let row = row.add(self.direction.as_str()).next_line();
+        let pairs = self.table.iter();
+        pairs
+            .fold(row, |row, (at, factor)| row.add(*at).add(*factor))
+            .end()
+    }
+}
+
+impl ToFields for Accel1 {
+    fn card_name(&self) -> &'static str {
+        "ACCEL1"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let row = Row::default().add(self.sid).add(self.cid).add(self.scale);
+        let row = row.all(self.n).next_line();
+        self.grids.iter().fold(row, ids).end()
     }
 }

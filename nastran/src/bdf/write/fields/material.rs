@@ -1,4 +1,4 @@
-//! MAT1, MAT2, MAT8, MAT9, PARAM.
+//! MAT1, MAT2, MAT8, MAT9, MATT1, TABLEM1 to TABLEM4, PARAM.
 
 use super::{Field, Row, ToFields};
 use crate::cards::*;
@@ -78,5 +78,41 @@ impl ToFields for Param {
             .add(self.name.as_str())
             .all(self.values.iter().map(value))
             .end()
+    }
+}
+
+impl ToFields for Matt1 {
+    fn card_name(&self) -> &'static str {
+        "MATT1"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        Row::default().add(self.id).all(self.tables).end()
+    }
+}
+
+impl ToFields for MaterialTable {
+    fn card_name(&self) -> &'static str {
+        match self.form {
+            MaterialTableForm::Replaces(_) => "TABLEM1",
+            MaterialTableForm::Shifted { .. } => "TABLEM2",
+            MaterialTableForm::Scaled { .. } => "TABLEM3",
+            MaterialTableForm::Series { .. } => "TABLEM4",
+        }
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        let pairs = |row: Row, points: &[(f64, f64)]| {
+            let row = row.next_line();
+            points.iter().fold(row, |row, (x, y)| row.add(*x).add(*y))
+        };
+        let row = Row::default().add(self.id);
+        let row = match &self.form {
+            MaterialTableForm::Replaces(points) => pairs(row, points),
+            MaterialTableForm::Shifted { x1, points } => pairs(row.add(*x1), points),
+            MaterialTableForm::Scaled { x, points } => pairs(row.all(*x), points),
+            MaterialTableForm::Series { x, a } => row.all(*x).next_line().all(a.iter().copied()),
+        };
+        row.add("ENDT").end()
     }
 }

@@ -217,3 +217,13 @@ impl ToFields for Psolid {
         row.all(self.options.iter().map(|o| o.as_deref())).end()
     }
 }
+
+impl ToFields for Pmass {
+    fn card_name(&self) -> &'static str {
+        "PMASS"
+    }
+
+    fn to_fields(&self) -> Vec<Field> {
+        Row::default().add(self.id).add(self.mass).end()
+    }
+}

@@ -1,0 +1,64 @@
+use super::super::vocabulary::{Effect, all_cards, case_word, effect_of_card};
+use super::{bulk, clean, shown};
+
+/// Only names that the table calls carried have a struct.
+#[test]
+fn names_that_are_not_carried_have_no_struct() {
+    for (name, effect) in all_cards().filter(|c| c.1 != Effect::Carried) {
+        let deck = bulk(&format!("BEGIN BULK\nGRID,1\n{name},1\nENDDATA\n"));
+        assert!(
+            deck.others.iter().any(|c| c.name == name),
+            "{name} {effect:?}"
+        );
+    }
+}
+
+#[test]
+fn words_of_case_control_are_read_in_full_abbreviated_or_by_four_letters() {
+    let read = |word: &str| case_word(word).map(|w| (w.name, w.misspelt));
+    for (word, full) in [
+        ("DISPLACEMENT", "DISPLACEMENT"),
+        ("DISP", "DISPLACEMENT"),
+        ("SPCFORCE", "SPCFORCES"),
+        ("SPCF", "SPCFORCES"),
+        ("ELFO", "FORCE"),
+        ("SUBC", "SUBCASE"),
+        ("TEMP", "TEMPERATURE"),
+        ("LOAD", "LOAD"),
+        ("LOADSET", "LOADSET"),
+        ("ESE", "ESE"),
+        ("SUPORT", "SUPORT1"),
+    ] {
+        assert_eq!(read(word), Some((full, false)), "{word}");
+    }
+    assert_eq!(read("STRESSES"), Some(("STRESS", true)));
+    assert_eq!(read("SUBCAES"), Some(("SUBCASE", true)));
+    for word in ["SPCC", "LAOD", "FOOBAR", "DIS", "ES", ""] {
+        assert_eq!(read(word), None, "{word}");
+    }
+}
+
+#[test]
+fn an_unknown_name_is_one_fault_with_its_count() {
+    let deck = bulk("BEGIN BULK\nGRID,1\nFORCEE,1,1\nFORCEE,2,1\nCQDMEM,9,1,1\nENDDATA\n");
+    let [fault] = &shown(&deck)[..] else {
+        panic!("{:?}", shown(&deck))
+    };
+    assert!(
+        fault.starts_with("test.bdf:3: `FORCEE`: Nastran does not know this name (2 cards)"),
+        "{fault}"
+    );
+    assert_eq!(effect_of_card("CQDMEM"), Some(Effect::Acts));
+}
+
+#[test]
+fn the_statement_autospc_is_the_parameter() {
+    let deck = clean("SOL 101\nCEND\nAUTOSPC(NOPRINT) = NO\nBEGIN BULK\nGRID,1\nENDDATA\n");
+    assert_eq!(deck.param("AUTOSPC").map(|p| p.values.len()), Some(1));
+}
+
+#[test]
+fn a_line_of_case_control_without_a_word_is_a_fault() {
+    let deck = bulk("SOL 101\nCEND\nLOAD = 1\n-7, 8\nBEGIN BULK\nGRID,1\nENDDATA\n");
+    assert_eq!(shown(&deck).len(), 1, "{:?}", shown(&deck));
+}

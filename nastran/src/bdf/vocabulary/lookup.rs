@@ -1,0 +1,94 @@
+//! Looks up names of bulk data and words of case control.
+
+use super::effect::{CaseWord, Effect};
+use super::spelling;
+use super::table::{Entry, read_table};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// Returns the effect of a bulk data entry; `None` for a name that no dialect has.
+pub fn effect_of_card(name: &str) -> Option<Effect> {
+    cards().get(name).copied()
+}
+
+/// Reads a word of case control in upper case: in full, abbreviated to four letters or more, or by its first four letters.
+///
+/// `None` for a word that no dialect has.
+pub fn case_word(word: &str) -> Option<CaseWord> {
+    let of = |e: &Entry, misspelt: bool| CaseWord {
+        name: e.name,
+        effect: e.effect,
+        misspelt,
+    };
+    let words = words();
+    if let Some(e) = words.iter().find(|e| e.written == word) {
+        return Some(of(e, false));
+    }
+    let head = word.get(..ABBREVIATION)?;
+    let abbreviated = words.iter().filter(|e| e.written.starts_with(word));
+    if let Some(e) = abbreviated.min_by_key(|e| preference(e.effect)) {
+        return Some(of(e, false));
+    }
+    let alike = words.iter().filter(|e| e.written.starts_with(head));
+    let e = alike.min_by_key(|e| spelling::distance(e.written, word))?;
+    Some(of(e, true))
+}
+
+/// Returns the full name of an output request; `None` for another word.
+pub fn request_of(word: &str) -> Option<&'static str> {
+    let word = case_word(word)?;
+    (word.effect == Effect::Request).then_some(word.name)
+}
+
+/// Returns the bulk data name that one letter makes of a misspelt one.
+pub fn nearest_card(name: &str) -> Option<&'static str> {
+    spelling::nearest(name, all_cards().map(|c| c.0))
+}
+
+/// Returns the word of case control that one letter makes of a misspelt one.
+pub fn nearest_word(word: &str) -> Option<&'static str> {
+    spelling::nearest(word, all_words().map(|w| w.0))
+}
+
+/// Returns every name of bulk data entries with its effect.
+pub fn all_cards() -> impl Iterator<Item = (&'static str, Effect)> {
+    cards().iter().map(|(name, effect)| (*name, *effect))
+}
+
+/// Returns every word of case control, in full and as written, with what it is read as.
+pub fn all_words() -> impl Iterator<Item = (&'static str, CaseWord)> {
+    words().iter().map(|e| {
+        let word = CaseWord {
+            name: e.name,
+            effect: e.effect,
+            misspelt: false,
+        };
+        (e.written, word)
+    })
+}
+
+/// Shortest abbreviation of a word of case control.
+const ABBREVIATION: usize = 4;
+
+/// Which of several words an abbreviation means: one that is carried, then one that acts.
+fn preference(effect: Effect) -> u8 {
+    match effect {
+        Effect::Carried | Effect::Request => 0,
+        Effect::Acts | Effect::Load | Effect::ActsWith(_) => 1,
+        Effect::None(_) => 2,
+        Effect::Executive => 3,
+    }
+}
+
+fn cards() -> &'static BTreeMap<&'static str, Effect> {
+    static CARDS: OnceLock<BTreeMap<&'static str, Effect>> = OnceLock::new();
+    CARDS.get_or_init(|| {
+        let entries = read_table(include_str!("bulk.txt"));
+        entries.iter().map(|e| (e.written, e.effect)).collect()
+    })
+}
+
+fn words() -> &'static [Entry] {
+    static WORDS: OnceLock<Vec<Entry>> = OnceLock::new();
+    WORDS.get_or_init(|| read_table(include_str!("case_control.txt")))
+}

@@ -1,0 +1,11 @@
+//! What every name of bulk data and every word of case control does in linear statics, mass and modes.
+
+mod effect;
+mod lookup;
+mod spelling;
+mod table;
+
+pub use effect::{CaseWord, Effect};
+pub use lookup::{
+    all_cards, all_words, case_word, effect_of_card, nearest_card, nearest_word, request_of,
+};

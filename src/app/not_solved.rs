@@ -1,0 +1,55 @@
+//! The finding about what a deck asks for and the built-in solver does not carry.
+
+use crate::fe::{LoadCase, Relief, loads_of_subcase, unsupported_cards};
+use crate::finding::{Finding, Severity, few};
+use crate::model::Model;
+use nastran::bdf::{Deck, Subcase};
+use std::collections::BTreeMap;
+
+/// Code of the finding.
+pub const NOT_SOLVED: &str = "card-not-solved";
+
+/// Returns the finding on everything that acts in the deck as its case control selects it and that the solver would refuse.
+pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
+    let subcases = deck.case_control.effective_subcases();
+    let cases: Vec<LoadCase> = subcases.iter().map(acting).collect();
+    let mut refused = unsupported_cards(model, &cases);
+    refused.sort_by(|a, b| (a.at, &a.card).cmp(&(b.at, &b.card)));
+    refused.dedup();
+    let first = refused.first()?;
+    let mut names: BTreeMap<&str, usize> = BTreeMap::new();
+    for r in &refused {
+        let name = r.card.trim_end_matches(|c: char| c.is_ascii_digit());
+        let name = if name.ends_with(' ') {
+            name
+        } else {
+            r.card.as_str()
+        };
+        *names.entry(name.trim_end()).or_default() += 1;
+    }
+    let counted: Vec<String> = names.iter().map(|(n, c)| format!("{n}: {c}")).collect();
+    let message = format!(
+        "`{}` line {}: `{}` acts on the solution, and the built-in solver does not carry it. Such entries in the deck: {} ({})",
+        deck.path(first.at),
+        first.at.line,
+        first.card,
+        refused.len(),
+        few(&counted)
+    );
+    let remedy = "name results of Nastran in the job; the built-in solver refuses this deck";
+    let mut finding = Finding::new(Severity::Warning, NOT_SOLVED, given, message, remedy);
+    finding.measured = Some(refused.len() as f64);
+    Some(finding)
+}
+
+/// The loads of a subcase.
+fn acting(s: &Subcase) -> LoadCase {
+    LoadCase {
+        subcase: s.id,
+        label: String::new(),
+        loads: loads_of_subcase(s),
+        spc: s.spc,
+        mpc: s.mpc,
+        relief: Relief::None,
+    }
+}

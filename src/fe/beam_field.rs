@@ -1,0 +1,108 @@
+//! Strain of bars and beams: at the stations of a result, and between them where that is determined.
+
+use super::element::beam::{BeamForces, LineLoad, StationStrain, strain_at};
+use crate::model::{BeamIx, Section};
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
+
+/// Stations nearer to each other than this share of the length are one.
+const SAME_STATION: f64 = 1e-6;
+/// Stations that a bar with loads between its ends is looked at besides its own.
+const INNER: [f64; 3] = [0.25, 0.5, 0.75];
+
+/// Axial strain of bars and beams at the stress recovery points C D E F.
+#[derive(Clone, Debug, Default)]
+pub struct BeamField {
+    /// Elements with strain, ascending.
+    pub elements: Arc<Vec<BeamIx>>,
+    /// By element: stations (x/xb ascending), each with the strain at C D E F, axial strain included.
+    pub stations: Vec<Vec<(f64, [f64; 4])>>,
+    /// By element and station: strain of the neutral axis, bending left out; NaN where the result doesn't tell.
+    pub axial: Vec<Vec<f64>>,
+    /// Section forces of solved elements; `None` for strain of result files.
+    pub(crate) solved: Option<SolvedBeams>,
+    /// Elements of result files whose strain between two stations is not determined: loads act between their ends, or the section
+    /// changes along them.
+    pub(crate) stations_alone: BTreeSet<BeamIx>,
+}
+
+/// What determines the strain of solved elements at every station; rows as in [`BeamField::elements`].
+#[derive(Clone, Debug)]
+pub(crate) struct SolvedBeams {
+    pub(crate) shapes: Arc<Vec<BeamShape>>,
+    pub(crate) forces: Vec<BeamForces>,
+    /// By row, for elements with loads between their ends.
+    pub(crate) loads: HashMap<usize, Vec<LineLoad>>,
+}
+
+/// Sections along an element.
+#[derive(Clone, Debug)]
+pub(crate) struct BeamShape {
+    pub(crate) sections: Arc<Vec<(f64, Section)>>,
+    pub(crate) e: f64,
+    pub(crate) length: f64,
+}
+
+impl BeamField {
+    /// Returns the strain of a bar or beam at a station: C D E F, and the neutral axis. `None` where the field does not determine it.
+    ///
+    /// Solved elements: from the section forces at the station, loads between the ends included, and the section there. Strain of result
+    /// files: that of the station, or linear between two stations of a uniform bar without loads between its ends.
+    pub fn strain_at(&self, beam: BeamIx, station: f64) -> Option<([f64; 4], f64)> {
+        let row = self.elements.binary_search(&beam).ok()?;
+        let stations = self.stations.get(row)?;
+        let at = |i: usize| Some((stations.get(i)?.1, *self.axial.get(row)?.get(i)?));
+        let same = |s: &(f64, [f64; 4])| (s.0 - station).abs() <= SAME_STATION;
+        if let Some(i) = stations.iter().position(same) {
+            return at(i);
+        }
+        if let Some(solved) = &self.solved {
+            return solved.at(row, station).map(|s| (s.points, s.axial));
+        }
+        if self.stations_alone.contains(&beam) {
+            return None;
+        }
+        let after = stations
+            .iter()
+            .position(|s| s.0 >= station)
+            .unwrap_or(stations.len().saturating_sub(1));
+        let before = after.saturating_sub(1);
+        let (x0, x1) = (stations.get(before)?.0, stations.get(after)?.0);
+        let ((p0, a0), (p1, a1)) = (at(before)?, at(after)?);
+        if x1 <= x0 {
+            return Some((p1, a1));
+        }
+        let share = ((station - x0) / (x1 - x0)).clamp(0.0, 1.0);
+        let mix = |a: f64, b: f64| a + (b - a) * share;
+        Some((std::array::from_fn(|i| mix(p0[i], p1[i])), mix(a0, a1)))
+    }
+
+    /// Returns stations at which strain may be larger than at those of the element: none without loads between its ends.
+    pub fn inner_stations(&self, beam: BeamIx) -> &'static [f64] {
+        let row = self.elements.binary_search(&beam).ok();
+        let loaded = row.zip(self.solved.as_ref());
+        match loaded.is_some_and(|(row, solved)| solved.loads.contains_key(&row)) {
+            true => &INNER,
+            false => &[],
+        }
+    }
+
+    /// Whether the result leaves the strain of this bar or beam between its stations open.
+    pub fn is_at_stations_alone(&self, beam: BeamIx) -> bool {
+        self.stations_alone.contains(&beam)
+    }
+
+    /// Marks bars and beams with loads between their ends: strain between their stations is not determined by the result.
+    pub fn mark_loaded(&mut self, beams: impl IntoIterator<Item = BeamIx>) {
+        self.stations_alone.extend(beams);
+    }
+}
+
+impl SolvedBeams {
+    fn at(&self, row: usize, station: f64) -> Option<StationStrain> {
+        let (shape, forces) = (self.shapes.get(row)?, self.forces.get(row)?);
+        let loads = self.loads.get(&row).map_or(&[][..], Vec::as_slice);
+        let along = (shape.sections.as_slice(), shape.e, shape.length);
+        Some(strain_at(along, forces, loads, station))
+    }
+}

@@ -1,0 +1,16 @@
+//! Which elements a block holds results of.
+
+use nastran::results::Block;
+
+/// Whether a block holds results of bars or beams.
+pub(super) fn is_bar(block: &Block) -> bool {
+    block.element.is_some_and(|e| matches!(e.0, 2 | 34 | 100))
+}
+
+/// Whether a block holds results of shells, bars or beams.
+pub(super) fn is_shell_or_bar(block: &Block) -> bool {
+    is_bar(block)
+        || block
+            .element
+            .is_some_and(|e| matches!(e.0, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228))
+}

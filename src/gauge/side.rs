@@ -1,0 +1,33 @@
+//! Sides of shells in space, whichever way their normals point.
+
+use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::fe::strain_tensor::Surface;
+use crate::model::{Model, ShellIx, Vec3};
+
+/// Returns the other side of the same shell.
+pub fn opposite(side: Surface) -> Surface {
+    match side {
+        Surface::Top => Surface::Bottom,
+        Surface::Bottom => Surface::Top,
+    }
+}
+
+/// Returns the unit normal at the centre of a shell, basic frame; `None` without area.
+pub(super) fn normal(model: &Model, ix: ShellIx) -> Option<Vec3> {
+    let shell = model.shells.get(ix.us())?;
+    Some(
+        shell_axes(model, shell, ShellPlace::Centre)?
+            .row(2)
+            .transpose(),
+    )
+}
+
+/// Returns the side of shell `other` that faces the same way as `side` of shell `from`: the opposite one where their normals oppose.
+pub(super) fn same_side(
+    model: &Model,
+    (from, side): (ShellIx, Surface),
+    other: ShellIx,
+) -> Option<Surface> {
+    let opposed = normal(model, from)?.dot(&normal(model, other)?) < 0.0;
+    Some(if opposed { opposite(side) } else { side })
+}

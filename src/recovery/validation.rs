@@ -1,0 +1,27 @@
+//! What a gauge is expected to differ by from its prediction where no load was estimated from it.
+
+use super::errors::ErrorModel;
+use super::gain::Gain;
+use super::types::Widening;
+
+/// Returns the variance, strain^2, of reading less prediction `row f` of a gauge that the estimate does not use:
+/// `N + M(f) + row Cov(f) row'`, with `N` the noise of its reading, `M(f)` the errors of its own coefficients, and `Cov(f)` the covariance
+/// of the loads without the errors of whole columns, which shift the loads and not the prediction.
+pub fn prediction_variance(
+    (gain, row): (&Gain, &[f64]),
+    errors: ErrorModel,
+    f: &[f64],
+    noise_factor: f64,
+) -> f64 {
+    let n = gain.n_loads();
+    let covariance = gain.covariance(f, &Widening::none());
+    let mut of_loads = 0.0;
+    for (a, s_a) in row.iter().enumerate() {
+        of_loads -= s_a * s_a * errors.column_variance(f[a]);
+        for (b, s_b) in row.iter().enumerate() {
+            of_loads += s_a * s_b * covariance[a * n + b];
+        }
+    }
+    let own = errors.shared(row.iter().copied(), f, f);
+    errors.noise_variance(noise_factor) + own + of_loads.max(0.0)
+}

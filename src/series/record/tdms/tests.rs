@@ -1,0 +1,171 @@
+use crate::series::error::SeriesError;
+use crate::series::record::{Options, Record, open_record};
+use std::sync::Arc;
+
+/// Seconds from 1904 to 2026-05-01 12:00:00.
+const NOON: i64 = 2_082_844_800 + 20_574 * 86_400 + 43_200;
+
+enum Property {
+    Real(f64),
+    Text(&'static str),
+    /// Seconds since 1904 and a fraction.
+    Time(i64, f64),
+}
+
+enum Samples {
+    Reals(Vec<f64>),
+    /// Seconds since 1904.
+    Times(Vec<f64>),
+}
+
+use Property as P;
+
+struct Channel {
+    path: &'static str,
+    properties: Vec<(&'static str, Property)>,
+    samples: Samples,
+}
+
+fn channel(path: &'static str, properties: Vec<(&'static str, Property)>) -> Channel {
+    let samples = Samples::Reals((0..200).map(f64::from).collect());
+    Channel {
+        path,
+        properties,
+        samples,
+    }
+}
+
+fn stamp(seconds: i64, fraction: f64) -> Vec<u8> {
+    let fraction = (fraction * 2_f64.powi(64)) as u64;
+    [fraction.to_le_bytes(), seconds.to_le_bytes()].concat()
+}
+
+fn text(t: &str) -> Vec<u8> {
+    [&(t.len() as u32).to_le_bytes()[..], t.as_bytes()].concat()
+}
+
+/// A file of one segment.
+fn file(channels: &[Channel]) -> Vec<u8> {
+    let mut head = (channels.len() as u32).to_le_bytes().to_vec();
+    let mut raw = Vec::new();
+    for c in channels {
+        head.extend(text(c.path));
+        let (kind, n) = match &c.samples {
+            Samples::Reals(v) => (10_u32, v.len()),
+            Samples::Times(v) => (0x44, v.len()),
+        };
+        for word in [20_u32, kind, 1] {
+            head.extend(word.to_le_bytes());
+        }
+        head.extend((n as u64).to_le_bytes());
+        match &c.samples {
+            Samples::Reals(v) => v.iter().for_each(|v| raw.extend(v.to_le_bytes())),
+            Samples::Times(v) => v.iter().for_each(|v| {
+                raw.extend(stamp(v.floor() as i64, v - v.floor()));
+            }),
+        }
+        head.extend((c.properties.len() as u32).to_le_bytes());
+        for (key, value) in &c.properties {
+            head.extend(text(key));
+            let (kind, bytes) = match value {
+                P::Real(v) => (10_u32, v.to_le_bytes().to_vec()),
+                P::Text(t) => (0x20, text(t)),
+                P::Time(s, f) => (0x44, stamp(*s, *f)),
+            };
+            head.extend(kind.to_le_bytes());
+            head.extend(bytes);
+        }
+    }
+    let mut out = b"TDSm".to_vec();
+    out.extend(14_u32.to_le_bytes());
+    out.extend(4713_u32.to_le_bytes());
+    out.extend(((head.len() + raw.len()) as u64).to_le_bytes());
+    out.extend((head.len() as u64).to_le_bytes());
+    [out, head, raw].concat()
+}
+
+fn open(channels: &[Channel], wanted: &[&str]) -> Result<Record, SeriesError> {
+    let options = Options {
+        wanted: wanted.iter().map(|w| (*w).to_owned()).collect(),
+        ..Options::default()
+    };
+    open_record(Arc::new(file(channels)), &options)
+}
+
+/// Two channels at 100 Hz, the second of which begins later.
+fn pair(offset_s: f64, start: (i64, f64)) -> [Channel; 2] {
+    let clock = |offset, start: (i64, f64)| {
+        vec![
+            ("wf_increment", P::Real(0.01)),
+            ("wf_start_offset", P::Real(offset)),
+            ("wf_start_time", P::Time(start.0, start.1)),
+        ]
+    };
+    [
+        channel("/'g'/'P1'", clock(0.0, (NOON, 0.25))),
+        channel("/'g'/'P2'", clock(offset_s, start)),
+    ]
+}
+
+#[test]
+fn channels_that_begin_at_other_times_are_not_read_as_simultaneous() {
+    let same = open(&pair(0.0, (NOON, 0.25)), &["P1", "P2"]).unwrap();
+    assert_eq!((same.columns().len(), same.clock.samples), (2, 200));
+    // A converter that lags by a hundredth of a step, and an offset that makes up for the start.
+    assert!(open(&pair(0.0, (NOON, 0.2501)), &["P1", "P2"]).is_ok());
+    assert!(open(&pair(-0.5, (NOON, 0.75)), &["P1", "P2"]).is_ok());
+    for (offset, start) in [
+        (0.05, (NOON, 0.25)),
+        (0.0, (NOON + 2, 0.25)),
+        (0.0, (NOON, 0.26)),
+        (-0.01, (NOON, 0.25)),
+    ] {
+        let apart = open(&pair(offset, start), &["P1", "P2"]);
+        assert!(
+            matches!(apart.err(), Some(SeriesError::Apart { .. })),
+            "{offset}"
+        );
+        // Only the channels of one clock are read.
+        let one = open(&pair(offset, start), &["P2"]).unwrap();
+        assert_eq!(one.columns().len(), 1);
+        assert_eq!(one.columns()[0].name, "P2");
+    }
+}
+
+#[test]
+fn a_channel_of_times_counts_in_its_unit_or_in_points_of_time() {
+    let mut times = channel("/'g'/'Time'", vec![("unit_string", P::Text("ms"))]);
+    times.samples = Samples::Reals((0..200).map(|i| f64::from(i) * 10.0).collect());
+    let record = open(&[times, channel("/'g'/'P1'", Vec::new())], &["P1"]).unwrap();
+    assert!((record.clock.rate_hz - 100.0).abs() < 1e-9);
+    assert!(record.is_time_unit_stated());
+    let mut stamps = channel("/'g'/'when'", Vec::new());
+    let at = |i: i32| NOON as f64 + f64::from(i) / 64.0;
+    stamps.samples = Samples::Times((0..200).map(at).collect());
+    let record = open(&[stamps, channel("/'g'/'P1'", Vec::new())], &["P1"]).unwrap();
+    assert!((record.clock.rate_hz - 64.0).abs() < 1e-6);
+    assert_eq!(record.clock.epoch_s, Some(20_574.5 * 86_400.0));
+    assert_eq!(record.columns().len(), 1);
+}
+
+#[test]
+fn each_group_has_its_own_channel_of_times() {
+    let times = |path, first: f64| {
+        let mut c = channel(path, vec![("unit_string", P::Text("s"))]);
+        c.samples = Samples::Reals((0..200).map(|i| first + f64::from(i) * 0.01).collect());
+        c
+    };
+    let groups = |first| {
+        [
+            times("/'a'/'Time'", 0.0),
+            channel("/'a'/'P1'", Vec::new()),
+            times("/'b'/'Time'", first),
+            channel("/'b'/'P2'", Vec::new()),
+        ]
+    };
+    assert!(open(&groups(0.0), &["P1", "P2"]).is_ok());
+    let apart = open(&groups(3.0), &["P1", "P2"]);
+    assert!(matches!(apart.err(), Some(SeriesError::Apart { .. })));
+    let second = open(&groups(3.0), &["P2"]).unwrap();
+    assert!((second.clock.start_s - 3.0).abs() < 1e-12);
+}

@@ -1,0 +1,249 @@
+//! Columns of tables that a job names: read where the meaning is certain, else named once.
+
+use std::fmt::Write;
+use strainbridge::app::context::InMemory;
+use strainbridge::finding::Finding;
+use strainbridge::{Context, Faults, Job, recover, respond, sensitivity};
+
+/// A square plate of one element, its element x axis along x, held at one side.
+const PLATE: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\n\
+GRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nGRID,3,,100.,100.,0.\nGRID,4,,0.,100.,0.\n\
+CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\n\
+SPC1,1,123456,1,4\nENDDATA\n";
+
+fn plate(gauges: &str) -> InMemory {
+    let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n\
+               [[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n[gauges]\nfile = \"gauges.csv\"\n";
+    InMemory::default()
+        .with("plate.bdf", PLATE)
+        .with("job.toml", job)
+        .with("gauges.csv", gauges)
+}
+
+/// S of the first gauge and the findings, or the faults.
+fn asked(gauges: &str) -> Result<(f64, Vec<Finding>), Faults> {
+    let files = plate(gauges);
+    let job = Job::read("job.toml", &files)?;
+    let found = sensitivity(&job, &Context::new(&files))?;
+    let value = found.prepared.sensitivity.values[(0, 0)];
+    Ok((value, found.findings.to_vec()))
+}
+
+fn unread(findings: &[Finding]) -> Vec<&Finding> {
+    let of_code = findings.iter().filter(|f| f.code == "column-not-read");
+    of_code.collect()
+}
+
+/// A direction is read by whatever name is certain; each of these tables states the same gauge.
+#[test]
+fn other_names_of_the_columns_of_a_gauge_table_are_read() {
+    let (right, _) = asked("name,element,surface,dir_x,dir_y,dir_z\nA,7,bottom,1,1,0\n").unwrap();
+    let (along_x, _) = asked("name,element,surface,dir_x,dir_y,dir_z\nA,7,bottom,1,0,0\n").unwrap();
+    assert!((right - along_x).abs() > 0.1 * right.abs());
+    for header in [
+        "name,element,side,axis_x,axis_y,axis_z",
+        "Gauge,Element,Surface,DIR_X,DIR_Y,DIR_Z",
+        "gauge,element,surface,dirx,diry,dirz",
+        "name,element,surface,direction_x,direction_y,direction_z",
+        "name,element,surface,dir x,dir y,dir z",
+    ] {
+        let (found, findings) = asked(&format!("{header}\nA,7,bottom,1,1,0\n")).unwrap();
+        assert_eq!(found, right, "{header}");
+        assert!(unread(&findings).is_empty(), "{header}: {findings:?}");
+    }
+    // 45 degrees from the element x axis is the diagonal.
+    for (header, angle) in [
+        ("angle_deg", "45"),
+        ("angle [deg]", "45"),
+        ("angle_rad", "0.7853981633974483"),
+        ("angle [rad]", "0.7853981633974483"),
+    ] {
+        let text = format!("name,element,surface,{header}\nA,7,bottom,{angle}\n");
+        let (found, findings) = asked(&text).unwrap();
+        assert!((found / right - 1.0).abs() < 1e-12, "{header}: {found}");
+        assert!(unread(&findings).is_empty(), "{header}: {findings:?}");
+    }
+}
+
+#[test]
+fn lengths_in_a_gauge_table_have_the_unit_of_their_header() {
+    let (right, _) = asked("name,x,y,z,surface,angle_deg\nA,40,60,1,top,30\n").unwrap();
+    for (header, row) in [
+        ("x [mm],y [mm],z [mm]", "40,60,1"),
+        ("x [m],y [m],z [m]", "0.04,0.06,0.001"),
+        ("x_mm,y_mm,z_mm", "40,60,1"),
+    ] {
+        let (found, _) = asked(&format!(
+            "name,{header},surface,angle_deg\nA,{row},top,30\n"
+        ))
+        .unwrap();
+        assert!((found / right - 1.0).abs() < 1e-12, "{header}: {found}");
+    }
+}
+
+#[test]
+fn what_can_not_be_meant_in_a_gauge_table_is_a_fault() {
+    for (header, cell, field) in [
+        ("angle_deg [rad]", "1", "angle_deg [rad]"),
+        ("direction", "1 0 0", "direction"),
+        ("grid_length [kN]", "5", "grid_length [kN]"),
+        ("dir_x,DIRX,dir_y", "1,1,0", ""),
+        ("Dir_X,DIRX", "1,1", "DIRX"),
+    ] {
+        let text = format!("name,element,surface,{header}\nA,7,bottom,{cell}\n");
+        let faults = asked(&text).map(|_| ()).unwrap_err();
+        let named = |f: &strainbridge::Fault| field.is_empty() || f.field == field;
+        assert!(faults.iter().any(named), "{header}: {faults:?}");
+    }
+}
+
+/// One warning names all columns that nothing reads; columns that `place` writes for information are not among them.
+#[test]
+fn columns_of_a_gauge_table_that_nothing_reads_are_named_once() {
+    let text = "name,element,surface,angle_deg,leverage,role,colour,wire\nA,7,bottom,45,0.5,estimate,red,3\n";
+    let (_, findings) = asked(text).unwrap();
+    let [one] = unread(&findings)[..] else {
+        panic!("{findings:?}")
+    };
+    assert_eq!(one.subject, "gauges.csv");
+    assert!(one.message.contains("`colour`, `wire`"), "{}", one.message);
+    assert!(!one.message.contains("leverage"), "{}", one.message);
+    // `side` of a vehicle is not a side of a shell.
+    let (_, findings) = asked("name,element,side,angle_deg\nA,7,left,45\n").unwrap();
+    assert!(unread(&findings)[0].message.contains("`side`"));
+}
+
+#[test]
+fn a_gauge_table_without_directions_says_where_its_gauges_point() {
+    let (_, findings) = asked("name,element,surface\nA,7,bottom\n").unwrap();
+    assert!(findings.iter().any(|f| f.code == "gauges-assumed"));
+    let (_, findings) = asked("name,element,surface,angle_deg\nA,7,bottom,0\n").unwrap();
+    assert!(findings.iter().all(|f| f.code != "gauges-assumed"));
+}
+
+/// Two loads and three gauges of a given S.
+fn given(s: &str, runs: Option<&str>, more: &str) -> InMemory {
+    let mut strain = "run,G1,G2,G3\n".to_owned();
+    for i in 0..5 {
+        let (a, b) = (100.0 + f64::from(i), 50.0 - 2.0 * f64::from(i));
+        let _ = writeln!(strain, "R{i},{},{},{}", a, b, a + b);
+    }
+    let job = format!(
+        "units = \"m-kg-s\"\n[sensitivity]\nfile = \"S.csv\"\n[[load]]\nname = \"A.FZ\"\n[[load]]\nname = \"B.FZ\"\n\
+         [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n{more}"
+    );
+    let files = InMemory::default()
+        .with("job.toml", job)
+        .with("S.csv", s)
+        .with("strain.csv", strain);
+    match runs {
+        Some(text) => files.with("runs.csv", text),
+        None => files,
+    }
+}
+
+const S: &str = "gauge,A.FZ,B.FZ\nG1,1,0\nG2,0,1\nG3,1,1\n";
+
+fn recovered(files: &InMemory) -> Result<(Vec<f64>, Vec<Finding>), Faults> {
+    let job = Job::read("job.toml", files)?;
+    let found = recover(&job, &Context::new(files))?;
+    let runs = found.runs().unwrap();
+    let values = runs.loads.iter().map(|l| l.value).collect();
+    Ok((values, found.findings.to_vec()))
+}
+
+#[test]
+fn columns_of_a_table_of_s_are_read_or_named_or_refused() {
+    let (right, findings) = recovered(&given(S, None, "")).unwrap();
+    assert!(unread(&findings).is_empty(), "{findings:?}");
+    // Case and separators apart.
+    let (found, _) = recovered(&given(&S.replace("A.FZ", "a_fz"), None, "")).unwrap();
+    assert_eq!(found, right);
+    let more = "gauge,A.FZ,B.FZ,C.FZ\nG1,1,0,9\nG2,0,1,9\nG3,1,1,9\n";
+    let (found, findings) = recovered(&given(more, None, "")).unwrap();
+    assert_eq!(found, right);
+    assert!(unread(&findings)[0].message.contains("`C.FZ`"));
+    // Without its column the other load would take the strain of B.
+    let faults = recovered(&given("gauge,A.FZ,Z\nG1,1,0\nG2,0,1\nG3,1,1\n", None, ""));
+    let faults = faults.map(|_| ()).unwrap_err();
+    assert!(
+        faults.iter().any(|f| f.wrong.contains("B.FZ")),
+        "{faults:?}"
+    );
+}
+
+#[test]
+fn columns_of_the_runs_file_are_read_or_named() {
+    let job = |runs: &str| {
+        let files = given(
+            S,
+            Some(runs),
+            "[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", mass = \"kg\", length = \"m\" }\n",
+        );
+        let job = Job::read("job.toml", &files).unwrap();
+        let mut inputs = strainbridge::app::files::Inputs::of(&files);
+        let rows =
+            strainbridge::app::job::runs::read_runs(&mut inputs, &job, job.runs.as_ref().unwrap());
+        (rows.unwrap(), inputs.findings())
+    };
+    let (right, findings) = job("run,payload_mass,payload_x,A.FZ,B.FZ\nR0,300,2,1,2\n");
+    assert!(unread(&findings).is_empty());
+    for header in [
+        "Run,Payload_mass,payload_X,a.fz,b.fz",
+        "run,payload mass,PayloadX,A_FZ,B-FZ",
+        "run,Payload_mass [kg],payload_X [m],A.FZ [N],B.FZ [N]",
+    ] {
+        let (found, findings) = job(&format!("{header}\nR0,300,2,1,2\n"));
+        assert_eq!(found, right, "{header}");
+        assert!(unread(&findings).is_empty(), "{header}: {findings:?}");
+    }
+    let (_, findings) = job("run,payload_mass,payload_px,A.FZ,driver\nR0,300,2,1,7\n");
+    let [one] = unread(&findings)[..] else {
+        panic!("{findings:?}")
+    };
+    assert!(
+        one.message.contains("`payload_px`, `driver`"),
+        "{}",
+        one.message
+    );
+    assert!(
+        one.remedy.contains("`payload_px` to `payload_"),
+        "{}",
+        one.remedy
+    );
+}
+
+/// A file that the job names is there, whether or not the command reads it.
+#[test]
+fn a_runs_file_that_is_missing_is_a_fault() {
+    let files = given(S, None, "[runs]\nfile = \"absent.csv\"\n");
+    let faults = recovered(&files).map(|_| ()).unwrap_err();
+    let named = |f: &strainbridge::Fault| f.field == "runs.file" && f.line.is_some();
+    assert!(faults.iter().any(named), "{faults:?}");
+}
+
+#[test]
+fn a_job_states_s_once() {
+    let text = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+                [sensitivity]\nfile = \"S.csv\"\n";
+    let read = |text: &str| Job::read("job.toml", &InMemory::default().with("job.toml", text));
+    let faults = read(text).map(|_| ()).unwrap_err();
+    let named = |f: &strainbridge::Fault| f.field == "sensitivity" && f.line == Some(8);
+    assert!(faults.iter().any(named), "{faults:?}");
+    // A calibrated S is used together with its model.
+    assert!(read(&format!("{text}covariance = \"calibration.bin\"\n")).is_ok());
+}
+
+#[test]
+fn columns_of_a_table_of_loads_that_nothing_reads_are_named() {
+    let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+    let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+               [respond]\nloads = \"loads.csv\"\n";
+    let files = files
+        .with("job.toml", job)
+        .with("loads.csv", "run,P,P.low,P.high,Q\nR1,10,9,11,5\n");
+    let job = Job::read("job.toml", &files).unwrap();
+    let found = respond(&job, &Context::new(&files)).unwrap();
+    let list = found.findings.to_vec();
+    assert!(unread(&list)[0].message.ends_with("`Q`"), "{list:?}");
+}

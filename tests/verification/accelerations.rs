@@ -1,0 +1,113 @@
+//! ACCEL, ACCEL1 and RFORCE1: forces of mass in a field of acceleration, in closed form.
+
+use crate::small_decks::{at, close, refused, solve};
+
+/// Rounding of a solution of a few unknowns.
+const ROUNDING: f64 = 1e-12;
+
+/// A rod of two elements along x, 2 and 3 long, of area .02, E 4e9 and density 500, held at its left end; lumped masses 25 and 15 kg.
+const ROD: &str = "GRID,1,,1.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,6.,0.,0.\nCROD,1,7,1,2\nCROD,2,7,2,3\nPROD,7,3,.02\n\
+     MAT1,3,4.+9,,.3,500.\nSPC1,1,123456,1\nSPC1,1,23456,2,3\n";
+
+/// Displacements along x of both free grids under forces there: k = E A / L.
+fn stretched(f2: f64, f3: f64) -> [f64; 2] {
+    let u2 = (f2 + f3) * 2.0 / 8.0e7;
+    [u2, u2 + f3 * 3.0 / 8.0e7]
+}
+
+#[track_caller]
+fn moves(case_control: &str, cards: &str, [f1, f2, f3]: [f64; 3]) {
+    let case_control = format!("SPC = 1\nLOAD = 5\n{case_control}");
+    let solved = solve(&case_control, &format!("{ROD}{cards}"));
+    for (grid, expected) in [2, 3].into_iter().zip(stretched(f2, f3)) {
+        close(cards, at(&solved, grid)[0], expected, ROUNDING);
+    }
+    let total = solved.1.report.reactions[0].total[0];
+    close("reaction", total, -(f1 + f2 + f3), ROUNDING);
+}
+
+#[test]
+fn accel1_acts_on_the_mass_of_the_grids_it_names() {
+    // 25 kg and 15 kg at 6 m/s^2 along a direction of length 5 whose x is 3.
+    moves("", "ACCEL1,5,,2.,3.,4.,0.\n,2,3", [0.0, 150.0, 90.0]);
+    moves("", "ACCEL1,5,,2.,3.,4.,0.\n,3", [0.0, 0.0, 90.0]);
+    // A range holds the grids that there are.
+    moves("", "ACCEL1,5,,2.,3.,4.,0.\n,2,THRU,900", [0.0, 150.0, 90.0]);
+}
+
+#[test]
+fn accel1_takes_its_direction_in_a_system_its_factor_from_load_and_mass_from_wtmass_and_conm2() {
+    // The system's first axis is basic y, its second basic -x.
+    let turned = "CORD2R,9,,0.,0.,0.,0.,0.,1.\n,0.,1.,0.\n";
+    moves(
+        "",
+        &format!("{turned}ACCEL1,5,9,2.,0.,-3.,0.\n,3"),
+        [0.0, 0.0, 90.0],
+    );
+    moves(
+        "",
+        "LOAD,5,2.,3.,6\nACCEL1,6,,1.,1.,0.,0.\n,3",
+        [0.0, 0.0, 90.0],
+    );
+    moves(
+        "",
+        "PARAM,WTMASS,.1\nACCEL1,5,,6.,1.,0.,0.\n,3",
+        [0.0, 0.0, 9.0],
+    );
+    moves(
+        "",
+        "CONM2,70,3,,10.\nACCEL1,5,,6.,1.,0.,0.\n,3",
+        [0.0, 0.0, 150.0],
+    );
+    moves(
+        "NSM = 4",
+        "NSM1,4,ELEMENT,2.,2\nACCEL1,5,,6.,1.,0.,0.\n,3",
+        [0.0, 0.0, 108.0],
+    );
+}
+
+#[test]
+fn accel_varies_along_an_axis_and_stays_even_beyond_its_last_locations() {
+    // Without an axis it is the field of GRAV; grid 1 has 10 kg.
+    moves("", "ACCEL,5,,6.,0.,0.", [60.0, 150.0, 90.0]);
+    // Factors at x = 1, 3, 6: 1, 1.5, 2.
+    moves(
+        "",
+        "ACCEL,5,,4.,0.,0.,X\n,1.,1.,5.,2.",
+        [40.0, 150.0, 120.0],
+    );
+    // The third axis of the system is basic x; locations count from its origin at x = 2.
+    let turned = "CORD2R,9,,2.,0.,0.,3.,0.,0.\n,2.,1.,0.\n";
+    let varied = format!("{turned}ACCEL,5,9,0.,0.,2.,Z\n,-1.,0.,3.,4.");
+    // 2 (x - 1) at x = 3 and 6, where the last factor holds from x = 5 on.
+    moves("", &varied, [0.0, 100.0, 120.0]);
+}
+
+#[test]
+fn accel_without_table_equals_grav() {
+    let one = solve("SPC = 1\nLOAD = 5", &format!("{ROD}ACCEL,5,,6.,1.,2."));
+    let other = solve("SPC = 1\nLOAD = 5", &format!("{ROD}GRAV,5,,1.,6.,1.,2."));
+    assert_eq!(one.1.displacements, other.1.displacements);
+}
+
+#[test]
+fn rforce1_turns_the_structure_as_rforce_does() {
+    // 3 rev/s about z through grid 1: m w^2 r at r = 2 and 5.
+    let w = 3.0 * std::f64::consts::TAU;
+    let (f2, f3) = (25.0 * w * w * 2.0, 15.0 * w * w * 5.0);
+    for card in ["RFORCE1", "RFORCE"] {
+        moves("", &format!("{card},5,1,,3.,0.,0.,1."), [0.0, f2, f3]);
+        moves("", &format!("{card},5,1,,1.5,0.,0.,2.,2"), [0.0, f2, f3]);
+    }
+}
+
+#[test]
+fn rotations_that_ask_for_more_are_refused_by_their_name() {
+    let of = |card: &str| refused("SPC = 1\nLOAD = 5", &format!("{ROD}{card}"));
+    assert_eq!(of("RFORCE1,5,1,,3.,0.,0.,1.\n,1."), ["RFORCE1 with RACC 5"]);
+    assert_eq!(
+        of("RFORCE1,5,1,,3.,0.,0.,1.\n,,,8"),
+        ["RFORCE1 with GROUPID 5"]
+    );
+    assert_eq!(of("RFORCE,5,1,,3.,0.,0.,1.\n,,,8"), ["RFORCE with IDRF 5"]);
+}

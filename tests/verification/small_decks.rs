@@ -1,0 +1,71 @@
+//! Decks of a few lines, solved as their case control says.
+
+use nastran::bdf::{Deck, MemoryLoader, read_deck};
+use strainbridge::fe::*;
+use strainbridge::model::{FaultWeight, Model, ModelFault};
+
+/// A deck of this case control and bulk data.
+pub fn deck(case_control: &str, bulk: &str) -> Deck {
+    let text = format!("SOL 101\nCEND\n{case_control}\nBEGIN BULK\n{bulk}\nENDDATA\n");
+    let deck = read_deck("test.bdf", text.into_bytes(), &mut MemoryLoader::default());
+    assert!(deck.faults.is_empty(), "{:?}", deck.faults);
+    deck
+}
+
+/// Its model and the faults that stop a solution.
+pub fn model(case_control: &str, bulk: &str) -> (Model, Vec<ModelFault>) {
+    let (model, mut faults) = Model::from_deck(&deck(case_control, bulk));
+    faults.retain(|f| f.weight() == FaultWeight::Error);
+    (model, faults)
+}
+
+/// Its first subcase solved.
+pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, Solved), FeError> {
+    let deck = deck(case_control, bulk);
+    let (model, faults) = Model::from_deck(&deck);
+    let wrong: Vec<&ModelFault> = faults
+        .iter()
+        .filter(|f| f.weight() == FaultWeight::Error)
+        .collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+    let first = deck.case_control.effective_subcases().remove(0);
+    let case = LoadCase {
+        subcase: first.id,
+        label: String::new(),
+        loads: loads_of_subcase(&first),
+        spc: first.spc,
+        mpc: first.mpc,
+        relief: relief_of(&model, first.spc, first.suport1),
+    };
+    let solved = solve_displacements(&model, &[case], &SolveOptions::default())?;
+    Ok((model, solved))
+}
+
+/// Its first subcase solved.
+pub fn solve(case_control: &str, bulk: &str) -> (Model, Solved) {
+    try_solve(case_control, bulk).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// Displacement of a grid.
+pub fn at((model, solved): &(Model, Solved), grid: u32) -> [f64; 6] {
+    solved.displacements[0][model.grid_ix(grid).unwrap().us()]
+}
+
+/// What the solver refuses, by card.
+pub fn refused(case_control: &str, bulk: &str) -> Vec<String> {
+    match try_solve(case_control, bulk) {
+        Err(FeError::Refused(list)) => list.into_iter().map(|r| r.card).collect(),
+        Err(other) => panic!("{other}"),
+        Ok(_) => Vec::new(),
+    }
+}
+
+/// Fails where `got` is farther from `expected` than a share of it.
+#[track_caller]
+pub fn close(what: &str, got: f64, expected: f64, share: f64) {
+    let limit = share * expected.abs().max(f64::MIN_POSITIVE);
+    assert!(
+        (got - expected).abs() <= limit,
+        "{what}: {got:e} for {expected:e}"
+    );
+}
