@@ -36,7 +36,10 @@ pub fn combine_results(
             axial: summed(beams.map(|(f, b)| (f, &b.axial)), |to, by, c| {
                 to.iter_mut().zip(c).for_each(|(t, c)| *t += by * c);
             })?,
-            ..first.beams.clone()
+            elements: first.beams.elements.clone(),
+            // Section forces are those of one case: strain is determined at the stations alone.
+            solved: None,
+            stations_alone: first.beams.elements.iter().copied().collect(),
         },
         solids: SolidField {
             centre: summed(solids.clone().map(|(f, s)| (f, &s.centre)), add)?,
