@@ -1,9 +1,10 @@
 //! Which column of a gauge table holds what, in which unit, and which columns nothing reads.
 
 use super::resolve::surface_from;
+use super::same_name::is_same_name;
 use super::suggest;
 use super::table::Table;
-use super::unread::{Unread, is_same_name, is_unit_of_none};
+use super::unread::Unread;
 use crate::app::fault::{Fault, FaultList};
 use crate::series::record::name_and_unit;
 use crate::units::{Quantity, find_unit, unit_names};
@@ -300,7 +301,7 @@ fn scale_of(
 ) -> f64 {
     let header = t.header[at].as_str();
     let stated = stated_in(header, measures);
-    let in_bracket = Some(stated.bracket).filter(|b| !is_unit_of_none(b));
+    let in_bracket = Some(stated.bracket).filter(|b| !["", "-", "1"].contains(b));
     let in_name = Some(stated.unit).filter(|u| !u.is_empty());
     let of = |unit: &str| match measures {
         Length => find_unit(Quantity::Length, unit).map(|u| u.si / length_m),

@@ -19,6 +19,7 @@ pub mod readings;
 mod resolve;
 mod roles;
 pub mod runs;
+mod same_name;
 pub mod schema;
 mod shapes;
 mod spanned;
