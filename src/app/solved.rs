@@ -13,7 +13,7 @@ use crate::fe::{
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
-use nastran::bdf::Subcase;
+use nastran::bdf::{Subcase, SubcaseKind};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -155,19 +155,45 @@ pub fn label_of(s: &Subcase) -> String {
     s.label.clone().or(s.subtitle.clone()).unwrap_or_default()
 }
 
+/// Whether a subcase is a combination of others.
+pub fn is_combination(s: &Subcase) -> bool {
+    matches!(
+        s.kind,
+        SubcaseKind::Subcom | SubcaseKind::Symcom | SubcaseKind::Repcase
+    )
+}
+
 /// Returns a static subcase of a deck as a load case.
-pub fn case_of_subcase(model: &Model, subcase: &Subcase) -> LoadCase {
-    LoadCase {
+///
+/// # Errors
+/// Why the subcase is not one: a combination of others, an ANALYSIS that is not statics, no load.
+pub fn static_case(model: &Model, subcase: &Subcase) -> Result<LoadCase, String> {
+    if is_combination(subcase) {
+        return Err("it combines other subcases".to_owned());
+    }
+    let analysis = subcase.analysis.as_ref();
+    if let Some(analysis) = analysis.filter(|a| !a.starts_with("STAT")) {
+        return Err(format!("ANALYSIS = {analysis} is not statics"));
+    }
+    if subcase.deform.is_some() {
+        return Err("DEFORM is not carried".to_owned());
+    }
+    let loads = loads_of_subcase(subcase);
+    if loads.is_empty() && !has_enforced(model, subcase.spc) {
+        return Err("no LOAD".to_owned());
+    }
+    Ok(LoadCase {
         subcase: subcase.id,
         label: label_of(subcase),
-        loads: loads_of_subcase(subcase),
+        loads,
         spc: subcase.spc,
         mpc: subcase.mpc,
         relief: relief_of(model, subcase.spc, subcase.suport1),
-    }
+    })
 }
 
-pub fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
+/// Whether an SPC set moves a grid.
+fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
     model
         .spcs
         .iter()
