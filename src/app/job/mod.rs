@@ -12,6 +12,7 @@ pub mod given_columns;
 mod not_a_job;
 mod parse;
 pub mod payload_loads;
+pub mod payload_signature;
 mod picked;
 pub mod quantity;
 mod raw;
