@@ -9,7 +9,7 @@ use crate::app::outcome::finite;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::validation::prediction_variance;
 use crate::recovery::{Gain, Readings, Recovery};
-use crate::sensitivity::Sensitivity;
+use crate::sensitivity::{Sensitivity, Uncertainty};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
@@ -25,7 +25,7 @@ pub struct ValidationGauge {
     pub n: u64,
     /// Root mean square of reading less prediction; `None` where nothing was compared.
     pub rms_microstrain: Option<f64>,
-    /// The same as stated errors make it: noise, model error, uncertainty of the loads.
+    /// Root mean square that stated errors explain: noise, model error, uncertainty of the loads.
     pub expected_rms_microstrain: Option<f64>,
 }
 
@@ -69,7 +69,7 @@ pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
             few(&names),
             format!(
                 "these validation gauges differ from their prediction by up to {largest:.1} times what stated errors explain: either they \
-                 or the recovered loads are wrong by more than the intervals say"
+                 or the recovered loads are wrong by more than the intervals state"
             ),
             "check these gauges and their place in the model, then run `reconcile`",
         )
@@ -80,9 +80,11 @@ pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
 /// A gauge that is predicted.
 struct Predicted<'a> {
     task: &'a Task<'a>,
-    /// Its row in S.
+    /// Row in S.
     row: usize,
     s: Vec<f64>,
+    /// Uncertainty of that row.
+    uncertainty: Option<Uncertainty>,
 }
 
 impl<'a> Predicted<'a> {
@@ -92,6 +94,7 @@ impl<'a> Predicted<'a> {
             task,
             row,
             s: s.values.row(row).iter().copied().collect(),
+            uncertainty: s.uncertainty.as_ref().map(|u| u.of_gauges(&[row])),
         };
         task.validation.iter().map(of).collect()
     }
@@ -100,19 +103,15 @@ impl<'a> Predicted<'a> {
         &self.task.prepared.sensitivity.gauges[self.row]
     }
 
-    /// Strain at loads `f`; not a number where one of them is not known.
+    /// Strain at loads `f`; not a number where a load is unknown.
     fn strain(&self, f: &[f64]) -> f64 {
         self.s.iter().zip(f).map(|(s, f)| s * f).sum()
     }
 
     /// Expected variance of reading less prediction, strain^2.
     fn variance(&self, gain: &Gain, f: &[f64], noise_factor: f64) -> f64 {
-        let all = &self.task.prepared.sensitivity;
-        let n = all.gauges.len();
-        let of_row = all.uncertainty.as_ref().map_or(0.0, |u| {
-            let strain = u.strain_covariance(n, f);
-            strain.get(self.row * n + self.row).copied().unwrap_or(0.0)
-        });
+        let own = self.uncertainty.as_ref();
+        let of_row: f64 = own.map_or(0.0, |u| u.strain_covariance(1, f).iter().sum());
         of_row + prediction_variance((gain, &self.s), self.task.errors, f, noise_factor)
     }
 }
@@ -162,7 +161,7 @@ pub(super) fn of_runs(
 pub(super) struct Channels<'a> {
     record: Record,
     gauges: Vec<Predicted<'a>>,
-    /// By channel, its gauge.
+    /// Gauge of each channel.
     of: Vec<usize>,
 }
 
@@ -195,7 +194,7 @@ impl<'a> Channels<'a> {
     /// Opens the record once more for the job's validation gauges; `None` where it has none.
     ///
     /// # Errors
-    /// Those of the record.
+    /// Faults of the record.
     pub fn open(task: &'a Task<'a>, bytes: FileBytes) -> Result<Option<Self>, Faults> {
         let gauges = Predicted::all(task);
         if gauges.is_empty() {
@@ -250,7 +249,7 @@ impl<'a> Channels<'a> {
         Ok(out)
     }
 
-    /// What all parts come to; the expected difference is that at the root mean square of the loads.
+    /// Returns the comparison of all parts; the expected difference is computed at the root mean square of the loads.
     pub fn found(&self, compared: &Compared, gain: &Gain) -> Vec<ValidationGauge> {
         let samples = compared.samples.max(1) as f64;
         let typical = compared.loads.iter().map(|v| (v / samples).sqrt());
