@@ -107,6 +107,10 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     ];
     let mut faults = FaultList::new();
     for (key, ids, there) in lists {
+        let what = match key.ends_with("properties") {
+            true => "property of a shell, bar or solid",
+            false => "element",
+        };
         let ranges = ids.iter().flat_map(|ids| &ids.0);
         for [a, b] in ranges.filter(|[a, b]| there.range(*a..).next().is_none_or(|id| id > b)) {
             let range = match a == b {
@@ -117,7 +121,7 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
                 &*job.file,
                 rule.line,
                 format!("candidates.{key}"),
-                format!("the model has none with the id {range}"),
+                format!("the model has no {what} with the id {range}"),
                 "correct the id, or delete it from the list",
             ));
         }
