@@ -90,7 +90,7 @@ pub(super) fn read_combination(
 /// Adds the combinations to the results, in the order of the deck.
 ///
 /// # Errors
-/// Results that can't be added: bars with values at different stations.
+/// Results of bars at different stations, which can't be added.
 pub(super) fn add_combinations(
     read: &DeckModel,
     combined: &[CombinedSubcase],

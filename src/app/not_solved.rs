@@ -1,4 +1,4 @@
-//! The finding about what a deck asks for and the built-in solver does not carry.
+//! Finding about cards and statements of a deck that the built-in solver does not carry.
 
 use crate::fe::{LoadCase, Relief, loads_of_subcase, unsupported_cards};
 use crate::finding::{Finding, Severity, few};

@@ -60,7 +60,7 @@ pub(super) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
 fn moment(cell: &calamine::ExcelDateTime) -> String {
     use calamine::{ExcelDateTime, ExcelDateTimeType::DateTime};
     const MICROSECONDS: f64 = 86_400e6;
-    /// Days of which programs show the time of day alone.
+    /// Days below which programs show the time of day alone.
     const OF_DAY: f64 = 2.0;
     let days = cell.as_f64();
     let (whole, of_day) = (days.floor(), days - days.floor());

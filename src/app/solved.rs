@@ -53,7 +53,7 @@ fn moved_by(model: &Model, support: Support) -> Option<(u32, u32, f64)> {
     Some((set.sid, model.grids.get(grid.us())?.id, *by))
 }
 
-/// Returns what is to be said of the inertia relief of a job: assumed, or limited by springs to ground.
+/// Returns a finding on the inertia relief of a job: assumed, or limited by springs to ground.
 ///
 /// # Errors
 /// As [`support_of_job`].
@@ -99,7 +99,7 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
         ),
         match support.spc {
             Some(_) => "write support = \"free\" where wheels carry it",
-            None => "remove what holds its grids to ground, so that wheels carry it",
+            None => "remove the springs and supports to ground, so that wheels carry it",
         },
     )))
 }
@@ -130,7 +130,7 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
 /// Refuses a deck whose subcases select different MPC sets: the structure under unit loads has one.
 ///
 /// # Errors
-/// The sets.
+/// One fault with the sets.
 fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     let subcases = read.deck.case_control.effective_subcases();
     let sets: BTreeSet<u32> = subcases.iter().map(|s| s.mpc.unwrap_or(0)).collect();
@@ -150,7 +150,7 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
 }
 
-/// Returns what people call a subcase: its label, or its subtitle.
+/// Returns the label of a subcase, or its subtitle.
 pub fn label_of(s: &Subcase) -> String {
     s.label.clone().or(s.subtitle.clone()).unwrap_or_default()
 }

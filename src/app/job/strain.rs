@@ -118,7 +118,7 @@ pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     names
 }
 
-/// The fault of a strain file none of whose `columns` is a gauge's; where a table of S alone names the gauges, either may be meant.
+/// Returns the fault of a strain file without a column of a gauge. Where a table of S alone names the gauges, either file may be wrong.
 pub fn no_gauge_column(job: &Job, file: &str, columns: &[String]) -> Fault {
     let (wrong, remedy) = match &job.sensitivity {
         Some(s) if job.gauges.is_empty() => (

@@ -3,7 +3,7 @@
 use super::suggest;
 use crate::finding::{Finding, Severity};
 
-/// Columns that are named at most.
+/// Columns that a message names at most: a table of runs has fewer, and a record has thousands.
 const NAMED: usize = 20;
 
 /// Columns of a table that nothing reads.

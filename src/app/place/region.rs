@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 /// Surfaces where the job lets gauges go, among shells with strain in every case.
 ///
 /// # Errors
-/// None is left, or the deck lacks a SET, an element or a property.
+/// No surface is left, or the deck lacks a SET, an element or a property.
 pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
     let rule = &job.candidates;
     let model = fields.model();
@@ -91,7 +91,7 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
 /// Refuses ids of properties, elements and reference grids that the model lacks: a misspelt exclusion would leave its place open for gauges.
 ///
 /// # Errors
-/// Each list with its ids.
+/// A fault for each such id.
 fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     let rule = &job.candidates;
     let shells = model.shell_properties.iter().map(|p| p.id);

@@ -13,7 +13,8 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
-/// Measured over expected difference from which a validation gauge contradicts its prediction: by chance one of 400 does.
+/// Measured over expected difference beyond which a validation gauge contradicts its prediction: by chance one gauge in 370 does in a single run,
+/// fewer in several runs.
 const CONTRADICTED: f64 = 3.0;
 
 /// A gauge that no load was estimated from.
@@ -116,8 +117,8 @@ impl<'a> Predicted<'a> {
     }
 }
 
-/// Compares the readings of the runs, by all rows of S, with what the loads predict; `s` and `readings` are what loads were estimated
-/// from, without the loads that are known beforehand.
+/// Compares the readings of the runs, by all rows of S, with their prediction from the loads. `s` and `readings` are those that loads were
+/// estimated from, without the loads that are known beforehand.
 pub(super) fn of_runs(
     task: &Task,
     (s, readings): (&Sensitivity, &[Readings]),

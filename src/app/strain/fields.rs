@@ -67,7 +67,7 @@ impl Fields {
     }
 
     /// Returns the reference state, a subcase of the deck, from its results or as it was solved here. Cases that were solved for the job's loads
-    /// bear numbers of the job, which name no subcase.
+    /// have numbers of the job, which name no subcase.
     pub fn subcase(&self, id: u32) -> Option<&CaseResult> {
         if self.is_solved_here() {
             return self.reference.as_ref().filter(|c| c.subcase == id);
@@ -157,7 +157,7 @@ pub fn read_fields_beside(
 /// Solves the unit loads of the job, its reference subcase and further cases together with the built-in solver.
 ///
 /// # Errors
-/// What stops the solver, with file and line.
+/// Faults that stop the solver, with file and line.
 fn solve_fields(
     work: &mut Work,
     job: &Job,
