@@ -216,6 +216,18 @@ impl<'a> Channels<'a> {
         Ok(Some(Self { record, gauges, of }))
     }
 
+    /// Returns a note that the gauges are not compared, as their readings contain the vibration that `[dynamic]` takes out of the loads.
+    pub fn not_compared(&self) -> Finding {
+        let names: Vec<&str> = self.gauges.iter().map(Predicted::name).collect();
+        Finding::new(
+            Severity::Info,
+            "gauges-not-compared",
+            few(&names),
+            "these validation gauges are not compared with their prediction: their readings contain the vibration that [dynamic] takes out of the loads",
+            "drop [dynamic] to compare them",
+        )
+    }
+
     /// Compares a piece with its loads, `width` numbers a sample of which the first are those of S.
     ///
     /// # Errors
