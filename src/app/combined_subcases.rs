@@ -11,41 +11,26 @@ use nastran::bdf::{Subcase, SubcaseKind};
 /// A combination of solved subcases.
 pub(super) struct CombinedSubcase {
     subcase: Subcase,
-    /// Its index among all results.
+    /// Index among all results.
     at: usize,
     /// Factors and indices of solved cases.
     terms: Vec<(f64, usize)>,
 }
 
-/// Whether a subcase is a combination of others.
-pub(super) fn is_combination(s: &Subcase) -> bool {
-    matches!(
-        s.kind,
-        SubcaseKind::Subcom | SubcaseKind::Symcom | SubcaseKind::Repcase
-    )
-}
-
-/// Reads the combination that the last of `subcases` states. `solved` has the index of the solved case by subcase above it, `at` is its
-/// index among all results.
+/// Reads the combination that the subcase `s` states of the subcases `above`; `solved` has the index of the solved case of each, `at` is the
+/// index of the combination among all results.
 ///
-/// SUBSEQ gives its last factor to the SUBCASE directly above, and so on upwards; SYMSEQ alike to SYMs, all with factor 1 where it is
-/// missing. REPCASE repeats the subcase above.
+/// SUBSEQ gives its last factor to the SUBCASE directly above, and so on upwards. SYMSEQ gives its factors to SYM subcases in the same way;
+/// without SYMSEQ every factor is 1. REPCASE repeats the subcase above.
 ///
 /// # Errors
-/// Factors that are missing, or are more than subcases; loads of its own; subcases that have no static solution.
+/// Missing factors, or more factors than subcases; a combination with its own LOAD; subcases that have no static solution.
 pub(super) fn read_combination(
     read: &DeckModel,
-    subcases: &[Subcase],
-    (solved, at): (&[Option<usize>], usize),
+    s: &Subcase,
+    (above, solved): (&[Subcase], &[Option<usize>]),
+    at: usize,
 ) -> Result<CombinedSubcase, Faults> {
-    let Some((s, above)) = subcases.split_last() else {
-        return Err(Faults::from(Fault::of(
-            &*read.given,
-            "SUBCOM",
-            "no subcase",
-            "add one",
-        )));
-    };
     let (word, of) = match s.kind {
         SubcaseKind::Symcom => ("SYMCOM", SubcaseKind::Sym),
         SubcaseKind::Repcase => ("REPCASE", SubcaseKind::Subcase),
@@ -105,7 +90,7 @@ pub(super) fn read_combination(
 /// Adds the combinations to the results, in the order of the deck.
 ///
 /// # Errors
-/// Results that can't be added: bars with values at different stations.
+/// Results of bars at different stations, which can't be added.
 pub(super) fn add_combinations(
     read: &DeckModel,
     combined: &[CombinedSubcase],

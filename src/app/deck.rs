@@ -46,19 +46,19 @@ pub fn read_model(inputs: &mut Inputs, base: &Path, given: &str) -> Result<DeckM
     }
 }
 
-/// The fault of a file that is neither a deck nor an OP2.
+/// Returns the fault of a file that is neither a deck nor an OP2.
 pub(super) fn no_deck(given: &str, bytes: &[u8]) -> Option<Fault> {
     let kind = binary_kind(bytes).filter(|_| !looks_like_op2(bytes))?;
     let remedy = match format_of(bytes) {
         Some(_) => {
             "name a Nastran deck; a record belongs to a job, as `[measured] strain` or `[vehicle] data`"
         }
-        None => "name a Nastran deck (text) or an OP2 that holds the mesh",
+        None => "name a Nastran deck (text) or an OP2 that contains the mesh",
     };
     Some(Fault::of(
         given,
         "deck",
-        format!("it is {kind}, no Nastran deck"),
+        format!("it is {kind}, not a Nastran deck"),
         remedy,
     ))
 }
@@ -163,9 +163,9 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
     })
 }
 
-/// What the reader noted, one finding a deck: superelements that are kept and not read, a missing ENDDATA, an INCLUDE of two meanings.
+/// Returns the notes of the reader, one finding a deck: superelements that are kept and not read, a missing ENDDATA, an INCLUDE of two meanings.
 fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
-    /// Notes that the message holds.
+    /// Notes in the message.
     const SHOWN: usize = 3;
     if deck.notes.is_empty() {
         return Vec::new();

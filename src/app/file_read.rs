@@ -14,6 +14,6 @@ pub struct FileRead {
     pub sha256: String,
     /// How much a table whose last line may be cut matters; `None`: its end is sound.
     pub unsure: Option<Severity>,
-    /// What is to be known of a table beyond that.
+    /// Further findings on a table.
     pub noted: Vec<Finding>,
 }

@@ -32,7 +32,7 @@ pub struct Inputs<'a> {
     entries: Vec<(String, PathBuf, Hashing)>,
     /// Tables named by the job whose last line may be cut.
     unsure: BTreeMap<String, Severity>,
-    /// What is to be known of tables, by the table.
+    /// Further findings, each with the table that it is about.
     noted: Vec<(String, Finding)>,
     /// Tables that were read, so that a question that comes back to one reads what it read before.
     kept: BTreeMap<PathBuf, FileBytes>,
@@ -151,7 +151,7 @@ impl<'a> Inputs<'a> {
             return Err(Fault::of(
                 given,
                 "file",
-                format!("it is {}, no table", format.words()),
+                format!("it is {}, not a table", format.words()),
                 remedy,
             ));
         }
@@ -171,7 +171,8 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet with a column `run` that of its table.
+    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet with a column `run` its table as
+    /// CSV text.
     ///
     /// # Errors
     /// A fault at the line of the job that names it.
@@ -223,7 +224,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// A finding for each table whose last line may be cut; what was noted of tables.
+    /// Returns a finding for each table whose last line may be cut, and those that were noted.
     pub fn findings(&self) -> Vec<Finding> {
         let unsure = self.unsure.iter();
         let noted = self.noted.iter().map(|n| n.1.clone());
@@ -271,13 +272,13 @@ impl<'a> Inputs<'a> {
     }
 }
 
-/// The bytes of a table or a record; of a spreadsheet the CSV text of its first sheet.
+/// Returns the bytes of a table or a record; of a spreadsheet the CSV text of its first sheet.
 ///
 /// # Errors
-/// A fault of a file that is neither.
+/// A file that is neither a table nor a record.
 pub(super) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault> {
     if let Some(kind) = no_table(&bytes) {
-        let wrong = format!("it is {kind}, no table and no record");
+        let wrong = format!("it is {kind}, neither a table nor a record");
         let remedy =
             "name a CSV or XLSX table, or a record (CSV, RPC III, Parquet, TDMS, UFF, MDF4)";
         return Err(Fault::of(given, "file", wrong, remedy));
@@ -293,7 +294,7 @@ pub(super) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault
         .map_err(|wrong| Fault::of(given, "sheet", wrong, "save the sheet as CSV (UTF-8)"))
 }
 
-/// The table of runs in a Parquet file, as CSV text; `None` where the file is none.
+/// Returns the table of runs in a Parquet file as CSV text; `None` for another file.
 #[cfg(feature = "parquet")]
 fn runs_in_parquet(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fault> {
     if format_of(bytes) != Some(Format::Parquet) {
@@ -306,13 +307,13 @@ fn runs_in_parquet(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fau
     })
 }
 
-/// The table of runs in a Parquet file: none is read.
+/// Returns `None`: this build does not read Parquet.
 #[cfg(not(feature = "parquet"))]
 fn runs_in_parquet(_: &str, _: &FileBytes) -> Result<Option<String>, Fault> {
     Ok(None)
 }
 
-/// Returns what was noted of a table.
+/// Returns the findings that were noted on a table.
 fn of_table(noted: &[(String, Finding)], given: &str) -> Vec<Finding> {
     let of = noted.iter().filter(|n| n.0 == given);
     of.map(|n| n.1.clone()).collect()

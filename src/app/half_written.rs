@@ -28,14 +28,17 @@ pub fn name_of_part(name: &str, n: u64) -> String {
     format!(".{name}.{}-{}-{n}.part", host(), std::process::id())
 }
 
-/// Returns the name of this machine, letters and digits; empty where the system does not tell.
+/// Returns the name of this machine and of the space of its process numbers, letters and digits; empty where the system states none.
+/// Containers of one name and one folder have process numbers of their own.
 fn host() -> String {
     let name = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
-    name.chars().filter(|c| c.is_alphanumeric()).collect()
+    let space = std::fs::read_link("/proc/self/ns/pid").unwrap_or_default();
+    let both = name + &space.to_string_lossy();
+    both.chars().filter(|c| c.is_alphanumeric()).collect()
 }
 
-/// Removes the temporary files that runs of this machine left in a folder when they were killed. Those of another machine may be in work, and a
-/// system without `/proc` does not tell which runs have ended.
+/// Removes the temporary files that killed runs of this machine left in a folder. A run of another machine may be in progress, and a system
+/// without `/proc` does not state which runs have ended.
 pub fn remove_stale(folder: &Path) {
     let mut cleaned = CLEANED.lock().unwrap_or_else(PoisonError::into_inner);
     if !cleaned.insert(folder.to_owned()) {

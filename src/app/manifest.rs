@@ -1,8 +1,8 @@
 //! Which files of a folder which command wrote, so that its next run removes those that it no longer writes.
 //!
 //! `.strainbridge` in the folder: a line a file: the command, a tab, the name and, of a file that a person may edit, a tab and the SHA-256 of
-//! its bytes. Files of other commands are left alone, for one command's tables are often another's input. A file that is not listed, or that was
-//! changed since, is nobody's to write over.
+//! its bytes. Files of other commands are left alone, for one command's tables are often another's input. No command writes over a file that is
+//! not listed, or that was changed since.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};

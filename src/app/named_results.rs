@@ -53,10 +53,10 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
 }
 
 /// Refuses tables that the job names and that are not there: runs, zero, held-out runs, covariance and signatures, whether or not the command
-/// reads them. They don't count as read.
+/// reads them. The list of files that were read does not contain them.
 ///
 /// # Errors
-/// A fault for each.
+/// A fault for each such table.
 pub fn check_tables(work: &Work, job: &Job) -> Result<(), Faults> {
     let mut named: Vec<&NamedFile> = job.runs.iter().map(|r| &r.file).collect();
     if let Some(measured) = &job.measured {

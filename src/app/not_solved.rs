@@ -1,4 +1,4 @@
-//! The finding about what a deck asks for and the built-in solver does not carry.
+//! Finding about cards and statements of a deck that the built-in solver does not carry.
 
 use crate::fe::{LoadCase, Relief, loads_of_subcase, unsupported_cards};
 use crate::finding::{Finding, Severity, few};
@@ -19,13 +19,11 @@ pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
     let first = refused.first()?;
     let mut names: BTreeMap<&str, usize> = BTreeMap::new();
     for r in &refused {
-        let name = r.card.trim_end_matches(|c: char| c.is_ascii_digit());
-        let name = if name.ends_with(' ') {
-            name
-        } else {
-            r.card.as_str()
+        let name = match r.card.rsplit_once(' ') {
+            Some((name, id)) if id.bytes().all(|b| b.is_ascii_digit()) => name,
+            _ => r.card.as_str(),
         };
-        *names.entry(name.trim_end()).or_default() += 1;
+        *names.entry(name).or_default() += 1;
     }
     let counted: Vec<String> = names.iter().map(|(n, c)| format!("{n}: {c}")).collect();
     let message = format!(
@@ -42,7 +40,7 @@ pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
     Some(finding)
 }
 
-/// The loads of a subcase.
+/// Returns what a subcase selects as a load case.
 fn acting(s: &Subcase) -> LoadCase {
     LoadCase {
         subcase: s.id,

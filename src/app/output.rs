@@ -302,7 +302,7 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
         return Some(Fault::of(
             target.display().to_string(),
             "output",
-            "this file was changed after strainbridge wrote it, and would be written over",
+            "this file was changed after strainbridge wrote it, and this run would write over it",
             "choose another folder with `--out`, or give the changed file another name",
         ));
     }
@@ -321,9 +321,9 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
 
 /// Returns the SHA-256 of a file, where it goes to a name that a person may edit.
 fn digest_of(file: &Path, name: &Path) -> Option<String> {
-    /// Names of tables and jobs end so.
+    /// Extensions of tables and jobs.
     const EDITED: [&str; 5] = ["csv", "toml", "md", "bdf", "txt"];
-    /// Bytes of what is edited by hand at most.
+    /// Largest file that is compared, bytes: nobody edits a larger table by hand.
     const LARGEST: u64 = 16 << 20;
     let kind = name.extension()?.to_str()?;
     let size = std::fs::metadata(file).ok()?.len();

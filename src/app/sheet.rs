@@ -54,12 +54,13 @@ pub(super) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     Ok(lines.text)
 }
 
-/// A cell formatted as a date or a time as text: date and time of day, or the time of day alone where the cell holds less than two days.
-/// A number of days would be read as a number of whatever its column is.
+/// Returns a cell formatted as a date or a time as text: date and time of day, or the time of day alone where the cell contains less than two
+/// days. A number of days would be read as a number in the unit of its column.
 #[cfg(feature = "xlsx")]
 fn moment(cell: &calamine::ExcelDateTime) -> String {
+    use calamine::{ExcelDateTime, ExcelDateTimeType::DateTime};
     const MICROSECONDS: f64 = 86_400e6;
-    /// Days of which programs show the time of day alone.
+    /// Days below which programs show the time of day alone.
     const OF_DAY: f64 = 2.0;
     let days = cell.as_f64();
     let (whole, of_day) = (days.floor(), days - days.floor());
@@ -74,8 +75,8 @@ fn moment(cell: &calamine::ExcelDateTime) -> String {
     if cell.is_duration() || (0.0..OF_DAY).contains(&days) {
         return time;
     }
-    let at_noon =
-        calamine::ExcelDateTime::new(whole + 0.5, calamine::ExcelDateTimeType::DateTime, false);
+    let is_from_1904 = *cell == ExcelDateTime::new(days, DateTime, true);
+    let at_noon = ExcelDateTime::new(whole + 0.5, DateTime, is_from_1904);
     let (year, month, day, ..) = at_noon.to_ymd_hms_milli();
     format!("{year:04}-{month:02}-{day:02} {time}")
 }
@@ -200,6 +201,9 @@ mod tests {
         ] {
             assert_eq!(moment(&ExcelDateTime::new(days, kind, false)), expected);
         }
+        // Workbooks that count days from 1904 have the same day 1,462 days earlier.
+        let from_1904 = ExcelDateTime::new(46_143.0 - 1462.0, Kind::DateTime, true);
+        assert_eq!(moment(&from_1904), "2026-05-01 00:00:00.000000");
     }
 
     #[test]

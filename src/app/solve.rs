@@ -1,8 +1,6 @@
 //! `solve`: the built-in solver on a job's unit loads or on a deck's own static subcases.
 
-use super::combined_subcases::{
-    CombinedSubcase, add_combinations, is_combination, read_combination,
-};
+use super::combined_subcases::{CombinedSubcase, add_combinations, read_combination};
 use super::context::Context;
 use super::deck::{DeckModel, read_model};
 use super::fault::{Fault, Faults};
@@ -12,19 +10,18 @@ use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 pub use super::solved::MODES;
 use super::solved::{
-    case_of_subcase, cases_of_job, faults_of, has_enforced, relief_of_job, solve_kept,
-    support_of_job,
+    cases_of_job, faults_of, is_combination, relief_of_job, solve_kept, static_case, support_of_job,
 };
 use super::work::Work;
 use crate::fe::{
     Balance, Corners, LoadCase, Reactions, Relief, Solution, SolveOptions, SolveReport, Support,
-    SupportChoice, loads_of_subcase, refuse, relief_finding, suport_without_inrel,
+    SupportChoice, refuse, relief_finding, suport_without_inrel,
 };
 use crate::finding::{Finding, Severity};
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::{Model, Shell};
 use crate::units::UnitSystem;
-use nastran::bdf::{Request, Subcase};
+use nastran::bdf::Request;
 use nastran::cards::ShellShape;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -239,26 +236,24 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     for (i, s) in subcases.iter().enumerate() {
         if is_combination(s) {
             let at = cases.len() + combined.len();
-            let above = (solved.as_slice(), at);
-            combined.push(read_combination(&read, &subcases[..=i], above)?);
+            let above = (&subcases[..i], solved.as_slice());
+            combined.push(read_combination(&read, s, above, at)?);
             solved.push(None);
             continue;
         }
-        let loads = loads_of_subcase(s);
-        let why = not_static(s).or_else(|| {
-            let idle = loads.is_empty() && !has_enforced(&read.model, s.spc);
-            idle.then(|| "no LOAD".to_owned())
-        });
-        if let Some(why) = why {
-            left_out.push(format!("subcase {}: {why}", s.id));
-            solved.push(None);
-            continue;
+        match static_case(&read.model, s) {
+            Ok(case) => {
+                if s.request("STRAIN").is_none_or(asks_for_corners) {
+                    corners = Corners::Compute;
+                }
+                solved.push(Some(cases.len()));
+                cases.push(case);
+            }
+            Err(why) => {
+                left_out.push(format!("subcase {}: {why}", s.id));
+                solved.push(None);
+            }
         }
-        if s.request("STRAIN").is_none_or(asks_for_corners) {
-            corners = Corners::Compute;
-        }
-        solved.push(Some(cases.len()));
-        cases.push(case_of_subcase(&read.model, s));
     }
     let relieved = cases.iter().find(|c| c.spc.is_none());
     work.findings.extend(relieved.and_then(|c| {
@@ -286,13 +281,7 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     })
 }
 
-/// Why a subcase is not one of statics: what its ANALYSIS states.
-fn not_static(s: &Subcase) -> Option<String> {
-    let analysis = s.analysis.as_ref()?;
-    (!analysis.starts_with("STAT")).then(|| format!("ANALYSIS = {analysis} is not statics"))
-}
-
-/// States that loads of a deck for another linear analysis are solved as statics.
+/// Returns a note that loads of a deck for another linear analysis are solved as statics.
 fn other_sequence(read: &DeckModel) -> Option<Finding> {
     /// Sequences with static subcases: statics, inertia relief, buckling, optimisation.
     const STATICS: [u32; 9] = [1, 2, 5, 24, 61, 65, 101, 105, 200];

@@ -13,7 +13,7 @@ use crate::fe::{
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
-use nastran::bdf::Subcase;
+use nastran::bdf::{Subcase, SubcaseKind};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -53,7 +53,7 @@ fn moved_by(model: &Model, support: Support) -> Option<(u32, u32, f64)> {
     Some((set.sid, model.grids.get(grid.us())?.id, *by))
 }
 
-/// Returns what is to be said of the inertia relief of a job: assumed, or limited by springs to ground.
+/// Returns a finding on the inertia relief of a job: assumed, or limited by springs to ground.
 ///
 /// # Errors
 /// As [`support_of_job`].
@@ -99,7 +99,7 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
         ),
         match support.spc {
             Some(_) => "write support = \"free\" where wheels carry it",
-            None => "remove what holds its grids to ground, so that wheels carry it",
+            None => "remove the springs and supports to ground, so that wheels carry it",
         },
     )))
 }
@@ -130,7 +130,7 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
 /// Refuses a deck whose subcases select different MPC sets: the structure under unit loads has one.
 ///
 /// # Errors
-/// The sets.
+/// One fault with the sets.
 fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     let subcases = read.deck.case_control.effective_subcases();
     let sets: BTreeSet<u32> = subcases.iter().map(|s| s.mpc.unwrap_or(0)).collect();
@@ -150,24 +150,50 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
 }
 
-/// Returns what people call a subcase: its label, or its subtitle.
+/// Returns the label of a subcase, or its subtitle.
 pub fn label_of(s: &Subcase) -> String {
     s.label.clone().or(s.subtitle.clone()).unwrap_or_default()
 }
 
+/// Whether a subcase is a combination of others.
+pub fn is_combination(s: &Subcase) -> bool {
+    matches!(
+        s.kind,
+        SubcaseKind::Subcom | SubcaseKind::Symcom | SubcaseKind::Repcase
+    )
+}
+
 /// Returns a static subcase of a deck as a load case.
-pub fn case_of_subcase(model: &Model, subcase: &Subcase) -> LoadCase {
-    LoadCase {
+///
+/// # Errors
+/// Why the subcase is not one: a combination of others, an ANALYSIS that is not statics, no load.
+pub fn static_case(model: &Model, subcase: &Subcase) -> Result<LoadCase, String> {
+    if is_combination(subcase) {
+        return Err("it combines other subcases".to_owned());
+    }
+    let analysis = subcase.analysis.as_ref();
+    if let Some(analysis) = analysis.filter(|a| !a.starts_with("STAT")) {
+        return Err(format!("ANALYSIS = {analysis} is not statics"));
+    }
+    if subcase.deform.is_some() {
+        return Err("DEFORM is not carried".to_owned());
+    }
+    let loads = loads_of_subcase(subcase);
+    if loads.is_empty() && !has_enforced(model, subcase.spc) {
+        return Err("no LOAD".to_owned());
+    }
+    Ok(LoadCase {
         subcase: subcase.id,
         label: label_of(subcase),
-        loads: loads_of_subcase(subcase),
+        loads,
         spc: subcase.spc,
         mpc: subcase.mpc,
         relief: relief_of(model, subcase.spc, subcase.suport1),
-    }
+    })
 }
 
-pub fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
+/// Whether an SPC set moves a grid.
+fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
     model
         .spcs
         .iter()

@@ -1,14 +1,14 @@
-//! What a file is, where another kind of file is expected.
+//! Kinds of files by their content, for messages where another kind is expected.
 
 use super::sheet::is_sheet;
 use crate::series::record::format_of;
 
-/// Bytes looked at for a byte that no text has.
+/// First bytes in which a zero shows a binary file.
 const HEAD: usize = 1024;
-/// Bytes looked at for the words of a deck.
+/// First bytes in which a deck has BEGIN and a first card: case control is shorter in all but the longest decks.
 const DECK_HEAD: usize = 64 << 10;
 
-/// First bytes of files that no command reads, and what they are.
+/// First bytes of files that no command reads, with the words for their kind.
 const SIGNATURES: [(&[u8], &str); 15] = [
     (b"%PDF", "a PDF document"),
     (b"\x89PNG", "a PNG image"),
@@ -32,7 +32,7 @@ pub fn looks_like_op2(bytes: &[u8]) -> bool {
     matches!(bytes.get(..4), Some([4 | 8, 0, 0, 0] | [0, 0, 0, 4 | 8]))
 }
 
-/// Returns what a file that is no text is, with its article; `None` for text.
+/// Returns the kind of a binary file, with its article; `None` for text.
 pub(super) fn binary_kind(bytes: &[u8]) -> Option<&'static str> {
     if let Some(format) = format_of(bytes) {
         return Some(format.words());
@@ -62,7 +62,7 @@ pub(super) fn binary_kind(bytes: &[u8]) -> Option<&'static str> {
     head.contains(&0).then_some("a binary file")
 }
 
-/// Returns what a file is that is neither a table nor a record, with its article.
+/// Returns the kind of a file that is neither a table nor a record, with its article.
 pub(super) fn no_table(bytes: &[u8]) -> Option<&'static str> {
     if is_deck(bytes) {
         return Some("a Nastran deck");
@@ -92,7 +92,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_are_told_apart_by_their_first_bytes() {
+    fn the_first_bytes_of_a_file_show_its_kind() {
         let mut rpc = b"FORMAT".to_vec();
         rpc.resize(32, 0);
         rpc.extend(b"BINARY_IEEE_LITTLE_END");
@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_and_records_are_told_from_other_files() {
+    fn only_files_that_are_no_table_and_no_record_have_a_kind() {
         for bytes in [
             &b"run,P01\nR1,1\n"[..],
             b"TDSm",

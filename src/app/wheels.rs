@@ -93,7 +93,7 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
 /// Returns the basic axis whose positive direction is that of a force along axis `dof` of a coordinate system at a grid; `None` where it
 /// points elsewhere.
 fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
-    /// Cosine from which two directions are the same: half a thousandth of a degree.
+    /// Cosine from which two directions are the same: a thousandth of a degree.
     const ALIGNED: f64 = 1.0 - 1e-10;
     if cid == 0 {
         return Some(dof);

@@ -73,13 +73,7 @@ pub(super) fn read_zeroed(
     }
     let wanted = wanted_columns(&mut work.inputs, job);
     let mut table = read_strain(&mut work.inputs, job, named, &wanted)?;
-    let silent = without_column(&mut work.inputs, job, &table.gauges);
-    let silent: Vec<&str> = silent.iter().map(String::as_str).collect();
-    let unknown = table.gauges.iter().filter(|g| !wanted.contains(g));
-    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
-    let finding = gauges_without_strain(named, &silent, &unknown);
-    work.findings.extend(finding);
-    without_gauge(work, job, named, &table.gauges);
+    note_columns(work, job, named, (&table.gauges, &wanted));
     let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
     let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
     let rows = zeros_by_row(work, job, measured, &table)?;
@@ -99,8 +93,20 @@ pub(super) fn read_zeroed(
     })
 }
 
-/// Adds a warning of columns that belong to no gauge, of a job that says which gauges it has.
-pub(super) fn without_gauge(work: &mut Work, job: &Job, named: &NamedFile, columns: &[String]) {
+/// Adds a warning of gauges without a column in a strain file, and one of columns that belong to no gauge of a job that lists its gauges;
+/// `wanted` are the columns that were asked for.
+pub(super) fn note_columns(
+    work: &mut Work,
+    job: &Job,
+    named: &NamedFile,
+    (columns, wanted): (&[String], &[String]),
+) {
+    let silent = without_column(&mut work.inputs, job, columns);
+    let silent: Vec<&str> = silent.iter().map(String::as_str).collect();
+    let unknown = columns.iter().filter(|g| !wanted.contains(g));
+    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
+    let finding = gauges_without_strain(named, &silent, &unknown);
+    work.findings.extend(finding);
     let gauges = gauge_names(&mut work.inputs, job);
     if gauges.is_empty() {
         return;

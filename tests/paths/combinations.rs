@@ -77,6 +77,7 @@ fn symcom_adds_symmetric_and_antisymmetric_halves() {
     let unit = 1000.0 / EA;
     let at = |grid: usize| displacements(&o, grid);
     for (grid, values) in [(0, [0.0, 0.5, 0.5, -0.5]), (1, [0.25, 0.5, 0.75, -0.25])] {
+        assert_eq!(at(grid).len(), values.len());
         for ((subcase, u), (expected, v)) in at(grid).into_iter().zip((1..).zip(values)) {
             assert_eq!(subcase, expected);
             assert!((u - v * unit).abs() < ROUNDING, "grid {grid}: {u}");

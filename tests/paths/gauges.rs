@@ -7,7 +7,8 @@ use strainbridge::{Context, Job, place, recover, sensitivity};
 /// pull of 2,000 N along x on two edges: 100 MPa, so that the strain along x is `100 / E` everywhere.
 fn plate() -> String {
     let mut deck = String::from(
-        "SOL 101\nCEND\nSUBCASE 3\n LOAD = 5\nSUBCASE 4\n SPC = 1\nBEGIN BULK\nPARAM,INREL,-2\n\
+        "SOL 101\nCEND\nSUBCASE 3\n LOAD = 5\nSUBCASE 4\n SPC = 1\nSUBCOM 6\n LOAD = 5\n SUBSEQ = 2.,0.\n\
+         SUBCASE 8\n ANALYSIS = MODES\n LOAD = 5\nBEGIN BULK\nPARAM,INREL,-2\n\
          CORD2C,7,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n",
     );
     let grid = |i: u32, j: u32| 1 + i + 5 * j;
@@ -311,7 +312,8 @@ fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
     };
     let value = recovered(&with(3));
     assert!((value - 10.0).abs() < 1e-8, "{value}");
-    for n in [1, 4, 9] {
+    // Subcase 6 is a combination and subcase 8 is not statics: their LOAD is not the state.
+    for n in [1, 4, 6, 8, 9] {
         let files = with(n);
         let job = Job::read("job.toml", &files).unwrap();
         let text = recover(&job, &Context::new(&files))

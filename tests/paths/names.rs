@@ -42,7 +42,7 @@ fn rod(case_control: &str, bulk: &str) -> String {
     format!("SOL 101\nCEND\nSPC = 1\nLOAD = 1\n{case_control}BEGIN BULK\n{ROD}{bulk}ENDDATA\n")
 }
 
-/// Line of the card that stands behind the rod, and of the statement above it.
+/// Line of the card after the rod, and of the statement above it.
 const CARD_LINE: usize = 15;
 const STATEMENT_LINE: usize = 5;
 
@@ -72,7 +72,7 @@ fn no_name_of_bulk_data_is_silent() {
         let line = CARD_LINE + usize::from(!heat.is_empty());
         let set = if heat.is_empty() { 1 } else { 3 };
         let t = tried(&rod(heat, &format!("{name},{set}\n")));
-        let told = match effect {
+        let is_reported = match effect {
             Effect::None(reason) => t.idle.contains(&format!("{reason} ")) && t.solved.is_ok(),
             Effect::Acts => warns_of(&t, name) && refuses(&t, name, line),
             Effect::Load => {
@@ -83,7 +83,7 @@ fn no_name_of_bulk_data_is_silent() {
             // A card that is read, or whose fields are missed.
             Effect::Carried | Effect::Request | Effect::Executive => true,
         };
-        if !told {
+        if !is_reported {
             silent.push((name, effect, t.solved.err()));
         }
     }
@@ -98,13 +98,13 @@ fn no_word_of_case_control_is_silent() {
             continue;
         }
         let t = tried(&rod(&format!("{written} = 7\n"), ""));
-        let told = match effect {
+        let is_reported = match effect {
             Effect::None(_) => t.faults.is_empty() && t.solved.is_ok(),
             Effect::Acts => warns_of(&t, name) && refuses(&t, name, STATEMENT_LINE),
             Effect::Executive => t.faults.iter().any(|f| f.contains(":5: ")),
             _ => true,
         };
-        if !told {
+        if !is_reported {
             silent.push((written, effect, t.faults, t.solved.err()));
         }
     }
@@ -316,7 +316,7 @@ fn superelements_that_are_not_read_are_refused() {
 }
 
 #[test]
-fn suport_without_inrel_is_said() {
+fn suport_without_inrel_is_reported() {
     let said = |deck: String| {
         let findings = tried(&deck).solved.unwrap();
         findings.iter().any(|f| f.code == "suport-without-inrel")

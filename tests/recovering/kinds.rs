@@ -256,7 +256,7 @@ fn another_kind_of_file_than_the_one_expected_is_one_fault() {
         strainbridge::solve_deck("rec.rsp".as_ref(), Default::default(), &Context::new(&deck));
     let said = words(&solved.err().expect("a fault"));
     assert!(
-        said.contains("it is a record in TDMS form, no Nastran deck"),
+        said.contains("it is a record in TDMS form, not a Nastran deck"),
         "{said}"
     );
 }

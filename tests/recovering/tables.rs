@@ -71,6 +71,8 @@ fn lengths_in_a_gauge_table_have_the_unit_of_their_header() {
     for (header, row) in [
         ("x [mm],y [mm],z [mm]", "40,60,1"),
         ("x [m],y [m],z [m]", "0.04,0.06,0.001"),
+        ("x_m,y_m,z_m", "0.04,0.06,0.001"),
+        ("x_m [m],y_m [m],z_m [m]", "0.04,0.06,0.001"),
         ("x_mm,y_mm,z_mm", "40,60,1"),
     ] {
         let (found, _) = asked(&format!(
@@ -87,12 +89,12 @@ fn what_can_not_be_meant_in_a_gauge_table_is_a_fault() {
         ("angle_deg [rad]", "1", "angle_deg [rad]"),
         ("direction", "1 0 0", "direction"),
         ("grid_length [kN]", "5", "grid_length [kN]"),
-        ("dir_x,DIRX,dir_y", "1,1,0", ""),
+        ("x_m [mm]", "5", "x_m [mm]"),
         ("Dir_X,DIRX", "1,1", "DIRX"),
     ] {
         let text = format!("name,element,surface,{header}\nA,7,bottom,{cell}\n");
         let faults = asked(&text).map(|_| ()).unwrap_err();
-        let named = |f: &strainbridge::Fault| field.is_empty() || f.field == field;
+        let named = |f: &strainbridge::Fault| f.field == field;
         assert!(faults.iter().any(named), "{header}: {faults:?}");
     }
 }
@@ -159,6 +161,13 @@ fn columns_of_a_table_of_s_are_read_or_named_or_refused() {
     // Case and separators apart.
     let (found, _) = recovered(&given(&S.replace("A.FZ", "a_fz"), None, "")).unwrap();
     assert_eq!(found, right);
+    // A sign is not a separator.
+    let signed = recovered(&given(&S.replace("A.FZ", "A.FZ-"), None, ""));
+    let faults = signed.map(|_| ()).unwrap_err();
+    assert!(
+        faults.iter().any(|f| f.wrong.contains("A.FZ")),
+        "{faults:?}"
+    );
     let more = "gauge,A.FZ,B.FZ,C.FZ\nG1,1,0,9\nG2,0,1,9\nG3,1,1,9\n";
     let (found, findings) = recovered(&given(more, None, "")).unwrap();
     assert_eq!(found, right);

@@ -451,7 +451,7 @@ fn of_a_deck_that_can_not_be_solved_or_glued_on_check_says_what_the_commands_say
             t.replacen("properties = [1, 2]", "properties = [77]", 1)
                 .into_bytes()
         }),
-        Ends::Fault("the model has none with the id 77"),
+        Ends::Fault("the model has no property of a shell, bar or solid with the id 77"),
     )];
     agree(&folder, "place.toml", "place", "place.toml", &of_job);
 }

@@ -252,8 +252,8 @@ fn edits_of(
     Ok((edits, rows))
 }
 
-/// The cards of inertia relief. Where springs to ground resist some rigid motions, PARAM,INREL,-2 would take all six as free: SUPORT
-/// names dofs that hold the others.
+/// Returns the cards of inertia relief. Springs to ground may resist some rigid motions, and PARAM,INREL,-2 would take all six as free:
+/// SUPORT then names dofs that hold the other motions.
 fn relief_cards(model: &Model, support: Support) -> String {
     match (support.relief, support.by_springs) {
         (Relief::None, _) => String::new(),
@@ -308,8 +308,8 @@ fn drop_relief(edits: &mut Edits, job: &Job, deck: &Deck) -> Result<usize, Fault
     Ok(deck.cards.suports.len())
 }
 
-/// Selects MPC, SPC and NSM sets and the temperatures of materials above all subcases: the deck's subcases go, and what they select of the
-/// structure itself stays.
+/// Selects MPC, SPC and NSM sets and the temperatures of materials above all subcases: the deck's subcases are left out, and what they select
+/// of the structure itself remains.
 fn select_structure(
     case: &mut String,
     work: &mut Work,

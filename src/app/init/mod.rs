@@ -42,7 +42,7 @@ pub struct Proposal {
     pub loads: Vec<String>,
     /// Whether `place` answers it.
     pub placeable: bool,
-    /// Shell properties by the name that the deck gives them.
+    /// Shell properties by their names in the deck.
     #[serde(skip)]
     pub zones: BTreeMap<String, BTreeSet<u32>>,
     /// The job itself.
@@ -123,7 +123,7 @@ pub fn init(
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
-/// Shell properties that elements use by the name that comments of the deck give them.
+/// Returns the shell properties that elements use, by their names in comments of the deck.
 fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
     let property = |s: &Shell| Some(model.shell_properties.get(s.property.us())?.id);
     let used: BTreeSet<u32> = model.shells.iter().filter_map(property).collect();

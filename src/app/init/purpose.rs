@@ -149,7 +149,7 @@ impl Purpose {
 
 /// Returns the commented key of zones with the names of the deck, or its example where the deck has none, or more than fit.
 fn zones_line(zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
-    /// Zones that a line lists.
+    /// Zones that one line lists at most: a line of the job is to be read without scrolling.
     const MOST: usize = 12;
     if zones.is_empty() || zones.len() > MOST {
         return ZONES.to_owned();

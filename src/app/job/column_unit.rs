@@ -1,9 +1,10 @@
 //! Names and units of a run table's columns, read as those of records are: `A [kN]`, `A (kN)`, or a row of units below the names.
 
+use super::same_name::{is_same_name, is_same_word};
 use super::suggest;
 use super::table::Table;
 use super::types::{Job, Runs};
-use super::unread::{Unread, is_same_name};
+use super::unread::Unread;
 use crate::app::fault::{Fault, FaultList};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
@@ -55,7 +56,8 @@ pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usiz
     Ok(None)
 }
 
-/// The column that holds `name` of the job: [`place_of`], else the one called so apart from case and separators that is no other name's.
+/// Returns the column of `name` of the job: [`place_of`], else the one column that has this name apart from case and separators and no other
+/// name of the job.
 ///
 /// # Errors
 /// Several columns.
@@ -69,17 +71,12 @@ pub fn column_called(
     if exact.is_some() {
         return Ok(exact);
     }
-    // A single letter is a name of its own in either case.
-    if name.chars().filter(|c| c.is_alphanumeric()).count() < 2 {
-        return Ok(None);
-    }
-    let known = names_in_runs(job);
-    let is_claimed = |c: &Column| known.iter().any(|n| is_called(c, n));
-    let alike = |c: &Column| called(c).iter().any(|n| is_same_name(n, name));
+    let is_other = |c: &Column| names_in_runs(job).iter().any(|n| is_called(c, n));
+    let is_meant = |c: &Column| called(c).iter().any(|n| is_same_word(n, name));
     let mut holding = columns
         .iter()
         .enumerate()
-        .filter(|(_, c)| alike(c) && !is_claimed(c));
+        .filter(|(_, c)| is_meant(c) && !is_other(c));
     let Some((first, _)) = holding.next() else {
         return Ok(None);
     };
@@ -95,7 +92,7 @@ pub fn column_called(
     }
 }
 
-/// What a column may be called.
+/// Returns the names that a header may state.
 fn called(c: &Column) -> [&str; 3] {
     [&c.header.whole, &c.name, &c.header.name]
 }

@@ -118,10 +118,10 @@ pub(super) fn correct_legs(job: &mut Job, faults: &mut FaultList) {
     job.corrections.extend(of_legs);
 }
 
-/// Refuses corrections of channels that are not among `known`, in a job that does not list its gauges; `place` says where they are.
+/// Refuses corrections of channels that are not among `known`, in a job that does not list its gauges; `place` is where these channels are.
 ///
 /// # Errors
-/// Every such correction.
+/// A fault for each such correction.
 pub fn check_channels(job: &Job, known: &[String], place: &str) -> Result<(), Faults> {
     let mut faults = FaultList::new();
     for c in job.corrections.iter().filter(|_| job.gauges.is_empty()) {

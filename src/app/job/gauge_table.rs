@@ -1,14 +1,15 @@
-//! Which column of a gauge table holds what, in which unit, and which columns nothing reads.
+//! Columns of a gauge table: what is read from each, in which unit, and which columns nothing reads.
 
 use super::resolve::surface_from;
+use super::same_name::is_same_name;
 use super::suggest;
 use super::table::Table;
-use super::unread::{Unread, is_same_name, is_unit_of_none};
+use super::unread::Unread;
 use crate::app::fault::{Fault, FaultList};
 use crate::series::record::name_and_unit;
 use crate::units::{Quantity, find_unit, unit_names};
 
-/// What the numbers of a column are.
+/// Quantity of the numbers of a column.
 #[derive(Clone, Copy, PartialEq)]
 enum Measures {
     /// Words, ids, or numbers without a unit.
@@ -33,9 +34,9 @@ const COLUMNS: [(&str, &[&str], Measures); 26] = [
     ("x", &["position_x"], Length),
     ("y", &["position_y"], Length),
     ("z", &["position_z"], Length),
-    ("x_m", &[], Nothing),
-    ("y_m", &[], Nothing),
-    ("z_m", &[], Nothing),
+    ("x_m", &[], Length),
+    ("y_m", &[], Length),
+    ("z_m", &[], Length),
     ("bridge", &["kind", "wiring"], Nothing),
     ("bridge_factor", &[], Nothing),
     ("grid_length", &[], Length),
@@ -78,7 +79,7 @@ const INFORMATIVE: [&str; 19] = [
 /// A column that is read.
 #[derive(Clone, Copy)]
 pub(super) struct GaugeColumn {
-    /// Its place in the table.
+    /// Place in the table.
     pub at: usize,
     /// Job units (degrees for an angle) in one of its numbers.
     pub scale: f64,
@@ -189,7 +190,7 @@ fn is_informative(header: &str) -> bool {
     header.is_empty() || is_range || INFORMATIVE.iter().any(|n| is_same_name(n, header))
 }
 
-/// Returns the place of the column that is called so: by its name, by another one, or by one of them apart from case, separators and unit.
+/// Returns the place of the column with one of these names, else with one of them apart from case, separators and unit.
 fn column_of(
     t: &Table,
     (name, others, measures): (&str, &[&str], Measures),
@@ -221,13 +222,13 @@ fn column_of(
     let first = found.next()?;
     if let Some(second) = found.next() {
         let wrong = format!("two columns hold `{name}`: `{}` too", t.header[first]);
-        let remedy = "leave one of them out";
+        let remedy = "delete one of both columns";
         faults.push(Fault::at(&*t.file, 1, &*t.header[second], wrong, remedy));
     }
     Some(first)
 }
 
-/// Whether a column called `side` holds sides of a shell; those of a vehicle are something else.
+/// Whether a column called `side` contains sides of a shell; sides of a vehicle are something else.
 fn holds_words(t: &Table, at: usize, name: &str) -> bool {
     let header = t.header[at].as_str();
     if !name.starts_with("surface") || !header.to_lowercase().starts_with("side") {
@@ -300,7 +301,7 @@ fn scale_of(
 ) -> f64 {
     let header = t.header[at].as_str();
     let stated = stated_in(header, measures);
-    let in_bracket = Some(stated.bracket).filter(|b| !is_unit_of_none(b));
+    let in_bracket = Some(stated.bracket).filter(|b| !["", "-", "1"].contains(b));
     let in_name = Some(stated.unit).filter(|u| !u.is_empty());
     let of = |unit: &str| match measures {
         Length => find_unit(Quantity::Length, unit).map(|u| u.si / length_m),
@@ -324,13 +325,12 @@ fn scale_of(
             // What is in brackets may be a label: `surface (top or bottom)`.
             (None, _) if measures == Nothing && !name_and_unit(header).header.is_unit() => 1.0,
             (None, _) => {
-                let units = match measures {
-                    Length => unit_names(Quantity::Length).join(", "),
-                    Angle => "deg, rad, mrad".to_owned(),
-                    Nothing => "no unit".to_owned(),
+                let remedy = match measures {
+                    Length => format!("write one of {}", unit_names(Quantity::Length).join(", ")),
+                    Angle => "write deg, rad or mrad".to_owned(),
+                    Nothing => "leave the unit out".to_owned(),
                 };
-                let wrong = format!("`{unit}` can't be the unit of `{name}`");
-                fault(wrong, format!("write it in one of: {units}"))
+                fault(format!("`{unit}` can't be the unit of `{name}`"), remedy)
             }
         },
     }

@@ -34,11 +34,11 @@ pub(super) fn read_gauge_file(
         .and_then(|t| Ok(t.check_rows().map(|()| t)?));
     match table {
         Ok(t) => {
-            let columns = GaugeColumns::of(&t, job.units.length_m(), &mut FaultList::new());
+            let columns = GaugeColumns::of(&t, job.units.length_m(), faults);
             if let Some(unread) = columns.unread(&t) {
                 inputs.note(&t.file, unread.finding(&t.file));
             }
-            let gauges = gauges_from_table(&t, job.units.length_m(), faults);
+            let gauges = gauges_from_table(&t, &columns, faults);
             if let Some(finding) = without_direction(job, &t, &columns, &gauges) {
                 inputs.note(&t.file, finding);
             }
@@ -51,7 +51,7 @@ pub(super) fn read_gauge_file(
     }
 }
 
-/// Returns a warning where a table states for no gauge how it points, and a model has to tell what the gauges read.
+/// Returns a warning where a table states no direction of its gauges, and S comes from a model.
 fn without_direction(
     job: &Job,
     t: &Table,
@@ -72,9 +72,12 @@ fn without_direction(
     })
 }
 
-/// The gauges of a table; `length_m` are the metres in the job's unit of length.
-pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Vec<JobGauge> {
-    let columns = GaugeColumns::of(t, length_m, faults);
+/// Returns the gauges of a table.
+pub(super) fn gauges_from_table(
+    t: &Table,
+    columns: &GaugeColumns,
+    faults: &mut FaultList,
+) -> Vec<JobGauge> {
     if columns.column("name").is_none() {
         let remedy = suggest::closest("name", t.header.iter().map(String::as_str))
             .map_or("add a column `name`".to_owned(), |n| {
@@ -89,11 +92,11 @@ pub fn gauges_from_table(t: &Table, length_m: f64, faults: &mut FaultList) -> Ve
         let before = faults.len();
         let mut of_table = Row {
             table: t,
-            columns: &columns,
+            columns,
             row,
             faults,
         };
-        let gauge = gauge_of_row(&mut of_table, length_m);
+        let gauge = gauge_of_row(&mut of_table);
         if faults.len() == before {
             check_gauge(&gauge, faults);
             out.push(gauge);
@@ -240,16 +243,16 @@ impl Row<'_> {
 /// A location in job units, as a row states it.
 struct Location {
     at: Option<[f64; 3]>,
-    /// In job units: where the gauge sits. In metres alone it may only describe it.
+    /// From `x`, `y`, `z`: where the gauge sits. `x_m`, `y_m`, `z_m` alone may only describe it.
     in_job_units: bool,
 }
 
-/// Columns `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m`; `length_m` are the metres in the job's unit of length.
-fn location(row: &mut Row, length_m: f64) -> Location {
+/// Reads the columns `x`, `y`, `z`, or `x_m`, `y_m`, `z_m`.
+fn location(row: &mut Row) -> Location {
     let metres = row.vector(["x_m", "y_m", "z_m"]);
     let stated = row.vector(["x", "y", "z"]);
     Location {
-        at: stated.or(metres.map(|x| x.map(|v| v / length_m))),
+        at: stated.or(metres),
         in_job_units: stated.is_some(),
     }
 }
@@ -276,9 +279,9 @@ fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlac
     }
 }
 
-fn gauge_of_row(row: &mut Row, length_m: f64) -> JobGauge {
+fn gauge_of_row(row: &mut Row) -> JobGauge {
     let direction = row.direction();
-    let location = location(row, length_m);
+    let location = location(row);
     let cid = row.id("cid", "coordinate system", 0).unwrap_or(0);
     let surface = row.surface("surface");
     let laid = direction.is_some() || surface.is_some();

@@ -1,7 +1,7 @@
 //! Which columns of a given S are loads.
 
+use super::same_name::{is_same_name, is_same_word};
 use super::types::{GivenSensitivity, Job, JobLoad};
-use super::unread::is_same_name;
 
 /// Load and column of a given S whose table has this header (the column of gauge names left out): as `columns` says; where it is left out,
 /// every column that a stated load names, or every column where no load is stated.
@@ -19,12 +19,9 @@ pub fn columns_of_given(
         return own.map(|name| (name.clone(), name)).collect();
     }
     let is_load = |name: &str| job.loads.iter().any(|l| l.name == name);
-    // A load whose column nobody else's name is, apart from case and separators.
+    // One load and one column have the same name apart from case and separators.
     let meant = |column: &String| {
-        // A single letter is a name of its own in either case.
-        let is_word = column.chars().filter(|c| c.is_alphanumeric()).count() > 1;
-        let like =
-            |l: &&JobLoad| is_word && is_same_name(&l.name, column) && !header.contains(&l.name);
+        let like = |l: &&JobLoad| is_same_word(&l.name, column) && !header.contains(&l.name);
         let mut loads = job.loads.iter().filter(like);
         let mut columns = header.iter().filter(|h| is_same_name(h, column));
         let only = (loads.next(), loads.next(), columns.next(), columns.next());

@@ -18,7 +18,7 @@ impl Job {
     }
 
     /// Returns the job without its validation gauges, as a command takes it that estimates from readings. The names of their readings
-    /// are in [`Job::reserved`]: their columns are known, and nobody reads them.
+    /// are in [`Job::reserved`]: their columns are known, and no command reads them.
     ///
     /// # Errors
     /// One fault where every gauge of the job is a validation gauge.

@@ -10,6 +10,7 @@ use super::table::read_table;
 use super::types::{Job, JobGauge, NamedFile};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::{FileBytes, Inputs};
+use crate::finding::few;
 use crate::series::SeriesError;
 use crate::series::record::{Options, Record, is_format, open_record};
 use std::collections::HashSet;
@@ -117,14 +118,8 @@ pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     names
 }
 
-/// The fault of a strain file none of whose `columns` is a gauge's; where a table of S alone names the gauges, either may be meant.
+/// Returns the fault of a strain file without a column of a gauge. Where a table of S alone names the gauges, either file may be wrong.
 pub fn no_gauge_column(job: &Job, file: &str, columns: &[String]) -> Fault {
-    /// Columns that are listed.
-    const LISTED: usize = 20;
-    let mut there: Vec<&str> = columns.iter().take(LISTED).map(String::as_str).collect();
-    if columns.len() > LISTED {
-        there.push("..");
-    }
     let (wrong, remedy) = match &job.sensitivity {
         Some(s) if job.gauges.is_empty() => (
             format!("no column is named after a gauge of `{}`", s.file.given),
@@ -135,9 +130,9 @@ pub fn no_gauge_column(job: &Job, file: &str, columns: &[String]) -> Fault {
             "name the columns after the gauges",
         ),
     };
-    let wrong = match there.is_empty() {
+    let wrong = match columns.is_empty() {
         true => format!("{wrong}; the file has no column of numbers"),
-        false => format!("{wrong}; its columns are {}", there.join(", ")),
+        false => format!("{wrong}; its columns are {}", few(columns)),
     };
     Fault::at(file, 1, "gauge", wrong, remedy)
 }

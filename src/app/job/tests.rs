@@ -346,6 +346,12 @@ fn contradictions_between_keys_are_faults() {
     }
 }
 
+/// Gauges of a table; `length_m` are the metres in the job's unit of length.
+fn gauges_from_table(t: &table::Table, length_m: f64, faults: &mut Vec<Fault>) -> Vec<JobGauge> {
+    let columns = gauge_table::GaugeColumns::of(t, length_m, faults);
+    gauges::gauges_from_table(t, &columns, faults)
+}
+
 #[test]
 fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
     let text = "name,element,surface,dir_x,dir_y,dir_z,angle_deg,bridge,bridge_factor,grid_length,element2,surface2\n\
@@ -354,7 +360,7 @@ fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
                 C,14,bottom,1,0,0,,fullbending,,,,\n";
     let t = table::read_table("g.csv", text).unwrap();
     let mut found = Vec::new();
-    let gauges = gauges::gauges_from_table(&t, 1.0, &mut found);
+    let gauges = gauges_from_table(&t, 1.0, &mut found);
     assert_eq!(gauges.len(), 1);
     assert_eq!(gauges[0].place, StatedPlace::Element(12));
     assert_eq!(
@@ -378,7 +384,7 @@ fn a_station_without_a_point_is_refused_in_a_job_and_in_a_table() {
     let text = "name,element,point,station\nA,1,,0.5\nB,1,C,0.5\nC,1,,\n";
     let t = table::read_table("g.csv", text).unwrap();
     let mut found = Vec::new();
-    gauges::gauges_from_table(&t, 1.0, &mut found);
+    gauges_from_table(&t, 1.0, &mut found);
     let named: Vec<_> = found.iter().map(|f| (f.line, &*f.field)).collect();
     assert_eq!(named, [(Some(2), "station")], "{found:?}");
     let job = "units = \"mm-t-s\"\n[model]\ndeck = \"d.bdf\"\n[[gauge]]\nname = \"A\"\nelement = 1\nstation = 0.5\n";
@@ -399,7 +405,7 @@ fn a_gauge_table_is_held_to_the_limits_of_a_job() {
             let text = format!("name,element,point,{header}\nA,1,C,{value}\n");
             let t = table::read_table("g.csv", &text).unwrap();
             let mut found = Vec::new();
-            gauges::gauges_from_table(&t, 1.0, &mut found);
+            gauges_from_table(&t, 1.0, &mut found);
             found
         };
         for value in good {
@@ -434,7 +440,7 @@ fn a_direction_in_a_gauge_table_is_whole_or_absent() {
         let text = format!("name,element,{header}\nA,1,{row}\n");
         let t = table::read_table("g.csv", &text).unwrap();
         let mut found = Vec::new();
-        gauges::gauges_from_table(&t, 1.0, &mut found);
+        gauges_from_table(&t, 1.0, &mut found);
         let fields: Vec<&str> = found.iter().map(|f| f.field.as_str()).collect();
         assert_eq!(fields, Vec::from_iter(at), "{row}: {found:?}");
     }
@@ -451,7 +457,7 @@ fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
     ] {
         let t = table::read_table("g.csv", &format!("name,{header}\nA,1\n")).unwrap();
         let mut found = Vec::new();
-        gauges::gauges_from_table(&t, 1.0, &mut found);
+        gauges_from_table(&t, 1.0, &mut found);
         let named = |f: &Fault| f.field == header && f.remedy.contains(meant);
         assert!(found.iter().any(named), "{header}: {found:?}");
     }
@@ -461,7 +467,7 @@ fn columns_that_look_like_those_of_a_gauge_table_are_faults() {
         "name,element,angle_deg,x_m,y_m,z_m,member,place,row,leverage,role,angle_seen_deg\nA,1,45,0,0,0,rail,web,2,.3,estimate,45\n",
     );
     let mut found = Vec::new();
-    gauges::gauges_from_table(&t.unwrap(), 1.0, &mut found);
+    gauges_from_table(&t.unwrap(), 1.0, &mut found);
     assert!(found.is_empty(), "{found:?}");
 }
 
@@ -473,7 +479,7 @@ fn positions_in_metres_become_job_units() {
     )
     .unwrap();
     let mut found = Vec::new();
-    let gauges = gauges::gauges_from_table(&t, 1e-3, &mut found);
+    let gauges = gauges_from_table(&t, 1e-3, &mut found);
     assert_eq!(gauges[0].position, Some([1500.0, -250.0, 0.0]));
 }
 

@@ -3,7 +3,7 @@
 use super::suggest;
 use crate::finding::{Finding, Severity};
 
-/// Columns that are named at most.
+/// Columns that a message names at most: a table of runs has fewer, and a record has thousands.
 const NAMED: usize = 20;
 
 /// Columns of a table that nothing reads.
@@ -50,19 +50,4 @@ impl Unread {
         )
         .with_numbers(named.len() as f64, 0.0)
     }
-}
-
-/// Whether two names are the same apart from case, blanks and separators: `DIR_X`, `dir x` and `dirx`.
-pub fn is_same_name(a: &str, b: &str) -> bool {
-    let letters = |name: &str| -> String {
-        let kept = name.chars().filter(|c| c.is_alphanumeric());
-        kept.flat_map(char::to_lowercase).collect()
-    };
-    let (a, b) = (letters(a), letters(b));
-    !a.is_empty() && a == b
-}
-
-/// Whether what is in brackets beside a name states that the column has no unit.
-pub fn is_unit_of_none(bracket: &str) -> bool {
-    matches!(bracket, "" | "-" | "1")
 }

@@ -3,10 +3,10 @@
 use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::payload_loads::part_of;
+use crate::app::job::payload_signature::{COLUMNS, note_unread};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, GivenSensitivity, Job, LoadActs, NamedFile};
 use crate::app::job_deck::read_deck;
-use crate::app::recover::known_payload::{COLUMNS, note_unread};
 use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, has_covariance, prepare};
 use crate::app::wheels::{floor_fault, wheels_of};

@@ -3,15 +3,12 @@
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::strain::{
-    StrainRows, StrainTable, no_gauge_column, wanted_columns, without_column,
-};
+use crate::app::job::strain::{StrainRows, StrainTable, no_gauge_column, wanted_columns};
 use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::{Measured, NamedFile};
 use crate::app::outcome::finite;
-use crate::app::recover::gauges_without_strain;
 use crate::app::work::Work;
-use crate::app::zeroed::{no_zero_runs, without_gauge, zeros_by_row};
+use crate::app::zeroed::{no_zero_runs, note_columns, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadModel, PayloadRun, Place};
 use crate::reconcile::strain::WheelForces;
@@ -311,13 +308,7 @@ fn strain(
     let file = work.stage("read strain", |s| {
         read_strain_file(&mut s.inputs, task.job, &measured.strain, &wanted)
     })?;
-    let silent = without_column(&mut work.inputs, task.job, file.gauges());
-    let silent: Vec<&str> = silent.iter().map(String::as_str).collect();
-    let unknown = file.gauges().iter().filter(|g| !wanted.contains(g));
-    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
-    let finding = gauges_without_strain(&measured.strain, &silent, &unknown);
-    work.findings.extend(finding);
-    without_gauge(work, task.job, &measured.strain, file.gauges());
+    note_columns(work, task.job, &measured.strain, (file.gauges(), &wanted));
     let noise = measured.noise_microstrain * MICROSTRAIN;
     let zero: Vec<Option<Net>> = match &measured.zero {
         Some(named) => {

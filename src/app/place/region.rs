@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 /// Surfaces where the job lets gauges go, among shells with strain in every case.
 ///
 /// # Errors
-/// None is left, or the deck lacks a SET, an element or a property.
+/// No surface is left, or the deck lacks a SET, an element or a property.
 pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
     let rule = &job.candidates;
     let model = fields.model();
@@ -91,7 +91,7 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
 /// Refuses ids of properties, elements and reference grids that the model lacks: a misspelt exclusion would leave its place open for gauges.
 ///
 /// # Errors
-/// Each list with its ids.
+/// A fault for each such id.
 fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     let rule = &job.candidates;
     let shells = model.shell_properties.iter().map(|p| p.id);
@@ -107,6 +107,10 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     ];
     let mut faults = FaultList::new();
     for (key, ids, there) in lists {
+        let what = match key.ends_with("properties") {
+            true => "property of a shell, bar or solid",
+            false => "element",
+        };
         let ranges = ids.iter().flat_map(|ids| &ids.0);
         for [a, b] in ranges.filter(|[a, b]| there.range(*a..).next().is_none_or(|id| id > b)) {
             let range = match a == b {
@@ -117,7 +121,7 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
                 &*job.file,
                 rule.line,
                 format!("candidates.{key}"),
-                format!("the model has none with the id {range}"),
+                format!("the model has no {what} with the id {range}"),
                 "correct the id, or delete it from the list",
             ));
         }

@@ -6,6 +6,7 @@ use super::model_part::{ModelPart, facts, nominal_x_m, nominal_y_m};
 use super::signature_table::{SignatureTable, TableColumn};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::Inputs;
+use crate::app::job::payload_signature::COLUMNS;
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::{GivenSensitivity, Job, JobLoad, LoadRole, NamedFile, Signatures};
 use crate::app::strain::read_given;
@@ -18,14 +19,6 @@ use crate::units::{KILO, Quantity};
 
 /// Ratio of the transverse to the axial strain where a table gives the axial one alone: a rail flange in bending.
 const POISSON: f64 = 0.29;
-
-/// Payload columns of the tables: weight, times dx, times dy, times dx dy; each by its names.
-const PAYLOAD_NAMES: [[&str; 2]; N_PAYLOAD_COLUMNS] = [
-    ["b0", ""],
-    ["b_dx", "b_x"],
-    ["b_dy", "b_y"],
-    ["b_dxdy", "b_xy"],
-];
 
 /// Reads everything that `[sensitivity]` names. `channels` are the gauges in the order of the strain file.
 pub(super) fn read(
@@ -147,7 +140,7 @@ impl<'a> Tables<'a> {
     fn loads_and_payload(&self) -> Vec<(String, f64)> {
         let mut names = self.loads();
         names.extend(
-            PAYLOAD_NAMES
+            COLUMNS
                 .iter()
                 .zip(self.payload_scale())
                 .map(|(n, f)| (n[0].to_owned(), f)),
@@ -173,7 +166,7 @@ impl<'a> Tables<'a> {
         let mut payload = vec![vec![0.0; self.channels.len()]; N_PAYLOAD_COLUMNS];
         if let Some(file) = &self.signatures.payload {
             let t = self.read(inputs, file)?;
-            let named = PAYLOAD_NAMES.into_iter().zip(self.payload_scale());
+            let named = COLUMNS.into_iter().zip(self.payload_scale());
             for (column, (names, f)) in payload.iter_mut().zip(named) {
                 if let Some(name) = names.iter().find(|n| t.has(n)) {
                     *column = t.column(name, f)?;

@@ -3,23 +3,14 @@
 
 use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::files::Inputs;
+use crate::app::job::payload_signature::{COLUMNS, note_unread};
 use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::table::{Table, read_table};
-use crate::app::job::unread::Unread;
+use crate::app::job::table::read_table;
 use crate::app::job::{Component, GivenSensitivity, Job, JobLoad, LoadActs, LoadRole};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
-
-/// Columns of the signature: microstrain per mass, per mass and length along x, along y, and along both.
-pub const COLUMNS: [[&str; 2]; 4] = [
-    ["b0", "b0"],
-    ["b_dx", "b_x"],
-    ["b_dy", "b_y"],
-    ["b_dxdy", "b_xy"],
-];
 
 /// Loads that are known, by run: number of the load, value in job units. What the recovery finds of them is what is left besides.
 pub(super) type KnownLoads = Vec<Vec<(usize, f64)>>;
@@ -220,16 +211,4 @@ fn signature(
     }
     Faults::check(faults)?;
     Ok(out)
-}
-
-/// Adds a finding that names the columns of a payload's signature which nothing reads.
-pub fn note_unread(inputs: &mut Inputs, table: &Table, key: usize) {
-    let is_read = |c: &usize| *c == key || COLUMNS.iter().flatten().any(|n| table.header[*c] == *n);
-    let unread = (0..table.header.len()).filter(|c| !is_read(c));
-    let unread: Vec<&str> = unread.map(|c| table.header[c].as_str()).collect();
-    let lacking = COLUMNS.iter().map(|n| n[0]);
-    let lacking: Vec<&str> = lacking.filter(|n| table.column(&[n]).is_none()).collect();
-    if let Some(unread) = Unread::of(&unread, &lacking) {
-        inputs.note(&table.file, unread.finding(&table.file));
-    }
 }

@@ -12,7 +12,7 @@ mod dynamic;
 mod files;
 mod history;
 mod judged;
-pub(super) mod known_payload;
+mod known_payload;
 mod look;
 mod reading;
 mod record;

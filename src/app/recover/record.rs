@@ -83,8 +83,10 @@ pub(super) fn record(
     let first_mode = motion.as_ref().and_then(|m| m.modes_hz.first().copied());
     // What the band leaves out stands in the record as measured.
     let content = content(work, task, (&record, first_mode), &filter, &names)?;
-    // Readings as measured hold the vibration that is not in the loads.
-    channels = channels.filter(|_| at_rest.is_none());
+    if at_rest.is_some() {
+        let dropped = channels.take();
+        work.findings.extend(dropped.map(|c| c.not_compared()));
+    }
     let record = at_rest.unwrap_or(record);
     let about = record.clock().samples;
     let (first_s, step_s) = record.first_and_step();

@@ -9,11 +9,12 @@ use crate::app::outcome::finite;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::validation::prediction_variance;
 use crate::recovery::{Gain, Readings, Recovery};
-use crate::sensitivity::Sensitivity;
+use crate::sensitivity::{Sensitivity, Uncertainty};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
-/// Measured over expected difference from which a validation gauge contradicts its prediction: by chance one of 400 does.
+/// Measured over expected difference beyond which a validation gauge contradicts its prediction: by chance one gauge in 370 does in a single run,
+/// fewer in several runs.
 const CONTRADICTED: f64 = 3.0;
 
 /// A gauge that no load was estimated from.
@@ -25,7 +26,7 @@ pub struct ValidationGauge {
     pub n: u64,
     /// Root mean square of reading less prediction; `None` where nothing was compared.
     pub rms_microstrain: Option<f64>,
-    /// The same as stated errors make it: noise, model error, uncertainty of the loads.
+    /// Root mean square that stated errors explain: noise, model error, uncertainty of the loads.
     pub expected_rms_microstrain: Option<f64>,
 }
 
@@ -69,7 +70,7 @@ pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
             few(&names),
             format!(
                 "these validation gauges differ from their prediction by up to {largest:.1} times what stated errors explain: either they \
-                 or the recovered loads are wrong by more than the intervals say"
+                 or the recovered loads are wrong by more than the intervals state"
             ),
             "check these gauges and their place in the model, then run `reconcile`",
         )
@@ -80,9 +81,11 @@ pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
 /// A gauge that is predicted.
 struct Predicted<'a> {
     task: &'a Task<'a>,
-    /// Its row in S.
+    /// Row in S.
     row: usize,
     s: Vec<f64>,
+    /// Uncertainty of that row.
+    uncertainty: Option<Uncertainty>,
 }
 
 impl<'a> Predicted<'a> {
@@ -92,6 +95,7 @@ impl<'a> Predicted<'a> {
             task,
             row,
             s: s.values.row(row).iter().copied().collect(),
+            uncertainty: s.uncertainty.as_ref().map(|u| u.of_gauges(&[row])),
         };
         task.validation.iter().map(of).collect()
     }
@@ -100,25 +104,21 @@ impl<'a> Predicted<'a> {
         &self.task.prepared.sensitivity.gauges[self.row]
     }
 
-    /// Strain at loads `f`; not a number where one of them is not known.
+    /// Strain at loads `f`; not a number where a load is unknown.
     fn strain(&self, f: &[f64]) -> f64 {
         self.s.iter().zip(f).map(|(s, f)| s * f).sum()
     }
 
     /// Expected variance of reading less prediction, strain^2.
     fn variance(&self, gain: &Gain, f: &[f64], noise_factor: f64) -> f64 {
-        let all = &self.task.prepared.sensitivity;
-        let n = all.gauges.len();
-        let of_row = all.uncertainty.as_ref().map_or(0.0, |u| {
-            let strain = u.strain_covariance(n, f);
-            strain.get(self.row * n + self.row).copied().unwrap_or(0.0)
-        });
+        let own = self.uncertainty.as_ref();
+        let of_row: f64 = own.map_or(0.0, |u| u.strain_covariance(1, f).iter().sum());
         of_row + prediction_variance((gain, &self.s), self.task.errors, f, noise_factor)
     }
 }
 
-/// Compares the readings of the runs, by all rows of S, with what the loads predict; `s` and `readings` are what loads were estimated
-/// from, without the loads that are known beforehand.
+/// Compares the readings of the runs, by all rows of S, with their prediction from the loads. `s` and `readings` are those that loads were
+/// estimated from, without the loads that are known beforehand.
 pub(super) fn of_runs(
     task: &Task,
     (s, readings): (&Sensitivity, &[Readings]),
@@ -162,7 +162,7 @@ pub(super) fn of_runs(
 pub(super) struct Channels<'a> {
     record: Record,
     gauges: Vec<Predicted<'a>>,
-    /// By channel, its gauge.
+    /// Gauge of each channel.
     of: Vec<usize>,
 }
 
@@ -195,7 +195,7 @@ impl<'a> Channels<'a> {
     /// Opens the record once more for the job's validation gauges; `None` where it has none.
     ///
     /// # Errors
-    /// Those of the record.
+    /// Faults of the record.
     pub fn open(task: &'a Task<'a>, bytes: FileBytes) -> Result<Option<Self>, Faults> {
         let gauges = Predicted::all(task);
         if gauges.is_empty() {
@@ -214,6 +214,18 @@ impl<'a> Channels<'a> {
         }
         let record = record.with_columns(columns);
         Ok(Some(Self { record, gauges, of }))
+    }
+
+    /// Returns a note that the gauges are not compared, as their readings contain the vibration that `[dynamic]` takes out of the loads.
+    pub fn not_compared(&self) -> Finding {
+        let names: Vec<&str> = self.gauges.iter().map(Predicted::name).collect();
+        Finding::new(
+            Severity::Info,
+            "gauges-not-compared",
+            few(&names),
+            "these validation gauges are not compared with their prediction: their readings contain the vibration that [dynamic] takes out of the loads",
+            "drop [dynamic] to compare them",
+        )
     }
 
     /// Compares a piece with its loads, `width` numbers a sample of which the first are those of S.
@@ -250,7 +262,7 @@ impl<'a> Channels<'a> {
         Ok(out)
     }
 
-    /// What all parts come to; the expected difference is that at the root mean square of the loads.
+    /// Returns the comparison of all parts; the expected difference is computed at the root mean square of the loads.
     pub fn found(&self, compared: &Compared, gain: &Gain) -> Vec<ValidationGauge> {
         let samples = compared.samples.max(1) as f64;
         let typical = compared.loads.iter().map(|v| (v / samples).sqrt());

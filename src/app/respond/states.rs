@@ -129,7 +129,7 @@ pub(super) fn from_table(
     Ok(states)
 }
 
-/// Returns the columns of a table of loads that nothing reads; sums of loads, which `recover` writes too, are made of the loads again.
+/// Returns the columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known: they follow from the loads.
 fn unread_columns(t: &Table, job: &Job, names: &[String]) -> Option<Unread> {
     let key = t.column(&KEYS).unwrap_or(0);
     let sums = job.combinations.iter().map(|c| &c.name);
@@ -145,7 +145,7 @@ fn unread_columns(t: &Table, job: &Job, names: &[String]) -> Option<Unread> {
     Unread::of(&unread, &lacking.map(String::as_str).collect::<Vec<_>>())
 }
 
-/// Names of the column that states what a row is.
+/// Names of the column with the run or the time of a row.
 const KEYS: [&str; 4] = ["run", "time", "t", "state"];
 
 /// Where in the table the loads stand.

@@ -9,7 +9,7 @@ use crate::app::job::{Job, JobLoad, LoadRole, ModelFiles, Reference};
 use crate::app::job_deck::read_deck;
 use crate::app::named_results::results_fault;
 use crate::app::solved::{
-    MODES, case_of_subcase, cases_of_job, has_enforced, relief_of_job, solve_kept, support_of_job,
+    MODES, cases_of_job, relief_of_job, solve_kept, static_case, support_of_job,
 };
 use crate::app::work::Work;
 use crate::fe::from_results::{Displacements, ReadOptions, repeated, solution_from_file};
@@ -67,7 +67,7 @@ impl Fields {
     }
 
     /// Returns the reference state, a subcase of the deck, from its results or as it was solved here. Cases that were solved for the job's loads
-    /// bear numbers of the job, which name no subcase.
+    /// have numbers of the job, which name no subcase.
     pub fn subcase(&self, id: u32) -> Option<&CaseResult> {
         if self.is_solved_here() {
             return self.reference.as_ref().filter(|c| c.subcase == id);
@@ -157,7 +157,7 @@ pub fn read_fields_beside(
 /// Solves the unit loads of the job, its reference subcase and further cases together with the built-in solver.
 ///
 /// # Errors
-/// What stops the solver, with file and line.
+/// Faults that stop the solver, with file and line.
 fn solve_fields(
     work: &mut Work,
     job: &Job,
@@ -281,19 +281,15 @@ fn read_results(
     })
 }
 
-/// Returns the subcase of the deck that the job names as its reference state; `None` where the job names none, or the deck has no such
+/// Returns the subcase of the deck that the job names as its reference state; `None` where the job names none, or the deck has no such static
 /// subcase with a load.
 fn reference_case(job: &Job, deck: &DeckModel) -> Option<LoadCase> {
     let Reference::Subcase(id) = job.measured.as_ref()?.reference else {
         return None;
     };
     let subcases = deck.deck.case_control.effective_subcases();
-    let named = subcases.iter().find(|s| s.id == id && s.deform.is_none())?;
-    let case = case_of_subcase(&deck.model, named);
-    let moved = case
-        .spc
-        .is_some_and(|set| has_enforced(&deck.model, Some(set)));
-    (!case.loads.is_empty() || moved).then_some(case)
+    let named = subcases.iter().find(|s| s.id == id)?;
+    static_case(&deck.model, named).ok()
 }
 
 /// Bars and beams with PLOAD1 in the load set of a subcase; in any load set where the deck has no such subcase.

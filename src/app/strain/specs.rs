@@ -125,7 +125,7 @@ fn axes_of_direction(model: &Model, frame: &Frame, d: [f64; 3], place: GaugePlac
     (along_axis || off_axis).then(|| frame.axes_at(at))
 }
 
-/// Share of the size of an element within which its middle counts as on the axis of a system.
+/// Share of the size of an element within which its middle counts as on the axis of a system: decks state coordinates with six to eight digits.
 const ON_AXIS: f64 = 1e-6;
 
 /// Returns where a gauge is, basic frame, and the size of its element: the centre of a shell, the station on the axis of a bar.

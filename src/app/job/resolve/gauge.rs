@@ -55,7 +55,7 @@ pub(crate) fn rosette_from(word: &str) -> Option<Rosette> {
     from(word, &ROSETTES)
 }
 
-/// `estimate`, `validation` or `reserve`.
+/// Returns a role by its word: `estimate`, `validation` or `reserve`.
 pub(crate) fn role_from(word: &str) -> Option<Role> {
     from(word, &ROLES)
 }
@@ -165,8 +165,8 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
     Some(gauge)
 }
 
-/// Returns the gauge with its second pair. `surface2` left out is the opposite of `surface`; `element2` left out beside a `surface2` is the
-/// element of the gauge itself.
+/// Returns the gauge with its second pair. The default of `surface2` is the opposite of `surface`; the default of `element2`, where `surface2` is
+/// stated, is the element of the gauge.
 pub(crate) fn with_pair(
     gauge: JobGauge,
     element2: Option<u32>,
@@ -208,9 +208,10 @@ pub(crate) fn with_pair(
     JobGauge { pair, ..gauge }
 }
 
-/// A station of a gauge that is on no bar or beam.
+/// Fault of a station without a `point`.
 pub(in crate::app::job) const STATION_ALONE: &str =
     "a station is a place along a bar or beam, and the gauge states no `point`";
+/// Remedy of [`STATION_ALONE`].
 pub(in crate::app::job) const POINT_STATED: &str =
     "state `point` (C, D, E or F) of a bar or beam, or leave `station` out";
 

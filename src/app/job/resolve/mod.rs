@@ -138,7 +138,7 @@ pub(super) fn check_names(job: &Job, faults: &mut FaultList) {
         let at = format!("`{}:{}`", first.file, first.line);
         let (wrong, remedy) = match first.name == g.name {
             true => (
-                format!("gauge `{}` stands twice, first at {at}", g.name),
+                format!("gauge `{}` is stated twice, first at {at}", g.name),
                 "give every gauge its own name",
             ),
             false => (
