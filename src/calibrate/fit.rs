@@ -3,7 +3,7 @@
 use super::exchanged::Exchanged;
 use super::state::State;
 use super::types::{Calibration, Coverage, LeftOut, ModelError, Task};
-use super::{exchanged, glued, held_out, runs, shift, stated, undetermined};
+use super::{exchanged, glued, held_out, recorded, runs, shift, undetermined};
 use crate::finding::{Finding, Severity};
 
 /// Share of the runs that may be refused: with more, it is not the runs that are wrong.
@@ -56,7 +56,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         findings.extend(undetermined::too_wide(task, &state, &sensitivity));
     }
     // Where the known loads are in a wrong unit or of a wrong sign, every gauge is far from the model for that reason.
-    let wrong_loads = stated::check(task, &state.used, &wrongly_wired);
+    let wrong_loads = recorded::wrong_loads(task, &state.used, wrongly_wired);
     if wrong_loads.is_empty() {
         findings.extend(shift::findings(task, &shifts));
     }

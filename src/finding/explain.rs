@@ -53,8 +53,16 @@ pub fn codes() -> &'static [Code] {
     &CODES
 }
 
-/// The entry of a code; `None` where no finding has it.
+/// Former codes, each with the one that means the same today.
+const RENAMED: [(&str, &str); 2] = [
+    ("known-loads-sign", "input-sign-reversed"),
+    ("known-loads-unit", "input-unit"),
+];
+
+/// Returns the entry of a code, or of the one that replaced it; `None` where no finding has it.
 pub fn code(name: &str) -> Option<&'static Code> {
+    let today = RENAMED.iter().find(|r| r.0 == name);
+    let name = today.map_or(name, |r| r.1);
     let i = CODES.binary_search_by(|c| c.code.cmp(name)).ok()?;
     CODES.get(i)
 }
@@ -114,5 +122,8 @@ mod tests {
             .flat_map(|t| t.lines())
             .filter(|l| l.contains(" | "));
         assert_eq!(heads.count(), codes().len());
+        for (former, today) in RENAMED {
+            assert_eq!(code(former).map(|c| c.code), Some(today));
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! What the workflow has to say, for strain and acceleration alike.
 
+use crate::finding::Finding;
 use crate::reconcile::effect::Extension;
 use serde::Serialize;
 
@@ -249,4 +250,6 @@ pub struct Outcome {
     pub next_measurement: String,
     /// Smallest sizes that would have been seen.
     pub detectable: Vec<Detectable>,
+    /// Findings on recorded loads that are wrong themselves; no effect is looked for then.
+    pub input_faults: Vec<Finding>,
 }

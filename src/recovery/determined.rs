@@ -25,8 +25,61 @@ pub fn check(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
     let mut out: Vec<Finding> = loads
         .filter_map(|(l, load)| beyond_expected(&load.name, load.expected, values(l)))
         .collect();
+    out.extend(far_below_expected(s, runs));
     out.extend(undetermined(s, runs));
     out
+}
+
+/// The finding on wanted loads that stay far below `expected` in every run: an error where all of them do, as a unit is wrong then; a warning of
+/// single loads whose intervals say so too.
+fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
+    let mut small: Vec<(&str, f64)> = Vec::new();
+    let mut stated = 0;
+    let mut all_known = true;
+    for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {
+        let Some(expected) = load.expected.filter(|e| *e > 0.0) else {
+            continue;
+        };
+        stated += 1;
+        let values = runs.iter().filter_map(|r| r.estimate.values.get(l));
+        let size = values.fold(f64::NAN, |a, v| a.max(v.abs())) / expected;
+        let ends = runs.iter().flat_map(|r| r.estimate.interval(l));
+        let known = ends.fold(0.0_f64, |a, v| a.max(v.abs())) < expected / FAR_BEYOND;
+        if size < 1.0 / OTHER_UNIT {
+            small.push((&load.name, size));
+            all_known &= known;
+        }
+    }
+    let all = stated > 1 && small.len() == stated;
+    let largest = small.iter().map(|s| s.1).max_by(f64::total_cmp)?;
+    if !all && !all_known {
+        return None;
+    }
+    let (severity, subject) = match all {
+        true => (Severity::Error, "all".to_owned()),
+        false => {
+            let names: Vec<&str> = small.iter().map(|s| s.0).collect();
+            (Severity::Warning, few(&names))
+        }
+    };
+    let whose = if all {
+        "all loads stay"
+    } else {
+        "these loads stay"
+    };
+    Some(
+        Finding::new(
+            severity,
+            "load-far-below-expected",
+            subject,
+            format!(
+                "{whose} below {} % of their `expected` size in every run",
+                number(100.0 * largest)
+            ),
+            "check the unit of the strain file (microstrain is expected; mm/m is a thousand times that), `applied` and `expected`, and whether these loads acted",
+        )
+        .with_numbers(largest, 1.0 / OTHER_UNIT),
+    )
 }
 
 /// Wanted loads whose interval is as wide as the loads themselves in every run: gauges that do not tell them.

@@ -9,7 +9,9 @@ use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 
 /// `chi2 / dof` that a repaired set of readings must fall under, as a share of what it was.
-const REPAIR: f64 = 0.2;
+pub const REPAIR: f64 = 0.2;
+/// `chi2 / dof` under which stated errors explain the readings.
+pub const EXPLAINED: f64 = 2.0;
 /// A dead gauge reads less than this many noise sd while the others expect more than [`LIVE`].
 const DEAD: f64 = 3.0;
 /// See [`DEAD`].
@@ -35,12 +37,12 @@ pub fn check(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Vec<
     let step = readings.len().div_ceil(TRIED).max(1);
     let mut readings: Vec<Readings> = readings.iter().step_by(step).cloned().collect();
     for _ in 0..MOST {
-        let (chi2, dof) = total(s, &readings, errors);
+        let (chi2, dof) = sum_of_squares(s, &readings, errors);
         if dof == 0 {
             break;
         }
         let base = chi2 / dof as f64;
-        if base < 2.0 {
+        if base < EXPLAINED {
             break;
         }
         let trials: Vec<Trial> = (0..s.gauges.len())
@@ -114,7 +116,8 @@ fn silence(readings: &mut [Readings], gauge: usize) {
     readings.iter_mut().for_each(|r| r.strain[gauge] = f64::NAN);
 }
 
-fn total(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> (f64, usize) {
+/// Returns the sum of squares that is left of all runs, in units of stated errors, and its degrees of freedom.
+pub fn sum_of_squares(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> (f64, usize) {
     sum_of(&solve(s, readings, errors).runs)
 }
 
@@ -128,7 +131,7 @@ fn try_gauge(s: &Sensitivity, readings: &[Readings], errors: ErrorModel, gauge: 
     turned
         .iter_mut()
         .for_each(|r| r.strain[gauge] = -r.strain[gauge]);
-    let (flip, flip_dof) = total(s, &turned, errors);
+    let (flip, flip_dof) = sum_of_squares(s, &turned, errors);
     silence(&mut turned, gauge);
     let without = solve(s, &turned, errors).runs;
     let (drop, drop_dof) = sum_of(&without);

@@ -38,6 +38,7 @@ pub mod verdict;
 
 pub use determined::{beyond_expected, check_planned};
 pub use errors::ErrorModel;
+pub use faults::{EXPLAINED, REPAIR, sum_of_squares};
 pub use gain::Gain;
 pub use interval::{NORMAL_95, student_95};
 pub use missing::Missing;

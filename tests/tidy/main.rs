@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Row of each module of the root crate; imports go strictly downward. `finding` and `linalg` are below all others of row 1:
 /// estimates carry findings, series use linear algebra. `units` stand between: columns of series state units.
-const ROWS: [(&str, f64); 22] = [
+const ROWS: [(&str, f64); 23] = [
     ("cli", 10.0),
     ("report", 9.0),
     ("app", 8.0),
@@ -29,6 +29,7 @@ const ROWS: [(&str, f64); 22] = [
     ("units", 0.7),
     ("series", 1.0),
     ("estimate", 1.0),
+    ("input_faults", 1.0),
     ("linalg", 0.5),
     ("finding", 0.5),
     ("stop", 0.5),

@@ -13,7 +13,11 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Said of a right record with a chance of [`ALARM`], and less.
 const BY_CHANCE: [&str; 2] = [GAUGE_SUSPECT, "residual-above-stated-errors"];
 /// Said of a vehicle that stands still all day too: told where most of its records say so.
-const OF_STANDING: [&str; 2] = ["loads-not-determined", "readings-below-noise"];
+const OF_STANDING: [&str; 3] = [
+    "load-far-below-expected",
+    "loads-not-determined",
+    "readings-below-noise",
+];
 /// Said of what all vehicles have in common: logger, number of gauges, stated errors, sizes of loads.
 const OF_ALL: [&str; 7] = [
     "gauge-missing",

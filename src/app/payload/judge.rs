@@ -1,6 +1,7 @@
 //! Findings of `payload`: refusals, wheels that lift off, places that can't be told, gauges that are not used.
 
 use super::model::Parts;
+use super::stated::REFUTED;
 use super::task::Task;
 use crate::app::words::short;
 use crate::app::work::Work;
@@ -143,7 +144,7 @@ fn elsewhere(
     let worst = (0..2)
         .map(|k| (at[k] - r.shift[k]).abs() / sd[k])
         .fold(0.0, f64::max);
-    if worst > 4.0 {
+    if worst > REFUTED {
         let unit = task.job.report_units.length.name;
         work.findings.push(
             Finding::new(
@@ -157,7 +158,7 @@ fn elsewhere(
                 ),
                 "correct the place, or let it free: position = \"free\"",
             )
-            .with_numbers(worst, 4.0),
+            .with_numbers(worst, REFUTED),
         );
     }
 }
@@ -249,13 +250,15 @@ pub(super) fn findings(
         .map(|v| v.name.as_str())
         .collect();
     if !rejected.is_empty() {
+        // With most of the gauges left out the answer is that of a few which agree by chance.
+        let most = 2 * rejected.len() > weighing.gauges.len();
         work.findings.push(
             Finding::new(
-                Severity::Warning,
+                if most { Severity::Error } else { Severity::Warning },
                 "gauges-not-used",
                 few(&rejected),
                 "these gauges disagree with the rest and carry nothing in the answer (reasons in by_gauge)",
-                "check their wiring, place and sign",
+                "check their wiring, place and sign; where they are most of the gauges, the place of the payload and the model",
             )
             .with_numbers(rejected.len() as f64, 0.0),
         );

@@ -4,6 +4,7 @@ mod answer;
 mod judge;
 mod model;
 mod readings;
+mod stated;
 mod task;
 
 pub use answer::{Ellipse, SingleGauge, Weighed, WeighedPayload};
@@ -69,6 +70,10 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
     judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
+    let place = stated::place_contradicted(&task, &parts, runs, &spec, &weighing);
+    work.findings.extend(place);
+    let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;
+    work.findings.extend(mass);
     let answer = answer::weighed(&task, parts, readings, &spec, weighing);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }

@@ -33,6 +33,10 @@ fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
 pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
     /// A stated noise is known to 15 %: what the readings show beyond is told.
     const NOISE_KNOWN: f64 = 1.15;
+    if !outcome.input_faults.is_empty() {
+        work.findings.extend(outcome.input_faults.iter().cloned());
+        return;
+    }
     work.findings.extend(far_above_readings(outcome));
     if outcome.noise_factor > NOISE_KNOWN {
         work.findings.push(

@@ -2,7 +2,9 @@
 
 use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
+use super::glued_wrong;
 use super::known_payload::{self, KnownLoads};
+use super::recorded;
 use super::task::{Task, columns_of};
 use super::validation::{self, ValidationGauge};
 use crate::app::fault::{Fault, Faults};
@@ -165,6 +167,10 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<Solved, Faults> {
     let mut recovery = work.stage("recover", |_| recover(&s, &readings, task.errors));
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
+    let glued = glued_wrong::findings(work, task, &s, &readings);
+    work.findings.extend(glued);
+    let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
+    work.findings.extend(wrong);
     for (run, loads) in recovery.runs.iter_mut().zip(&known) {
         for (l, value) in loads {
             if let Some(found) = run.estimate.values.get_mut(*l) {

@@ -1,8 +1,9 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
+use super::deck_loads::check_deck_loads;
 use super::load_cases::find_cases;
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
-use super::unit_loads::check_places;
+use super::unit_loads::unit_loads;
 use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, JobLoad, LoadRole, ModelFiles, Reference};
@@ -234,7 +235,7 @@ fn read_results(
             "the strain comes from results, and the built-in solver alone can solve a finer mesh",
         ));
     }
-    check_places(job, &deck.model)?;
+    let units = unit_loads(job, &deck.model)?;
     let mut wanted: BTreeSet<u32> = job.loads.iter().map(JobLoad::subcase).collect();
     if let Some(Reference::Subcase(id)) = job.measured.as_ref().map(|m| m.reference) {
         wanted.insert(id);
@@ -262,6 +263,8 @@ fn read_results(
         repeated_in.push(repeated);
     }
     let of_load = find_cases(work, job, &mut solutions, &repeated_in)?;
+    let cases = of_load.iter().map(|(s, c)| &solutions[*s].cases[*c]);
+    check_deck_loads(job, &deck, &units, cases)?;
     work.findings.push(super::source_finding(
         &solutions
             .iter()

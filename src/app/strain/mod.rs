@@ -1,6 +1,7 @@
 //! What the strain commands share: the model with its unit-load strain, gauges laid onto it, S from there or from a table.
 
 mod covariance;
+mod deck_loads;
 mod fields;
 mod gauges;
 mod given;

@@ -88,20 +88,6 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
     Ok(loads)
 }
 
-/// Refuses loads at grids that the deck lacks: results of another program don't say where its loads acted.
-///
-/// # Errors
-/// Every such load.
-pub(super) fn check_places(job: &Job, model: &Model) -> Result<(), Faults> {
-    let lacking = job.loads.iter().filter_map(|l| match l.acts {
-        LoadActs::AtGrid { grid, .. } if model.grid_ix(grid).is_none() => {
-            Some(no_grid(job, l, grid))
-        }
-        LoadActs::AtGrid { .. } | LoadActs::Set(_) | LoadActs::Named => None,
-    });
-    Faults::check(lacking.collect())
-}
-
 /// The fault of a load at a grid that the deck lacks.
 fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
     Fault::at(

@@ -119,13 +119,13 @@ fn known_loads_in_another_unit_are_an_error_that_asks_for_the_unit() {
                 }
             }
             let c = calibrate(&task).unwrap();
-            let (severity, subject) = severe(&c, "known-loads-unit").expect("a finding");
+            let (severity, subject) = severe(&c, "input-unit").expect("a finding");
             assert_eq!(severity, Severity::Error);
             for (load, factor) in task.loads.iter().zip(factors) {
-                let named = subject.split(", ").any(|n| n == load.name);
+                let named = subject == "all" || subject.split(", ").any(|n| n == load.name);
                 assert_eq!(named, factor != 1.0, "{factors:?}: {subject}");
             }
-            assert_eq!(severe(&c, "known-loads-sign"), None);
+            assert_eq!(severe(&c, "input-sign-reversed"), None);
         }
     }
 }
@@ -138,8 +138,13 @@ fn a_load_whose_sign_is_turned_in_all_runs_is_an_error_that_asks_for_the_sign() 
     }
     let c = calibrate(&task).unwrap();
     let wanted = Some((Severity::Error, "FZ".to_owned()));
-    assert_eq!(severe(&c, "known-loads-sign"), wanted, "{:?}", c.findings);
-    assert_eq!(severe(&c, "known-loads-unit"), None);
+    assert_eq!(
+        severe(&c, "input-sign-reversed"),
+        wanted,
+        "{:?}",
+        c.findings
+    );
+    assert_eq!(severe(&c, "input-unit"), None);
 }
 
 #[test]
@@ -176,7 +181,7 @@ fn gauges_wired_backwards_are_named_and_no_others() {
             .iter()
             .filter(|f| f.code == "gauge-wired-backwards");
         assert_eq!(named.count(), wrong.len());
-        assert_eq!(severe(&c, "known-loads-sign"), None);
+        assert_eq!(severe(&c, "input-sign-reversed"), None);
     }
 }
 
@@ -224,7 +229,7 @@ fn a_model_of_a_third_of_the_strain_is_put_right_by_the_runs_and_not_refused() {
         model.values /= 3.0;
     }
     let c = calibrate(&task).unwrap();
-    assert_eq!(severe(&c, "known-loads-unit"), None, "{:?}", c.findings);
+    assert_eq!(severe(&c, "input-unit"), None, "{:?}", c.findings);
 }
 
 #[test]

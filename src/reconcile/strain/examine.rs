@@ -5,10 +5,11 @@ use super::frame::StrainFrame;
 use super::judge::{adequacy_of, at_floor, judge, named};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
+use super::recorded::wrong_records;
 use super::smooth::smooth_instead;
 use super::validation::{Proofs, validated};
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
-use crate::reconcile::outcome::Outcome;
+use crate::reconcile::outcome::{Outcome, Verdict};
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
 
 /// How far the search looks in static problems: three effects at once are as many as a few runs can part, with noise as a fourth.
@@ -21,9 +22,22 @@ fn breadth(frame: &StrainFrame) -> Breadth {
     }
 }
 
-/// Judges `frame` with the effects of the library that `only` lists (all, where it is empty).
+/// Judges `frame` with the effects of the library that `only` lists (all, where it is empty). No effect is looked for where recorded loads
+/// have another sign or unit, or are exchanged: the outcome holds the findings then.
 pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
-    examine_with(frame, &library(frame, only))
+    let wrong = wrong_records(frame);
+    if wrong.is_empty() {
+        return examine_with(frame, &library(frame, only));
+    }
+    let words: Vec<&str> = wrong.iter().map(|f| f.message.as_str()).collect();
+    let remedies: Vec<&str> = wrong.iter().map(|f| f.remedy.as_str()).collect();
+    Outcome {
+        verdict: Verdict::Unknown,
+        remains: words.join("; "),
+        next_measurement: remedies.join("; "),
+        input_faults: wrong.clone(),
+        ..examine_with(frame, &[])
+    }
 }
 
 /// Judges `frame` with `candidates`: effects of one's own beside those of the library.

@@ -314,6 +314,7 @@ pub(super) fn judge(
         predicted: predict(frame, &explained.members),
         next_measurement: next,
         detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
+        input_faults: Vec::new(),
     }
 }
 

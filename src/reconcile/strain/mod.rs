@@ -22,6 +22,7 @@ mod outlier;
 mod own_covariance;
 mod prediction;
 mod proven;
+mod recorded;
 mod recovered;
 mod remains;
 mod resampled;

@@ -1,0 +1,408 @@
+//! Recorded loads of static runs compared with the strain that the model makes of them.
+
+use crate::finding::{Finding, Severity, few};
+use crate::linalg::median::weighted_median;
+use crate::linalg::precision::Precision;
+use crate::linalg::spd;
+use crate::units::{Quantity, number};
+
+/// Ratio of strain to what the model makes of the loads from which a unit is wrong: units of force differ by 4.448 (pounds read as newtons),
+/// 9.81 (kilograms) and 1000, and a model may take a tenth off the first. Below it may be the model, badly scaled (a wall of half the thickness
+/// or less), which runs put right; a model with a larger stated error has a larger ratio, four of its sd.
+const UNIT: f64 = 4.0;
+/// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
+const SIGN: f64 = -1.0 / 3.0;
+/// Standard deviations from which a gauge's readings determine the factor of a load.
+const DETERMINED: f64 = 5.0;
+/// Share of the largest answer of any gauge to a load from which a gauge counts for it.
+const ANSWERS: f64 = 0.1;
+/// Share of the sum of squares between readings and model that a fault of the records leaves at most, once it is undone.
+const UNDONE: f64 = 0.25;
+/// Share of the largest eigenvalue of the loads' squares from which the runs separate the loads.
+const SEPARATED: f64 = 1e-6;
+/// Sum of squares between readings and model, in units of what noise and the stated error of the model make, up to which nothing is wrong.
+const BEYOND: f64 = 4.0;
+/// How close a factor comes to that of a pair of units to be called after it.
+const NEAR: f64 = 0.15;
+
+/// Factors between what readings show and what the records make of them, with what each stands for.
+const UNITS: [(f64, &str); 9] = [
+    (1e-3, "as of N read in kN, or of readings in mm/m"),
+    (1e3, "as of kN read in N"),
+    (4.448, "as of lbf read in N"),
+    (1.0 / 4.448, "as of N read in lbf"),
+    (4.448e-3, "as of lbf read in kN"),
+    (9.807, "as of kgf read in N"),
+    (1.0 / 9.807, "as of N read in kgf"),
+    (9.807e-3, "as of kgf read in kN"),
+    (1e-6, "as of readings in m/m"),
+];
+
+/// Static runs with recorded loads. Units are the caller's: strain of readings and of [`Self::strain_of`] are in one unit.
+pub struct RecordedRuns<'a> {
+    /// Names of the recorded loads.
+    pub loads: Vec<&'a str>,
+    /// Readings by run and gauge; NaN where one is missing.
+    pub readings: Vec<Vec<f64>>,
+    /// Strain of the model: of `gauge` in `run` under the load of the third number, its size taken from the record of the fourth.
+    pub strain_of: Box<dyn Fn(usize, usize, usize, usize) -> f64 + 'a>,
+    /// What each load measures: records of one quantity may be exchanged. `None`: its record can't be that of another load.
+    pub quantities: Vec<Option<Quantity>>,
+    /// Whether the record of a load in a run is known well enough to compare.
+    pub known: Vec<bool>,
+    /// Gauges that are wrong themselves and do not count.
+    pub excluded: Vec<usize>,
+    /// Noise of a reading, 1 sd.
+    pub noise: f64,
+    /// Stated relative error of the model, 1 sd.
+    pub model_rel: f64,
+}
+
+/// A fault of recorded loads or of all readings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordFault {
+    /// Loads whose records have the other sign, with the factor that the readings show; all of them: the readings may have it as well.
+    Sign(Vec<(usize, f64)>),
+    /// Loads whose records are in another unit, with the factor that the readings show.
+    Unit(Vec<(usize, f64)>),
+    /// Pairs of loads whose records are exchanged; share of the sum of squares that is left then.
+    Exchanged(Vec<[usize; 2]>, f64),
+}
+
+impl RecordedRuns<'_> {
+    fn n_gauges(&self) -> usize {
+        self.readings.first().map_or(0, Vec::len)
+    }
+
+    fn runs(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.readings.len()).filter(|r| self.known.get(*r).copied().unwrap_or(true))
+    }
+
+    fn gauges(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.n_gauges()).filter(|g| !self.excluded.contains(g))
+    }
+
+    fn reading(&self, g: usize, r: usize) -> Option<f64> {
+        let value = self.readings.get(r)?.get(g).copied()?;
+        value.is_finite().then_some(value)
+    }
+
+    /// Returns root mean square strain of a load at a gauge.
+    fn answer(&self, g: usize, l: usize) -> f64 {
+        let squares: f64 = self
+            .runs()
+            .map(|r| (self.strain_of)(g, r, l, l).powi(2))
+            .sum();
+        squares.sqrt()
+    }
+
+    /// Returns the sum of squares that noise and the stated error of the model make.
+    fn expected_squares(&self) -> f64 {
+        let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
+        let values = readings.filter_map(|(g, r)| self.reading(g, r));
+        values
+            .map(|y| self.noise.powi(2) + (self.model_rel * y).powi(2))
+            .sum()
+    }
+
+    /// Returns the sum of squares between readings and model, with a factor and a record for each load.
+    fn squares(&self, factor: &[f64], record: &[usize]) -> f64 {
+        let mut sum = 0.0;
+        for g in self.gauges() {
+            for r in self.runs() {
+                let Some(y) = self.reading(g, r) else {
+                    continue;
+                };
+                let each = record.iter().zip(factor).enumerate();
+                let model: f64 = each
+                    .map(|(l, (from, c))| c * (self.strain_of)(g, r, l, *from))
+                    .sum();
+                sum += (y - model).powi(2);
+            }
+        }
+        sum
+    }
+}
+
+/// Returns the faults of the records that explain most of the difference between readings and model; an empty list where the records are
+/// right, or where something else is wrong.
+///
+/// By gauge `y_r = sum_l c_l e_l(r)` is solved for the factors `c_l` by least squares, `e_l` the strain of load `l` by the model; one common
+/// factor where the runs do not separate the loads. The factor of a load is the median over gauges, weighted by its strain there. Exchanged
+/// records are searched for pair by pair. A fault counts only if undoing it leaves at most a quarter of the sum of squares.
+pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
+    let k = runs.loads.len();
+    let own: Vec<usize> = (0..k).collect();
+    let ones = vec![1.0; k];
+    let base = runs.squares(&ones, &own);
+    if base <= BEYOND * runs.expected_squares() {
+        return Vec::new();
+    }
+    let factors = factors_of_loads(runs);
+    let beyond = |c: f64| {
+        let unit = UNIT.max(1.0 + 4.0 * runs.model_rel);
+        c.abs() > unit || c.abs() < 1.0 / unit
+    };
+    let (units, rest): (Vec<_>, Vec<_>) = factors.iter().partition(|(_, c)| beyond(*c));
+    let signs: Vec<(usize, f64)> = rest.into_iter().filter(|(_, c)| *c < SIGN).collect();
+    let mut undone = ones.clone();
+    for (l, c) in units.iter().chain(&signs) {
+        undone[*l] = if beyond(*c) { *c } else { -1.0 };
+    }
+    let by_factor = match units.is_empty() && signs.is_empty() {
+        true => f64::INFINITY,
+        false => runs.squares(&undone, &own) / base,
+    };
+    let (pairs, by_exchange) = exchanges(runs, base);
+    if by_exchange < by_factor && by_exchange < UNDONE {
+        return vec![RecordFault::Exchanged(pairs, by_exchange)];
+    }
+    if by_factor > UNDONE {
+        return Vec::new();
+    }
+    let unit = (!units.is_empty()).then_some(RecordFault::Unit(units));
+    let sign = (!signs.is_empty()).then_some(RecordFault::Sign(signs));
+    unit.into_iter().chain(sign).collect()
+}
+
+/// Returns the findings on [`faults_of_recorded_loads`]: one each, an error; `file` holds the records.
+pub fn findings_of_recorded_loads(runs: &RecordedRuns, file: &str) -> Vec<Finding> {
+    let faults = faults_of_recorded_loads(runs);
+    faults.iter().map(|f| finding(runs, file, f)).collect()
+}
+
+/// Returns load and factor of each load whose factor the readings determine.
+fn factors_of_loads(runs: &RecordedRuns) -> Vec<(usize, f64)> {
+    let acts = |l: &usize| runs.gauges().any(|g| runs.answer(g, *l) > 0.0);
+    let acting: Vec<usize> = (0..runs.loads.len()).filter(acts).collect();
+    if acting.is_empty() {
+        return Vec::new();
+    }
+    let groups: Vec<Vec<usize>> = match separated(runs, &acting) {
+        true => acting.iter().map(|l| vec![*l]).collect(),
+        false => vec![acting.clone()],
+    };
+    let mut found: Vec<Vec<(f64, f64)>> = vec![Vec::new(); groups.len()];
+    let weight = |a: usize, g: usize| -> f64 { groups[a].iter().map(|l| runs.answer(g, *l)).sum() };
+    let most: Vec<f64> = (0..groups.len())
+        .map(|a| runs.gauges().map(|g| weight(a, g)).fold(0.0, f64::max))
+        .collect();
+    for g in runs.gauges() {
+        for (a, factor) in factors_at(runs, g, &groups) {
+            let weight = weight(a, g);
+            if weight > ANSWERS * most[a] {
+                found[a].push((factor, weight));
+            }
+        }
+    }
+    let each = groups.iter().zip(&mut found);
+    each.filter_map(|(loads, f)| Some((loads, weighted_median(f)?)))
+        .flat_map(|(loads, c)| loads.iter().map(move |l| (*l, c)))
+        .collect()
+}
+
+/// Returns whether the runs separate the loads that act, with runs to spare.
+fn separated(runs: &RecordedRuns, acting: &[usize]) -> bool {
+    let k = acting.len();
+    let mut gram = vec![0.0; k * k];
+    for g in runs.gauges() {
+        let sizes: Vec<f64> = acting.iter().map(|l| runs.answer(g, *l)).collect();
+        for r in runs.runs() {
+            let each = acting.iter().zip(&sizes);
+            let row: Vec<f64> = each
+                .map(|(l, size)| match *size > 0.0 {
+                    true => (runs.strain_of)(g, r, *l, *l) / size,
+                    false => 0.0,
+                })
+                .collect();
+            spd::add_outer(&mut gram, &row, 1.0);
+        }
+    }
+    let values = spd::eigenvalues(&gram, k);
+    let ends = values.first().zip(values.last());
+    runs.runs().count() > k && ends.is_some_and(|(a, b)| *a > SEPARATED * b)
+}
+
+/// Returns the factors of groups of loads that the readings of a gauge determine, by number of the group.
+fn factors_at(runs: &RecordedRuns, g: usize, groups: &[Vec<usize>]) -> Vec<(usize, f64)> {
+    let row = |r: usize| -> Vec<f64> {
+        let of = |loads: &Vec<usize>| loads.iter().map(|l| (runs.strain_of)(g, r, *l, *l)).sum();
+        groups.iter().map(of).collect()
+    };
+    let rows: Vec<(Vec<f64>, f64)> = runs
+        .runs()
+        .filter_map(|r| Some((row(r), runs.reading(g, r)?)))
+        .collect();
+    let norm = |c: usize| rows.iter().map(|r| r.0[c] * r.0[c]).sum::<f64>().sqrt();
+    let norms: Vec<f64> = (0..groups.len()).map(norm).collect();
+    // A load that this gauge does not answer to by the model can't be scaled.
+    let kept: Vec<usize> = (0..groups.len()).filter(|c| norms[*c] > 0.0).collect();
+    let k = kept.len();
+    if k == 0 {
+        return Vec::new();
+    }
+    let (mut gram, mut right) = (vec![0.0; k * k], vec![0.0; k]);
+    let unit = |x: &[f64]| -> Vec<f64> { kept.iter().map(|c| x[*c] / norms[*c]).collect() };
+    for (x, y) in &rows {
+        let x = unit(x);
+        spd::add_outer(&mut gram, &x, 1.0);
+        right.iter_mut().zip(&x).for_each(|(b, x)| *b += x * y);
+    }
+    let Some(inverse) = Precision::of(&gram, k) else {
+        return Vec::new();
+    };
+    let amounts = inverse.apply(&right);
+    let left = |(x, y): &(Vec<f64>, f64)| (y - spd::dot(&unit(x), &amounts)).powi(2);
+    let rest: f64 = rows.iter().map(left).sum();
+    let spare = rows.len().saturating_sub(k).max(1) as f64;
+    let variance = (rest / spare).max(runs.noise * runs.noise);
+    let sure =
+        |(i, b): &(usize, &f64)| b.abs() > DETERMINED * (variance * inverse.entry(*i, *i)).sqrt();
+    let each = amounts.iter().enumerate().filter(sure);
+    each.map(|(i, b)| (kept[i], b / norms[kept[i]])).collect()
+}
+
+/// Returns pairs of exchanged records, the one that helps most first, and the share of the sum of squares that is left after all of them.
+fn exchanges(runs: &RecordedRuns, base: f64) -> (Vec<[usize; 2]>, f64) {
+    let k = runs.loads.len();
+    let ones = vec![1.0; k];
+    let mut record: Vec<usize> = (0..k).collect();
+    let (mut pairs, mut left) = (Vec::new(), base);
+    loop {
+        let free = |l: usize| record[l] == l && runs.quantities.get(l).copied().flatten().is_some();
+        let candidates = (0..k).flat_map(|a| (a + 1..k).map(move |b| [a, b]));
+        let alike = candidates
+            .filter(|[a, b]| free(*a) && free(*b) && runs.quantities[*a] == runs.quantities[*b]);
+        let tried = alike.map(|[a, b]| {
+            let mut swapped = record.clone();
+            swapped.swap(a, b);
+            (runs.squares(&ones, &swapped), [a, b])
+        });
+        let Some((squares, [a, b])) = tried.min_by(|x, y| x.0.total_cmp(&y.0)) else {
+            break;
+        };
+        // The last pair explains most of what is left; one before it, among several, at least a part.
+        if squares > (1.0 - UNDONE) * left {
+            break;
+        }
+        record.swap(a, b);
+        pairs.push([a, b]);
+        left = squares;
+    }
+    (pairs, left / base)
+}
+
+fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
+    let name = |l: usize| runs.loads.get(l).copied().unwrap_or_default();
+    let acting = |l: &usize| runs.gauges().any(|g| runs.answer(g, *l) > 0.0);
+    let n_acting = (0..runs.loads.len()).filter(acting).count();
+    let is_all = |n: usize| n > 1 && n == n_acting;
+    let subject = |list: &[(usize, f64)]| match is_all(list.len()) {
+        true => "all".to_owned(),
+        false => few(&list.iter().map(|(l, _)| name(*l)).collect::<Vec<_>>()),
+    };
+    let factors = |list: &[(usize, f64)]| {
+        let each = list
+            .iter()
+            .map(|(l, c)| format!("{} {}", name(*l), number(*c)));
+        few(&each.collect::<Vec<_>>())
+    };
+    match fault {
+        RecordFault::Sign(list) => {
+            let what = match is_all(list.len()) {
+                true => "all recorded loads, or all readings, have the other sign",
+                false => "these recorded loads have the other sign",
+            };
+            Finding::new(
+                Severity::Error,
+                "input-sign-reversed",
+                subject(list),
+                format!(
+                    "the readings are about minus the strain that the model makes of `{file}` (factor of {}): {what}",
+                    factors(list)
+                ),
+                "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or of all gauges: [[correction]] sign = -1",
+            )
+            .with_numbers(list.first().map_or(-1.0, |l| l.1), SIGN)
+        }
+        RecordFault::Unit(list) => {
+            let first = list.first().map_or(1.0, |l| l.1);
+            let near = |u: &&(f64, &str)| (first.abs() / u.0 - 1.0).abs() < NEAR;
+            let called = UNITS.iter().find(near).map_or("", |u| u.1);
+            let comma = if called.is_empty() { "" } else { ", " };
+            Finding::new(
+                Severity::Error,
+                "input-unit",
+                subject(list),
+                format!(
+                    "the readings are a multiple of the strain that the model makes of `{file}` (factor of {}){comma}{called}: one of the units is wrong",
+                    factors(list)
+                ),
+                "state the unit of the runs file ([runs] units = { force = \"kN\" }), and check `applied`, the units of the job and of the readings",
+            )
+            .with_numbers(first, UNIT.max(1.0 + 4.0 * runs.model_rel))
+        }
+        RecordFault::Exchanged(pairs, left) => {
+            let names: Vec<String> = pairs
+                .iter()
+                .map(|[a, b]| format!("{}, {}", name(*a), name(*b)))
+                .collect();
+            let words: Vec<String> = pairs
+                .iter()
+                .map(|[a, b]| format!("{} and {}", name(*a), name(*b)))
+                .collect();
+            Finding::new(
+                Severity::Error,
+                "inputs-exchanged",
+                few(&names),
+                format!(
+                    "the records of {} are exchanged in `{file}`: exchanged back, they leave {} % of the sum of squares between readings and model",
+                    few(&words),
+                    number(100.0 * left)
+                ),
+                "exchange the names of these columns of the runs file, or state them in [runs] columns",
+            )
+            .with_numbers(*left, UNDONE)
+        }
+    }
+}
+
+/// Returns the finding on recorded payloads whose weight both the wheel forces and the strain contradict by one factor. `payload` is their place
+/// among the loads, `weights` and `sums` are recorded weight and sum of the wheel forces by run in one unit, `sum_sd` is the noise of a sum.
+///
+/// The factor is the slope of the sums over the weights: the weight of the empty structure in the sums does not matter. One of the two alone is
+/// no evidence, as wheels may be without a sensor.
+pub fn recorded_mass_contradicted(
+    runs: &RecordedRuns,
+    payload: usize,
+    (weights, sums): (&[f64], &[f64]),
+    sum_sd: f64,
+) -> Option<Finding> {
+    let n = weights.len().min(sums.len()) as f64;
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / n;
+    let (weight, sum) = (mean(weights), mean(sums));
+    let squares: f64 = weights.iter().map(|w| (w - weight).powi(2)).sum();
+    let each = weights.iter().zip(sums);
+    let by_wheels = each.map(|(w, s)| (w - weight) * (s - sum)).sum::<f64>() / squares;
+    let by_wheels = by_wheels.abs();
+    let off = (by_wheels - 1.0).abs();
+    if !(off > NEAR && off > DETERMINED * sum_sd / squares.sqrt()) {
+        return None;
+    }
+    let of_strain = factors_of_loads(runs).into_iter().find(|f| f.0 == payload);
+    let by_strain = of_strain?.1.abs();
+    ((by_strain / by_wheels - 1.0).abs() < NEAR).then(|| {
+        Finding::new(
+            Severity::Error,
+            "recorded-mass-contradicts",
+            runs.loads.get(payload).copied().unwrap_or_default(),
+            format!(
+                "the wheel forces carry {} times the recorded payloads, and the strain shows {} times: the recorded masses are wrong",
+                number(by_wheels),
+                number(by_strain)
+            ),
+            "check the masses of the runs file and their unit",
+        )
+        .with_numbers(by_wheels, 1.0)
+    })
+}

@@ -1,0 +1,67 @@
+//! Recorded loads of a frame, as the search for wrong inputs takes them.
+
+use super::frame::StrainFrame;
+use super::state::StrainState;
+use crate::finding::Finding;
+use crate::input_faults::{RecordedRuns, findings_of_recorded_loads, recorded_mass_contradicted};
+use crate::units::{KILO, Quantity, STANDARD_GRAVITY_M_S2};
+
+/// Name of the payload among the loads.
+const PAYLOAD: &str = "payload";
+
+/// Returns the findings on recorded loads and payloads of the other sign, in another unit, or exchanged; empty where an effect of the model
+/// may be looked for.
+pub(super) fn wrong_records(frame: &StrainFrame) -> Vec<Finding> {
+    let state = StrainState::nominal(frame);
+    let [n_gauges, n_runs, n_columns] = state.shape;
+    let n_loads = frame.n_loads();
+    let strain_of = |g: usize, r: usize, load: usize, from: usize| -> f64 {
+        let row = &state.influence[g * n_columns..(g + 1) * n_columns];
+        let acts = &state.columns[r * n_columns..(r + 1) * n_columns];
+        match load < n_loads {
+            true => row[load] * acts[from],
+            false => (row.iter().zip(acts).skip(n_loads))
+                .map(|(a, f)| a * f)
+                .sum(),
+        }
+    };
+    let readings = (0..n_runs).map(|r| {
+        let channels = 0..n_gauges;
+        channels.map(|g| frame.observations.value(r, g)).collect()
+    });
+    let quantity = |l: usize| match frame.moments.get(l) {
+        Some(true) => Quantity::Moment,
+        _ => Quantity::Force,
+    };
+    let names = frame.load_names.iter().map(String::as_str);
+    let runs = RecordedRuns {
+        loads: names.chain([PAYLOAD]).collect(),
+        readings: readings.collect(),
+        strain_of: Box::new(strain_of),
+        quantities: (0..n_loads)
+            .map(|l| Some(quantity(l)))
+            .chain([None])
+            .collect(),
+        known: vec![true; n_runs],
+        excluded: Vec::new(),
+        noise: frame.noise,
+        model_rel: frame.model_rel,
+    };
+    let found = findings_of_recorded_loads(&runs, "the runs file");
+    if !found.is_empty() {
+        return found;
+    }
+    let weight = |p: &[f64; 3]| p[0] * STANDARD_GRAVITY_M_S2 / KILO;
+    let weights: Vec<f64> = frame.payload.iter().map(weight).collect();
+    let is_vertical = |l: &usize| {
+        let name = frame.load_names[*l].to_uppercase();
+        quantity(*l) == Quantity::Force && !name.contains("FX") && !name.contains("FY")
+    };
+    let vertical: Vec<usize> = (0..n_loads).filter(is_vertical).collect();
+    let sum = |r: usize| vertical.iter().map(|l| frame.loads[r * n_loads + l]).sum();
+    let sums: Vec<f64> = (0..n_runs).map(sum).collect();
+    let sum_sd = frame.load_noise * (vertical.len() as f64).sqrt();
+    recorded_mass_contradicted(&runs, n_loads, (&weights, &sums), sum_sd)
+        .into_iter()
+        .collect()
+}
