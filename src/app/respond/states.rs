@@ -129,7 +129,7 @@ pub(super) fn from_table(
     Ok(states)
 }
 
-/// Returns the warning of columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known: they follow from the loads.
+/// Returns the warning of columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known.
 fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
     let key = t.column(&KEYS).unwrap_or(0);
     let sums = job.combinations.iter().map(|c| &c.name);
