@@ -5,6 +5,7 @@ pub mod explain;
 
 pub use bounded::bounded;
 use serde::Serialize;
+use std::fmt::Display;
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -101,13 +102,28 @@ impl Finding {
     }
 }
 
-/// Names that a finding lists: a reader looks up a few of them, and a record has thousands of times.
-const LISTED: usize = 8;
+impl Finding {
+    /// Returns the measured number and its limit as they are shown to people. `None` for a limit of 0: the number then counts what the message
+    /// names.
+    pub fn shown_numbers(&self) -> Option<(f64, Option<f64>)> {
+        let measured = self.measured.filter(|_| self.limit != Some(0.0))?;
+        Some((measured, self.limit))
+    }
+}
 
-/// The names, the first few of many and how many more there are.
-pub fn few(names: &[impl AsRef<str>]) -> String {
-    let shown: Vec<&str> = names.iter().take(LISTED).map(AsRef::as_ref).collect();
-    match names.len().saturating_sub(LISTED) {
+/// Names that a finding lists: a reader looks up a few of them, and a record has thousands of times.
+pub const LISTED: usize = 8;
+
+/// Returns the first names or ids of a list and the number of the others: `P01, P02 and 5 more`, or `none`.
+pub fn few(names: &[impl Display]) -> String {
+    few_of(names, names.len())
+}
+
+/// Returns the first names of a list of `count` names, of which `names` contains the first ones at least.
+pub fn few_of(names: &[impl Display], count: usize) -> String {
+    let shown: Vec<String> = names.iter().take(LISTED).map(|n| n.to_string()).collect();
+    match count.saturating_sub(shown.len()) {
+        0 if shown.is_empty() => "none".to_owned(),
         0 => shown.join(", "),
         more => format!("{} and {more} more", shown.join(", ")),
     }
@@ -129,5 +145,7 @@ mod tests {
         let text = few(&times);
         assert!(text.starts_with("t = 0, t = 1, "), "{text}");
         assert!(text.ends_with(" and 1592 more"), "{text}");
+        assert_eq!(few(&[11, 12]), "11, 12");
+        assert_eq!(few_of(&["A", "B"], 5), "A, B and 3 more");
     }
 }

@@ -228,9 +228,7 @@ fn what_is_missing_comes_as_a_value_with_the_job_that_has_it() {
     assert!(json.get("simulation").is_none() && json.get("sits").is_some());
 }
 
-#[test]
-fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
-    let job = r#"
+const CAUSES: &str = r#"
 units = "m-kg-s"
 [measured]
 strain = "strain.csv"
@@ -241,8 +239,11 @@ file = "runs.csv"
 path = "static"
 causes = { settlement = "lowered", temperature = "air_C" }
 "#;
+
+#[test]
+fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
     let files = InMemory::default()
-        .with("job.toml", job)
+        .with("job.toml", CAUSES)
         .with(
             "strain.csv",
             "run,a,b\nbefore,238.59,1.51\nafter,215.19,35.79\n",
@@ -254,6 +255,21 @@ causes = { settlement = "lowered", temperature = "air_C" }
     assert_eq!(found.rivals.len(), 2);
     assert!(found.strain.is_none() && found.motion.is_none());
     assert!(found.best_attempt.is_none() && found.extended_model.is_none());
+    // The runs file may have the loads of a given S.
+    let files = files
+        .with("S.csv", "gauge,F1\na,1\nb,2\n")
+        .with(
+            "job.toml",
+            CAUSES.replace("[runs]", "[sensitivity]\nfile = \"S.csv\"\n[runs]"),
+        )
+        .with(
+            "runs.csv",
+            "run,lowered,air_C,F1,driver\nbefore,0,2.0,1,7\nafter,1,4.0,1,7\n",
+        );
+    let job = Job::read("job.toml", &files).unwrap();
+    let found = reconcile(&job, &Context::new(&files)).unwrap();
+    let unread = found.findings.iter().find(|f| f.code == "column-not-read");
+    assert!(unread.unwrap().message.ends_with(": `driver`"));
 }
 
 #[test]

@@ -54,7 +54,7 @@ impl Loader for Disk {
             Some(Loaded {
                 bytes: std::fs::read(&path).ok()?,
                 path,
-                rival: None,
+                differing_path: None,
             })
         });
         found.ok_or_else(|| "no such file".to_string())

@@ -5,7 +5,7 @@ use super::files::{Inputs, why_unreadable};
 use super::not_solved::not_solved;
 use super::what_is::binary_kind;
 pub use super::what_is::looks_like_op2;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault, Vec3};
 use crate::series::record::format_of;
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
@@ -165,23 +165,16 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
 
 /// Returns the notes of the reader, one finding a deck: superelements that are kept and not read, a missing ENDDATA, an INCLUDE of two meanings.
 fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
-    /// Notes in the message.
-    const SHOWN: usize = 3;
     if deck.notes.is_empty() {
         return Vec::new();
     }
-    let more = match deck.notes.len().saturating_sub(SHOWN) {
-        0 => String::new(),
-        n => format!(" (and {n} more)"),
-    };
     let shown: Vec<String> = deck
         .notes
         .iter()
-        .take(SHOWN)
         .map(|n| format!("`{}` line {}: {}", deck.path(n.at), n.at.line, n.text))
         .collect();
-    let message = format!("{}{more}", shown.join("; "));
-    let remedy = "see that nothing of the deck is missing";
+    let message = few(&shown);
+    let remedy = "check that these lines are read as meant, and that the deck is complete";
     let finding = Finding::new(Severity::Info, "deck-note", given, message, remedy);
     vec![finding.with_numbers(deck.notes.len() as f64, 0.0)]
 }
@@ -336,7 +329,7 @@ impl Loader for FileLoader<'_, '_> {
                     let others = paths.iter().skip(k + 1).filter(|p| *p != path);
                     let differs = |p: &&PathBuf| self.inputs.load(p).is_ok_and(|b| *b != *bytes);
                     return Ok(Loaded {
-                        rival: others
+                        differing_path: others
                             .into_iter()
                             .find(differs)
                             .map(|p| p.display().to_string()),

@@ -14,6 +14,6 @@ pub struct FileRead {
     pub sha256: String,
     /// How much a table whose last line may be cut matters; `None`: its end is sound.
     pub unsure: Option<Severity>,
-    /// Further findings on a table.
+    /// Findings on a table, other than on its end.
     pub noted: Vec<Finding>,
 }

@@ -32,7 +32,7 @@ pub struct Inputs<'a> {
     entries: Vec<(String, PathBuf, Hashing)>,
     /// Tables named by the job whose last line may be cut.
     unsure: BTreeMap<String, Severity>,
-    /// Further findings, each with the table that it is about.
+    /// Findings on tables, other than on their ends, each with its table.
     noted: Vec<(String, Finding)>,
     /// Tables that were read, so that a question that comes back to one reads what it read before.
     kept: BTreeMap<PathBuf, FileBytes>,

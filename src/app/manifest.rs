@@ -14,7 +14,7 @@ pub(super) const NAME: &str = ".strainbridge";
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Manifest {
     entries: BTreeSet<(String, String)>,
-    /// By name, SHA-256 of the bytes as they were written.
+    /// SHA-256 of the bytes as they were written, by name.
     digests: BTreeMap<String, String>,
 }
 

@@ -1,9 +1,9 @@
 //! Finding about cards and statements of a deck that the built-in solver does not carry.
 
-use crate::fe::{LoadCase, Relief, loads_of_subcase, unsupported_cards};
+use crate::fe::{LoadCase, unsupported_cards};
 use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
-use nastran::bdf::{Deck, Subcase};
+use nastran::bdf::Deck;
 use std::collections::BTreeMap;
 
 /// Code of the finding.
@@ -12,6 +12,7 @@ pub const NOT_SOLVED: &str = "card-not-solved";
 /// Returns the finding on everything that acts in the deck as its case control selects it and that the solver would refuse.
 pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
     let subcases = deck.case_control.effective_subcases();
+    let acting = |s| LoadCase::of_subcase(model, s, String::new());
     let cases: Vec<LoadCase> = subcases.iter().map(acting).collect();
     let mut refused = unsupported_cards(model, &cases);
     refused.sort_by(|a, b| (a.at, &a.card).cmp(&(b.at, &b.card)));
@@ -38,16 +39,4 @@ pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
     let mut finding = Finding::new(Severity::Warning, NOT_SOLVED, given, message, remedy);
     finding.measured = Some(refused.len() as f64);
     Some(finding)
-}
-
-/// Returns what a subcase selects as a load case.
-fn acting(s: &Subcase) -> LoadCase {
-    LoadCase {
-        subcase: s.id,
-        label: String::new(),
-        loads: loads_of_subcase(s),
-        spc: s.spc,
-        mpc: s.mpc,
-        relief: Relief::None,
-    }
 }

@@ -8,8 +8,8 @@ use super::store::{Key, read_solution, write_solution};
 use super::work::{Work, stopped};
 use crate::fe::{
     Corners, FeError, LoadCase, Relief, Solution, SolveOptions, SolveReport, Solved, Support,
-    SupportChoice, UnitLoad, loads_of_subcase, relief_finding, relief_of, solution_of,
-    solve_displacements, solve_modes, support_of,
+    SupportChoice, UnitLoad, relief_finding, solution_of, solve_displacements, solve_modes,
+    support_of,
 };
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -178,18 +178,11 @@ pub fn static_case(model: &Model, subcase: &Subcase) -> Result<LoadCase, String>
     if subcase.deform.is_some() {
         return Err("DEFORM is not carried".to_owned());
     }
-    let loads = loads_of_subcase(subcase);
-    if loads.is_empty() && !has_enforced(model, subcase.spc) {
+    let case = LoadCase::of_subcase(model, subcase, label_of(subcase));
+    if case.loads.is_empty() && !has_enforced(model, subcase.spc) {
         return Err("no LOAD".to_owned());
     }
-    Ok(LoadCase {
-        subcase: subcase.id,
-        label: label_of(subcase),
-        loads,
-        spc: subcase.spc,
-        mpc: subcase.mpc,
-        relief: relief_of(model, subcase.spc, subcase.suport1),
-    })
+    Ok(case)
 }
 
 /// Whether an SPC set moves a grid.

@@ -6,14 +6,12 @@ use super::files::Input;
 use super::manifest::Manifest;
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::work::Work;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, LISTED, Severity};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Differences listed of one file: more say nothing new.
-const MOST_LISTED: usize = 20;
 /// Keys of result.json that are of the run and not of the answer.
 const OF_THE_RUN: [&str; 3] = ["seconds", "peak_memory_bytes", "extended_model"];
 
@@ -241,7 +239,7 @@ impl Verified {
         let mut listed = 0;
         for line in 1_usize.. {
             let (x, y) = (a.next(), b.next());
-            if x.is_none() && y.is_none() || listed == MOST_LISTED {
+            if x.is_none() && y.is_none() || listed == LISTED {
                 break;
             }
             if x != y {
@@ -259,7 +257,7 @@ impl Verified {
     fn json(&mut self, name: &str, was: &[u8], now: &[u8]) {
         let parse = |bytes: &[u8]| serde_json::from_slice::<Value>(bytes).unwrap_or_default();
         let before = self.differs.len();
-        self.value(name, "", &parse(was), &parse(now), before + MOST_LISTED);
+        self.value(name, "", &parse(was), &parse(now), before + LISTED);
         if self.differs.len() == before {
             self.same.push(name.to_owned());
         }

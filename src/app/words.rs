@@ -5,10 +5,10 @@ use crate::finding::Finding;
 /// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
 pub fn finding_text(f: &Finding) -> String {
     let (place, message) = placed(&f.message);
-    let numbers = match (f.measured, f.limit) {
-        (Some(m), Some(l)) => format!(" (measured {}, limit {})", short(m), short(l)),
-        (Some(m), None) => format!(" (measured {})", short(m)),
-        _ => String::new(),
+    let numbers = match f.shown_numbers() {
+        Some((m, Some(l))) => format!(" (measured {}, limit {})", short(m), short(l)),
+        Some((m, None)) => format!(" (measured {})", short(m)),
+        None => String::new(),
     };
     let remedy = if f.remedy.is_empty() {
         String::new()
@@ -69,8 +69,11 @@ mod tests {
             message,
             "join it",
         );
-        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element (measured 2, limit 0). Remedy: join it";
-        assert_eq!(finding_text(&f.with_numbers(2.0, 0.0)), line);
+        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element (measured 2, limit 1). Remedy: join it";
+        assert_eq!(finding_text(&f.clone().with_numbers(2.0, 1.0)), line);
+        // A limit of 0 belongs to a count, which the message has.
+        let counted = finding_text(&f.with_numbers(2.0, 0.0));
+        assert_eq!(counted, line.replace(" (measured 2, limit 1)", ""));
         let f = Finding::new(Severity::Error, "gauge-dead", "P1", "two\nlines.", "");
         assert_eq!(finding_text(&f), "error [gauge-dead] P1: two lines");
     }

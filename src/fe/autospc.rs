@@ -1,7 +1,7 @@
 //! Dofs without stiffness at single grids (PARAM,AUTOSPC), and what acts along them.
 
 use super::assembly::{Assembled, Numbering};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::linalg::{DMatrix, sparse::BlockMatrix};
 use crate::model::Model;
 use rayon::prelude::*;
@@ -123,19 +123,14 @@ fn well_held(k: &DMatrix<f64>, largest: f64) -> bool {
 
 /// Grid and dof of the first of some unknowns, for messages.
 fn named(model: &Model, numbering: &Numbering, start: &[usize], unknowns: &[usize]) -> String {
-    const SHOWN: usize = 5;
-    let mut names: Vec<String> = unknowns
+    let names: Vec<String> = unknowns
         .iter()
-        .take(SHOWN)
         .map(|unknown| {
             let (g, dof) = numbering.dof_of(*unknown, start);
             format!("{}/{}", model.grids[g].id, dof + 1)
         })
         .collect();
-    if unknowns.len() > SHOWN {
-        names.push("..".to_owned());
-    }
-    format!("grid/dof {}", names.join(", "))
+    format!("grid/dof {}", few(&names))
 }
 
 /// That directions were held.

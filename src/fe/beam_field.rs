@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 /// Stations nearer to each other than this share of the length are one.
 const SAME_STATION: f64 = 1e-6;
-/// Stations that a bar with loads between its ends is looked at besides its own.
+/// Stations at which the strain of a bar with loads between its ends is computed, in addition to its own.
 const INNER: [f64; 3] = [0.25, 0.5, 0.75];
 
 /// Axial strain of bars and beams at the stress recovery points C D E F.
@@ -15,9 +15,9 @@ const INNER: [f64; 3] = [0.25, 0.5, 0.75];
 pub struct BeamField {
     /// Elements with strain, ascending.
     pub elements: Arc<Vec<BeamIx>>,
-    /// By element: stations (x/xb ascending), each with the strain at C D E F, axial strain included.
+    /// Stations (x/xb ascending) by element, each with the strain at C D E F, axial strain included.
     pub stations: Vec<Vec<(f64, [f64; 4])>>,
-    /// By element and station: strain of the neutral axis, bending left out; NaN where the result doesn't tell.
+    /// Strain of the neutral axis (without bending) by element and station; NaN where the result does not determine it.
     pub axial: Vec<Vec<f64>>,
     /// Section forces of solved elements; `None` for strain of result files.
     pub(crate) solved: Option<SolvedBeams>,
@@ -26,12 +26,12 @@ pub struct BeamField {
     pub(crate) stations_alone: BTreeSet<BeamIx>,
 }
 
-/// What determines the strain of solved elements at every station; rows as in [`BeamField::elements`].
+/// Section forces and sections of solved elements, which determine their strain at every station; rows as in [`BeamField::elements`].
 #[derive(Clone, Debug)]
 pub(crate) struct SolvedBeams {
     pub(crate) shapes: Arc<Vec<BeamShape>>,
     pub(crate) forces: Vec<BeamForces>,
-    /// By row, for elements with loads between their ends.
+    /// Loads between the ends of elements, by row.
     pub(crate) loads: HashMap<usize, Vec<LineLoad>>,
 }
 

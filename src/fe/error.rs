@@ -1,6 +1,7 @@
 //! Why a model can't be solved.
 
 use super::load_case::Relief;
+use crate::finding::few_of;
 use nastran::place::Place;
 use std::fmt;
 
@@ -15,6 +16,23 @@ pub struct Refusal {
     pub reason: String,
     /// What to do.
     pub remedy: String,
+}
+
+impl Refusal {
+    /// Returns the refusal of the card `card`, which is at `at`.
+    pub fn new(
+        card: impl Into<String>,
+        at: Place,
+        reason: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        Self {
+            card: card.into(),
+            at,
+            reason: reason.into(),
+            remedy: remedy.into(),
+        }
+    }
 }
 
 /// A degree of freedom that nothing holds.
@@ -312,10 +330,6 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
         .iter()
         .map(|d| format!("grid {} dof {}", d.grid, d.dof))
         .collect();
-    let more = match count.saturating_sub(dofs.len()) {
-        0 => String::new(),
-        n => format!(" and {n} more"),
-    };
     let motions = match count {
         1 => "a motion is".to_owned(),
         n => format!("{n} motions are"),
@@ -326,8 +340,8 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
             .map_or("SPC".to_owned(), |set| format!("SPC {set}")),
         at: Place::default(),
         reason: format!(
-            "{held}, and {motions} left that nothing resists, largest at {}{more}",
-            named.join(", ")
+            "{held}, and {motions} left that nothing resists, largest at {}",
+            few_of(&named, count)
         ),
         remedy: remedy.to_owned(),
     }

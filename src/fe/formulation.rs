@@ -1,6 +1,6 @@
 //! Where an element stands for another than its card names, or for one of the states that its card allows.
 
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::{Joint, JointCard, Model, Rigid, RigidKind};
 use nastran::cards::ShellShape;
 
@@ -70,7 +70,7 @@ fn halved_diameters(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "connector-halved",
-            format!("CWELD, CFAST {}", first_of(&ids)),
+            format!("CWELD, CFAST {}", few(&ids)),
             format!(
                 "{} connectors are wider than what they stand on: the square of their auxiliary points is that of a diameter halved up to {most} times",
                 ids.len()
@@ -96,7 +96,7 @@ fn connectors_at_an_angle(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "connector-angle",
-            format!("CWELD, CFAST {}", first_of(&ids)),
+            format!("CWELD, CFAST {}", few(&ids)),
             format!(
                 "{} connectors join sheets at up to {largest:.0} degrees to each other; Nastran makes none beyond {GSPROJ_DEG:.0} (GSPROJ of SWLDPRM)",
                 ids.len()
@@ -131,7 +131,7 @@ fn idle_warping_points(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "formulation",
-            format!("CBEAM {}", first_of(&ids)),
+            format!("CBEAM {}", few(&ids)),
             format!(
                 "{} beams state SA and SB, and their property has no warping constant: they twist without warping (Saint-Venant)",
                 ids.len()
@@ -182,7 +182,7 @@ fn gaps(model: &Model) -> Option<Finding> {
             format!(
                 "; the forces of {} ({}) are not along the line between their grids (KT across it, or KA along a CID off it), and the moment of the two is balanced by nothing",
                 unbalanced.len(),
-                first_of(&unbalanced)
+                few(&unbalanced)
             )
         };
         Finding::new(
@@ -192,9 +192,9 @@ fn gaps(model: &Model) -> Option<Finding> {
             format!(
                 "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}{friction}",
                 closed.len(),
-                first_of(&closed),
+                few(&closed),
                 open.len(),
-                first_of(&open),
+                few(&open),
             ),
             "check that each stays so under the loads of the job: a closed one must be in compression; else solve with Nastran, nonlinear",
         )
@@ -251,24 +251,10 @@ fn of_bushes(ids: &[u32], code: &'static str, what: &str, remedy: &'static str) 
         Finding::new(
             Severity::Warning,
             code,
-            format!("CBUSH {}", first_of(ids)),
+            format!("CBUSH {}", few(ids)),
             format!("{} bushes {what}", ids.len()),
             remedy,
         )
         .with_numbers(ids.len() as f64, 0.0)
     })
-}
-
-/// A few ids of a list.
-fn first_of(ids: &[u32]) -> String {
-    const SHOWN: usize = 5;
-    let mut text: Vec<String> = ids.iter().take(SHOWN).map(u32::to_string).collect();
-    if ids.len() > SHOWN {
-        text.push("..".to_owned());
-    }
-    if text.is_empty() {
-        "none".to_owned()
-    } else {
-        text.join(", ")
-    }
 }

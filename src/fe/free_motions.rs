@@ -7,11 +7,12 @@ use super::constraint::{Reduction, State, reduce};
 use super::grid_frames::{grid_axes, to_local};
 use super::ground::{Ground, anchors, grounds, to_anchors};
 use super::rigid_motion::rigid;
+use crate::finding::few;
 use crate::linalg::{DMatrix, DVector, Matrix6, Vector6};
 use crate::model::{ElementRef, GridIx, Mat3, Model, Vec3};
 use std::ops::Range;
 
-/// A rigid motion counts as free when the rows resist it by less than this share of the motion that they resist most.
+/// Largest resistance to a free rigid motion, as a share of the resistance to the motion that is resisted most.
 const FREE_MOTION: f64 = 1e-10;
 
 /// Grids that belong to the structure: of an element, or tied to it.
@@ -33,7 +34,7 @@ pub(super) fn touched(model: &Model, reduction: &Reduction) -> Vec<bool> {
     touched
 }
 
-/// A dof that moves less than this under unit motions holds none of them.
+/// Least motion of a dof under a unit motion that it can hold.
 const LEAST_MOTION: f64 = 1e-6;
 
 /// The structure that moves, and what may resist its rigid motions.
@@ -197,7 +198,7 @@ fn add(resisted: &mut Matrix6<f64>, row: Vector6<f64>) {
     *resisted += row * row.transpose();
 }
 
-/// How the rigid motions of a model are held where it selects no SPC set.
+/// Rigid motions of a model without a selected SPC set, by what resists them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct HeldMotions {
     /// Motions that nothing resists.
@@ -257,11 +258,10 @@ pub fn determinate_dofs(model: &Model) -> Vec<(GridIx, u8)> {
     with_structure(model, |s| s.determinate_dofs()).unwrap_or_default()
 }
 
-/// Returns the springs to ground of a model in words (`CBUSH 2, CELAS2 7`), at most four named.
+/// Returns the springs to ground of a model in words (`CBUSH 2, CELAS2 7`).
 pub(crate) fn springs_in_words(model: &Model) -> String {
-    const SHOWN: usize = 4;
     let all = with_structure(model, |s| s.springs()).unwrap_or_default();
-    let named = all.iter().take(SHOWN).map(|ground| {
+    let named = all.iter().map(|ground| {
         let element = match ground {
             Ground::Spring(i, ..) => ElementRef::Spring(*i),
             Ground::Bush(i) => ElementRef::Bush(*i),
@@ -272,9 +272,5 @@ pub(crate) fn springs_in_words(model: &Model) -> String {
             model.element_id(element)
         )
     });
-    let named: Vec<String> = named.collect();
-    match all.len().saturating_sub(SHOWN) {
-        0 => named.join(", "),
-        more => format!("{} and {more} more", named.join(", ")),
-    }
+    few(&named.collect::<Vec<_>>())
 }

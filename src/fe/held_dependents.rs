@@ -1,14 +1,12 @@
 //! Degrees of freedom that a support holds and that also follow others.
 
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::{Model, Rigid};
 use std::collections::BTreeMap;
 
 /// Returns the degrees of freedom that an SPC set, or PS of a GRID, holds and that a rigid element, an RBE3 or an equation of the MPC set
 /// makes dependent. Nastran and the built-in solver refuse to solve them.
 pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Option<Finding> {
-    /// Degrees of freedom that the message names.
-    const SHOWN: usize = 5;
     let mut dependents: BTreeMap<(u32, usize), String> = BTreeMap::new();
     for rigid in &model.rigids {
         for (g, dofs) in rigid.kind.dependent() {
@@ -46,7 +44,7 @@ pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Opt
             note((g, i), &|| format!("PS of GRID {}", grid.id));
         }
     }
-    let named: Vec<&str> = both.values().take(SHOWN).map(String::as_str).collect();
+    let named: Vec<&String> = both.values().collect();
     (!both.is_empty()).then(|| {
         Finding::new(
             Severity::Error,
@@ -55,7 +53,7 @@ pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Opt
             format!(
                 "{} degrees of freedom are held and dependent at once ({}): no solver solves such a set",
                 both.len(),
-                named.join("; ")
+                few(&named)
             ),
             "take them out of the support, or out of the dependent list of the rigid element or equation",
         )

@@ -31,8 +31,22 @@ pub struct LoadCase {
     pub relief: Relief,
 }
 
+impl LoadCase {
+    /// Returns what the subcase `s` selects: its loads, its SPC and MPC sets, and the balance that the model prescribes for them.
+    pub fn of_subcase(model: &Model, s: &Subcase, label: String) -> Self {
+        Self {
+            subcase: s.id,
+            label,
+            loads: loads_of_subcase(s),
+            spc: s.spc,
+            mpc: s.mpc,
+            relief: relief_of(model, s.spc, s.suport1),
+        }
+    }
+}
+
 /// How a model without case control is balanced: by PARAM,INREL; a model with neither INREL nor `spc` as a free structure.
-pub fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief {
+fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief {
     match (model.params.inrel, spc) {
         (-1, _) => Relief::Suport(suport),
         (-2, _) => Relief::Automatic,
@@ -41,10 +55,10 @@ pub fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief
     }
 }
 
-/// What acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
+/// Returns what acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
 ///
 /// TEMPERATURE without an option stands for both; it loads, and thermal strain counts from TREF.
-pub fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
+fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
     let temperature = s.temperature_load.map(|set| UnitLoad::Temperature {
         set,
         initial: s.temperature_initial.filter(|initial| *initial != set),

@@ -61,7 +61,7 @@ pub(crate) use element::beam::section_at;
 pub use error::{FeError, FreeDof, Refusal};
 pub use free_motions::determinate_dofs;
 pub use held_dependents::held_dependents;
-pub use load_case::{LoadCase, Relief, UnitLoad, loads_of_subcase, relief_of};
+pub use load_case::{LoadCase, Relief, UnitLoad};
 pub use mass::MassProperties;
 pub use modal_loads::modal_loads;
 pub use modes::{ModalSolution, Mode, solve_modes};

@@ -1,11 +1,9 @@
 //! Springs of negative stiffness.
 
 use super::error::Refusal;
+use crate::finding::LISTED;
 use crate::model::Model;
 use nastran::place::Place;
-
-/// Named in one refusal at most.
-const SHOWN: usize = 5;
 
 /// CELAS and CBUSH with negative stiffness, each as what stops a solution that the rest of the structure does not outweigh.
 pub(super) fn negative_springs(model: &Model) -> Vec<Refusal> {
@@ -28,7 +26,7 @@ pub(super) fn negative_springs(model: &Model) -> Vec<Refusal> {
     springs
         .chain(bushes)
         .filter(|s| s.2 < 0.0)
-        .take(SHOWN)
+        .take(LISTED)
         .map(refusal)
         .collect()
 }

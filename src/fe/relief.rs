@@ -54,13 +54,11 @@ pub struct Balance {
 /// # Errors
 /// The first such mass.
 fn refuse_masses_of_points(model: &Model) -> Result<(), FeError> {
-    let refusal = |m: &ScalarMass| Refusal {
-        card: format!("CMASS {}", m.id),
-        at: m.at,
-        reason:
-            "the structure is free, and where the mass of a scalar point acts on it is not stated"
-                .to_owned(),
-        remedy: "hold the structure, or give the mass to a grid (CONM2)".to_owned(),
+    let refusal = |m: &ScalarMass| {
+        let reason =
+            "the structure is free, and where the mass of a scalar point acts on it is not stated";
+        let remedy = "hold the structure, or give the mass to a grid (CONM2)";
+        Refusal::new(format!("CMASS {}", m.id), m.at, reason, remedy)
     };
     match Mass::on_point(model) {
         Some(m) => Err(FeError::Refused(vec![refusal(m)])),

@@ -1,14 +1,12 @@
 //! Elements whose shape makes their strain doubtful: inverted solids, re-entrant and folded quadrilaterals.
 
 use super::element::solid::is_inverted;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::{Model, Shell, Vec3};
 
 /// Distance of the corners from the mean plane over the mean diagonal above which a quadrilateral counts as folded: the default limit of
 /// the surface warping factor in Nastran's GEOMCHECK (Q4_WARP).
 const FOLDED: f64 = 0.05;
-/// Elements that a message names.
-const SHOWN: usize = 5;
 
 /// Findings on elements of doubtful shape, one a kind.
 pub fn check_shapes(model: &Model) -> Vec<Finding> {
@@ -63,7 +61,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             let finding = Finding::new(
                 Severity::Warning,
                 code,
-                named(&ids),
+                format!("elements {}", few(&ids)),
                 format!("{} elements {what}", ids.len()),
                 remedy,
             );
@@ -73,12 +71,6 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             }
         })
         .collect()
-}
-
-fn named(ids: &[u32]) -> String {
-    let shown: Vec<String> = ids.iter().take(SHOWN).map(u32::to_string).collect();
-    let dots = if ids.len() > SHOWN { " .." } else { "" };
-    format!("elements {}{dots}", shown.join(", "))
 }
 
 /// Twice the vector area: along the mean normal.

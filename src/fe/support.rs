@@ -1,9 +1,9 @@
-//! What holds a structure under unit loads: an SPC set, springs to ground, or its own inertia.
+//! Support of a structure under unit loads: an SPC set, springs to ground, or inertia.
 
 use super::UnitLoad;
 use super::free_motions::{held_motions, springs_in_words};
 use super::load_case::{LoadCase, Relief, unit_cases};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
 
 /// Which support is wanted.
@@ -200,7 +200,7 @@ pub fn relief_finding(model: &Model, support: Support, wanted: SupportChoice) ->
     })
 }
 
-/// States how SUPORT without PARAM,INREL is understood, for which dialects differ.
+/// Returns a finding on SUPORT without PARAM,INREL, which dialects read in different ways.
 pub fn suport_without_inrel(model: &Model, sequence: Option<u32>) -> Option<Finding> {
     /// Rigid format of inertia relief, which needs no parameter.
     const INERTIA_RELIEF: u32 = 2;
@@ -222,8 +222,6 @@ pub fn suport_without_inrel(model: &Model, sequence: Option<u32>) -> Option<Find
 
 /// Contradictions of an SPC set: dofs that its cards hold at different values.
 pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
-    /// Dofs that a message names.
-    const SHOWN: usize = 5;
     let mut values: Vec<(u32, f64)> = Vec::new();
     for set in model.spcs.iter().filter(|s| Some(s.sid) == spc) {
         for (g, dofs, value) in &set.terms {
@@ -241,7 +239,6 @@ pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
         .collect();
     let named: Vec<String> = twice
         .iter()
-        .take(SHOWN)
         .filter_map(|[a, b]| {
             let grid = model.grids.get((a.0 / 6) as usize)?;
             Some(format!(
@@ -261,7 +258,7 @@ pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
             format!(
                 "the set holds {} dofs at two different values ({}): the answer is that of one of them",
                 twice.len(),
-                named.join("; ")
+                few(&named)
             ),
             "let one card only give each of these dofs its value",
         )

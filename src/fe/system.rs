@@ -13,7 +13,7 @@ use super::negative::negative_springs;
 use super::prepared::Prepared;
 use super::relief::RigidBody;
 use super::what_hangs::what_hangs;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, LISTED, Severity};
 use crate::linalg::sparse::{BlockGraph, BlockMatrix, Factor, FactorError, Symbolic};
 use crate::model::{GridIx, Mat3, Model};
 use rayon::prelude::*;
@@ -160,10 +160,9 @@ impl System {
 
     /// The dofs that nothing holds, and parts that are not joined to the rest.
     fn mechanism(&self, model: &Model, lost: &[(usize, usize)]) -> FeError {
-        const SHOWN: usize = 8;
         let dofs = lost
             .iter()
-            .take(SHOWN)
+            .take(LISTED)
             .map(|&(g, dof)| {
                 let grid = &model.grids[g];
                 FreeDof {
@@ -183,7 +182,7 @@ impl System {
             .iter()
             .enumerate()
             .filter(|(_, s)| count > 1 && **s < main)
-            .take(SHOWN)
+            .take(LISTED)
         {
             let ids: Vec<String> = of
                 .iter()

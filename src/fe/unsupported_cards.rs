@@ -1,4 +1,4 @@
-//! What the solver does not carry: all of it is named before anything is solved.
+//! Cards and statements that the solver does not carry. They are refused before anything is solved.
 
 use super::UnitLoad;
 use super::element::shell::{Lamination, normals_beyond};
@@ -27,12 +27,7 @@ pub fn refuse(model: &Model, cases: &[LoadCase]) -> Result<(), FeError> {
 pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     let mut all = Vec::new();
     let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {
-        all.push(Refusal {
-            card,
-            at,
-            reason: reason.to_owned(),
-            remedy: remedy.to_owned(),
-        });
+        all.push(Refusal::new(card, at, reason, remedy));
     };
     const ELSEWHERE: &str = "solve with Nastran and name its results in the job";
     for p in &model.shell_properties {
@@ -135,12 +130,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
 fn normals_and_rigids(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
     let mut all = Vec::new();
     let mut refuse = |card: String, at: Place, reason: &str, remedy: &str| {
-        all.push(Refusal {
-            card,
-            at,
-            reason: reason.to_owned(),
-            remedy: remedy.to_owned(),
-        });
+        all.push(Refusal::new(card, at, reason, remedy));
     };
     for n in normals_beyond(model) {
         let id = model.grids.get(n.grid.us()).map_or(0, |g| g.id);

@@ -1,8 +1,9 @@
 //! What hangs at a grid, for messages.
 
+use crate::finding::few;
 use crate::model::{ElementRef, GridIx, Model};
 
-/// Elements with a grid, in words, at most four named.
+/// Elements with a grid, in words.
 pub(super) fn what_hangs(model: &Model, grid: GridIx) -> String {
     let here = |e: &ElementRef| model.element_grids(*e).contains(&grid);
     let named = |e: ElementRef| format!("{} {}", model.element_word(e), model.element_id(e));
@@ -22,12 +23,9 @@ pub(super) fn what_hangs(model: &Model, grid: GridIx) -> String {
     // The equations of a rigid bush or a weld go by the name of their card, which is listed already.
     let mut seen = std::collections::HashSet::new();
     all.retain(|name| seen.insert(name.clone()));
-    let more = all.len().saturating_sub(4);
-    all.truncate(4);
-    match (all.is_empty(), more) {
-        (true, _) => "no element".to_owned(),
-        (false, 0) => all.join(", "),
-        (false, more) => format!("{} and {more} more", all.join(", ")),
+    match all.is_empty() {
+        true => "no element".to_owned(),
+        false => few(&all),
     }
 }
 

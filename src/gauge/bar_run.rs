@@ -1,4 +1,4 @@
-//! How long a straight run of bars is.
+//! Length of a straight run of bars.
 
 use super::grid_average::SMOOTH;
 use crate::model::{BeamIx, GridIx, Model, Vec3};

@@ -151,8 +151,8 @@ fn grid_past_edge(spec: &GaugeSpec, element: u32, past_edge: f64) -> Option<Find
     })
 }
 
-/// How far from an element's skin a place on it may be stated: as far as its corners are from each other, which the chord of
-/// a curved skin is not, and its offset and thickness.
+/// Returns the largest distance from an element's skin at which a place on it may be stated. It is the distance between its corners, which
+/// exceeds the height of a curved skin over its chord, plus offset and thickness.
 fn reach(model: &Model, element: &Shell, middle: Vec3) -> f64 {
     let corners = super::surface::corners(model, element);
     let far = |x: f64, c: &Vec3| x.max((c - middle).norm());

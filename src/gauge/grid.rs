@@ -1,4 +1,4 @@
-//! Grids of a gauge as arms: where each grid lies, and the strain along it averaged over its length.
+//! Grids of a gauge as arms: the place of each grid, and the strain along it averaged over its length.
 
 use super::arms::{Arm, Spot};
 use super::error::GaugeError;
@@ -39,7 +39,7 @@ pub(super) struct Seat {
     pub(super) at: Vec3,
 }
 
-/// One grid: where it is, its unit direction along the surface there, and its weight in the reading.
+/// Grid of a gauge: its place, its unit direction along the surface there, and its weight in the reading.
 struct Grid {
     seat: Seat,
     direction: Vec3,

@@ -19,8 +19,8 @@ pub const POINTS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.118_463_442_528_094_5),
 ];
 
-/// Cosine of the angle beyond which a neighbour lies round a bend: that of PARAM,SNORM's default, 20 degrees.
-pub(super) const SMOOTH: f64 = 0.939_692_620_785_908_4;
+/// Cosine of 20 degrees, the default of PARAM,SNORM: plates that meet at a larger angle form a bend or a joint.
+pub const SMOOTH: f64 = 0.939_692_620_785_908_4;
 
 /// Shells that share an edge with `shell` and go on smoothly.
 pub fn neighbours(model: &Model, shell: ShellIx) -> Vec<ShellIx> {
@@ -77,12 +77,12 @@ pub fn about_centre(model: &Model, shell: ShellIx, x: Vec3, axis: Vec3) -> Vec<(
     out
 }
 
-/// A point on the shells, and which side of its shell faces as a side of the first shell does.
+/// Point on the shells, with the side of its shell that faces as a side of the first shell does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Landing {
-    /// On the reference surface; `side` is the side that faces as the one asked for.
+    /// Point on the reference surface; `side` is the side that faces as the one asked for.
     pub foot: Foot,
-    /// How far the point asked for lies past the edge of the surface, along it; 0 over the surface.
+    /// Distance from the edge of the surface to the point asked for, along the surface; 0 over the surface.
     pub past_edge: f64,
 }
 

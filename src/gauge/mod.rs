@@ -24,6 +24,7 @@ pub use beside::{Beside, beside_beam, beside_shell};
 pub use build::build;
 pub use error::GaugeError;
 pub use glued::{Drawn, Offset};
+pub use grid_average::SMOOTH;
 pub use moved::moved;
 pub use on_refined::{change_by_refining, on_refined};
 pub use side::opposite;

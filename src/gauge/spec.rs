@@ -71,7 +71,7 @@ impl Rosette {
 pub enum GaugePlace {
     /// At the centre of a shell.
     Shell(ShellIx),
-    /// At the point of the shells' skins nearest to this one, basic frame.
+    /// Point of the shells' skins nearest to this one, basic frame.
     Nearest(Vec3),
     /// At recovery point 0 to 3 (C D E F) of a bar or beam, at a share of its length from end A; reads along the axis.
     Beam {
@@ -92,7 +92,7 @@ pub enum CornerRows {
     Absent,
 }
 
-/// Where the second pair of grids of a bridge is glued.
+/// Place of the second pair of grids of a bridge.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
     /// Shell, at whose centre it sits.
@@ -134,7 +134,7 @@ pub struct GaugeSpec {
     pub bridge_factor: f64,
     /// Length of the grid along its axis; 0: a point.
     pub grid_length: f64,
-    /// Second pair; `None`: the other side of the same shell (bending), no second pair (shear).
+    /// Place of the second pair; `None`: the other side of the same shell (bending), no second pair (shear).
     pub pair: Option<Pair>,
     /// Three channels instead of one.
     pub rosette: Option<Rosette>,

@@ -46,8 +46,8 @@ pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
 
 /// Returns the shell and the side whose skin is nearest to `x`; `None` without shells.
 ///
-/// The skins are offset from the reference surface by ZOFFS and half the thickness (Z1, Z2), so that the reference surface alone says neither
-/// which plate nor which side a point is on. A point inside a plate belongs to that plate: its middle surface counts as a skin does. Of
+/// The skins are offset from the reference surface by ZOFFS and half the thickness (Z1, Z2), so that the reference surface alone determines neither
+/// the plate nor the side that a point is on. A point inside a plate belongs to that plate: its middle surface counts as a skin does. Of
 /// equally near skins that of side `stated` is taken, else the top.
 ///
 /// [`Foot::distance`] is the distance from the skin of [`Foot::side`].
@@ -76,12 +76,12 @@ pub fn nearest_skin(model: &Model, x: Vec3, stated: Option<Surface>) -> Option<F
 /// Share of the size of coordinates up to which two distances count as equal: what rounding leaves of them.
 const SAME_PLACE: f64 = 1e-10;
 
-/// How near a point is to a shell.
+/// Distance of a point from a shell, with the place there.
 #[derive(Clone, Copy)]
 struct Nearness {
-    /// From the nearest of both skins and the middle surface.
+    /// Distance from the nearest of both skins and the middle surface.
     distance: f64,
-    /// Of equal distances the lowest is taken: skin of the stated side, other skin, middle surface.
+    /// Order among equal distances: skin of the stated side, other skin, middle surface.
     rank: usize,
     foot: Foot,
 }

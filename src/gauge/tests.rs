@@ -202,15 +202,20 @@ fn bridges_are_signed_sums_over_their_factor() {
     assert!((read(&m, &two, CornerRows::Absent, &case)[0] * 1e6 - 40.0).abs() < 1e-9);
 }
 
+/// A rectangular rosette on the first element, leg a along x.
+fn rectangular() -> GaugeSpec {
+    GaugeSpec {
+        direction: Some(Vec3::x()),
+        rosette: Some(Rosette::Rectangular),
+        ..GaugeSpec::on("R", ShellIx(0))
+    }
+}
+
 #[test]
 fn rosettes_give_three_legs_that_hold_the_whole_tensor() {
     let m = plate(1, 1, 2);
     let case = field(&m, CornerRows::Absent, |_, _| E);
-    let spec = GaugeSpec {
-        direction: Some(Vec3::x()),
-        rosette: Some(Rosette::Rectangular),
-        ..GaugeSpec::on("R", ShellIx(0))
-    };
+    let spec = rectangular();
     let names: Vec<String> = build(&m, &spec, CornerRows::Absent)
         .unwrap()
         .0
@@ -373,13 +378,11 @@ fn a_direction_normal_to_the_surface_is_refused() {
     ));
 }
 
-#[test]
-fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
-    let mut m = plate(1, 1, 0);
-    m.beams.push(Beam {
-        id: 7,
+fn bar(id: u32, grids: [u32; 2]) -> Beam {
+    Beam {
+        id,
         is_beam: false,
-        grids: [GridIx(0), GridIx(1)],
+        grids: grids.map(GridIx),
         property: BeamPropertyIx(0),
         offsets: [Vec3::zeros(); 2],
         axes: Mat3::identity(),
@@ -387,7 +390,13 @@ fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
         warping: None,
         idle_points: false,
         at: Place::default(),
-    });
+    }
+}
+
+#[test]
+fn a_gauge_on_a_bar_reads_at_its_recovery_point_and_station() {
+    let mut m = plate(1, 1, 0);
+    m.beams.push(bar(7, [0, 1]));
     let case = CaseResult {
         beams: BeamField {
             elements: Arc::new(vec![BeamIx(0)]),

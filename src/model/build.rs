@@ -3,6 +3,7 @@
 use super::fault::{FaultKind, ModelFault};
 use super::types::*;
 use nastran::bdf::Deck;
+use nastran::bdf::vocabulary::case_word;
 use nastran::cards::{Cards, Param};
 use nastran::place::Place;
 use std::collections::{HashMap, HashSet};
@@ -106,7 +107,8 @@ impl Model {
 /// MSC Nastran Quick Reference Guide, case control command RIGID, and remarks on ALPHA of RBE2.
 fn expanding_rigids(deck: &Deck) -> bool {
     let lines = deck.case_control.lines.iter();
-    let mut rigid = lines.filter(|l| !l.in_packet && l.name == "RIGID");
+    let is_rigid = |name: &str| case_word(name).is_some_and(|word| word.name == "RIGID");
+    let mut rigid = lines.filter(|l| !l.in_packet && is_rigid(&l.name));
     rigid.any(|l| {
         let text = l.text.to_ascii_uppercase();
         ["LAGR", "LGEL"].iter().any(|word| text.contains(word))

@@ -1,5 +1,6 @@
 //! What is wrong with a deck as a model.
 
+use crate::finding::LISTED;
 use nastran::place::Place;
 use std::fmt;
 
@@ -31,9 +32,9 @@ pub enum FaultWeight {
 pub enum FaultKind {
     /// Another card that is referred to is missing.
     Missing { what: &'static str, id: i64 },
-    /// A card that others refer to is in the deck, and the model does not carry it.
+    /// Card that others refer to and that the model does not carry.
     NotCarried {
-        /// What it is looked for as.
+        /// Kind of card that the reference needs.
         what: &'static str,
         /// The first card that refers to it.
         user: String,
@@ -184,12 +185,11 @@ impl fmt::Display for FaultKind {
             CollinearFrame => write!(f, "points A, B, C lie on a line"),
             FrameCycle => write!(f, "the system is defined by itself through others"),
             SumCycle { sets } => {
-                const SHOWN: usize = 6;
                 write!(f, "the sets name each other in a circle: ")?;
-                for sid in sets.iter().take(SHOWN) {
+                for sid in sets.iter().take(LISTED) {
                     write!(f, "{sid} -> ")?;
                 }
-                if sets.len() > SHOWN {
+                if sets.len() > LISTED {
                     write!(f, ".. ({} sets) -> ", sets.len())?;
                 }
                 write!(f, "{}", sets.first().unwrap_or(&0))

@@ -51,7 +51,7 @@ pub(super) fn moduli_faults(m: &Mat1) -> Vec<(&'static str, FaultKind)> {
         let what = "Young's modulus";
         out.push(("E", FaultKind::NotPositive { what, value }));
     }
-    // A stated nu is what the card says; with E and G both stated too it may be anything that the solver accepts.
+    // With E, G and nu all stated, nu may have any value that the solver accepts.
     if !(-1.0 < nu && nu <= 0.5) && m.g.is_none() {
         out.push(("NU", FaultKind::Poisson { nu }));
     }

@@ -5,7 +5,7 @@ use super::types::{Model, UnsupportedCard};
 use nastran::bdf::{Deck, OtherCard};
 use std::collections::{BTreeMap, HashMap};
 
-/// What a card defines under its id.
+/// Kind of object that a card defines under its id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 enum Defined {
     Grid,

@@ -512,7 +512,7 @@ fn a_sum_of_sums_of_constraints_holds_every_set_once() {
 }
 
 #[test]
-fn a_card_that_is_not_carried_is_named_where_it_stands_and_not_called_missing() {
+fn a_card_that_is_not_carried_is_named_by_its_own_line_and_not_called_missing() {
     // Card that stands, card that refers to it, whether the reference stops every use of the model.
     let table = [
         (

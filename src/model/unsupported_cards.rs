@@ -1,4 +1,4 @@
-//! What a deck asks for that acts on the solution and that no part of the model stands for.
+//! Cards and statements of a deck that act on the solution and have no part in the model.
 
 use super::types::UnsupportedCard;
 use nastran::bdf::vocabulary::{CaseWord, Effect, case_word, effect_of_card};
@@ -11,9 +11,9 @@ const LINEAR: [u32; 39] = [
     1, 2, 3, 5, 7, 8, 9, 10, 11, 12, 24, 25, 26, 27, 28, 29, 30, 31, 61, 63, 65, 67, 68, 69, 70,
     71, 72, 101, 103, 105, 107, 108, 109, 110, 111, 112, 118, 145, 200,
 ];
-/// Those of buckling, whose preload STATSUB names.
+/// Solution sequences of buckling, whose preload STATSUB names.
 const BUCKLING: [u32; 3] = [5, 65, 105];
-/// Further ones that are linear: random and gust response.
+/// Solution sequences of random and gust response, which are linear too.
 const GUST: [u32; 3] = [146, 187, 190];
 
 /// Returns elements, masses, constraints, statements of case control and the solution sequence that act; then the loads, which act where
@@ -88,7 +88,7 @@ fn statements(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
     })
 }
 
-/// What stands behind the last `=`, or behind the word, upper case.
+/// Returns the text behind the last `=`, or behind the word, in upper case.
 fn value_of(line: &CaseLine) -> String {
     let value = match line.text.rsplit_once('=') {
         Some((_, value)) => value,
@@ -107,7 +107,7 @@ fn acts(deck: &Deck, word: CaseWord, value: &str) -> bool {
     word.effect == Effect::Acts && !preload && !["NONE", "NO", "0"].contains(&value)
 }
 
-/// Bulk data of superelements and modules that is not read; models for optimisation and acoustics are none of the structure.
+/// Returns bulk data of superelements and modules that is not read. Models for optimisation and acoustics do not belong to the structure.
 fn superelements(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
     const ASIDE: [&str; 5] = ["AUXMODEL", "ARBMODEL", "UDS", "TRMC", "FLXSLI"];
     let parts = deck.parts.iter();

@@ -5,19 +5,12 @@
 
 use super::evidence::{PayloadModel, PayloadRun, Place, WeighSpec};
 use super::one_run::{Balance, Located, solve_run};
+use super::robust::{GOOD_FACTOR, LARGEST_FACTOR, N_LEVELS, PRIOR_AS_STATED};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Noise levels of a gauge.
-const N_LEVELS: usize = 25;
-/// The largest.
-const LARGEST_FACTOR: f64 = 1.0e4;
-/// Prior probability that the stated noise is right.
-const PRIOR_AS_STATED: f64 = 0.6;
-/// A gauge counts as good up to this factor on its stated noise.
-const GOOD_FACTOR: f64 = 3.0;
 /// Random starts: gauges believed at first, all others doubted.
 const STARTS: usize = 24;
 /// Steps of a start, and of the best of them.

@@ -56,13 +56,13 @@ pub struct RobustPayload {
 }
 
 /// Noise levels a gauge may have, log-spaced.
-const N_LEVELS: usize = 25;
+pub(super) const N_LEVELS: usize = 25;
 /// Where the noise is stated: the largest factor on it. Such a gauge carries nothing.
-const LARGEST_FACTOR: f64 = 1.0e4;
+pub(super) const LARGEST_FACTOR: f64 = 1.0e4;
 /// Where it is not: from this share of the largest payload to its inverse.
 const SMALLEST_SHARE: f64 = 1.0e-3;
 /// Prior probability that a stated noise is right.
-const PRIOR_AS_STATED: f64 = 0.6;
+pub(super) const PRIOR_AS_STATED: f64 = 0.6;
 /// Points of the one-dimensional posterior of a run, and the factor that they reach on either side of the mode.
 const N_GRID: usize = 801;
 const GRID_REACH: f64 = 20.0;
@@ -73,7 +73,7 @@ const N_STARTS: usize = 5;
 /// Above this probability a gauge counts as used.
 const USED_ABOVE: f64 = 0.5;
 /// A gauge is good when its noise is at most this factor above the stated one, or above the scatter that all gauges have.
-const GOOD_FACTOR: f64 = 3.0;
+pub(super) const GOOD_FACTOR: f64 = 3.0;
 /// A negative estimate counts against a gauge from this many of its standard deviations on.
 pub(super) const SIGN_SIGMAS: f64 = 3.0;
 

@@ -8,6 +8,7 @@
 //! changes in closed form; the first of them are judged by eigenvalues.
 
 use super::candidates::{Angles, Candidates, Choice};
+use super::coordinate_exchange::LEAST_GAIN;
 use super::layout::Layout;
 use super::perturbation::{fits, moved};
 use super::shortlist::excluder;
@@ -36,8 +37,6 @@ const MOST: [usize; 2] = [12_000, 1_500];
 const MANY: usize = 12;
 /// Rows of a slot judged by eigenvalues, with few loads and with many.
 const JUDGED: [usize; 2] = [24, 6];
-/// Gain under which an exchange is none.
-const LEAST_GAIN: f64 = 1e-9;
 /// Share of the mean diagonal that keeps the rest of a layout regular without a gauge.
 const RIDGE: f64 = 1e-10;
 

@@ -11,8 +11,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::sync::OnceLock;
 
-/// Gain in `det` under which an exchange is rounding error.
-const LEAST_GAIN: f64 = 1e-9;
+/// Gain in `det`, or in its logarithm, under which an exchange is rounding error.
+pub(super) const LEAST_GAIN: f64 = 1e-9;
 /// Share of its determinant under which a block counts as lost by an exchange.
 const LEAST_PART: f64 = 1e-9;
 /// Sweeps after which the search gives up; it stops by itself long before.

@@ -4,15 +4,13 @@ use super::angle_variance::Form;
 use super::sites::{Site, wired};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
-use crate::gauge::{Bridge, centre};
+use crate::gauge::{Bridge, SMOOTH, centre};
 use crate::model::{Mat3, Model, ShellIx};
 use crate::sensitivity::LoadCaseOf;
 use crate::units::MICROSTRAIN;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Cosine of the angle beyond which a neighbour lies round a bend: that of PARAM,SNORM's default, 20 degrees.
-const SMOOTH: f64 = 0.939_692_620_785_908_4;
 /// Share of the spread of the neighbours under which a direction has none: its gradient is then 0.
 const NO_SPREAD: f64 = 1e-6;
 

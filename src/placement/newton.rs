@@ -4,7 +4,7 @@
 //! weights by moving weight between pairs of rows, which costs a row of the matrix each, and the step goes towards what it gives.
 
 use super::criterion::Criterion;
-use super::relaxed::{Active, Relaxed, pulls};
+use super::relaxed::{Active, FULL, Relaxed, pulls};
 use crate::linalg::spd;
 
 /// Rows without weight that join a step at most, by loads.
@@ -182,9 +182,6 @@ impl Model {
         best.1
     }
 }
-
-/// Slack under which a group counts as full.
-const FULL: f64 = 1e-12;
 
 fn value(active: &Active, prior: &[f64], weights: &[f64]) -> Option<f64> {
     let mut m = prior.to_vec();

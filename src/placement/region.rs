@@ -1,12 +1,10 @@
 //! Where strain is not to be trusted: how far places are from free edges, joints of plates, loads and attachments.
 
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::gauge::SMOOTH;
 use crate::model::{Model, ShellIx, Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
-
-/// Cosine of the bend from which plates meet in a joint: that of PARAM,SNORM's default, 20 degrees.
-const BEND: f64 = 0.939_692_620_785_908_4;
 
 /// A straight piece, or a point twice.
 pub type Segment = [Vec3; 2];
@@ -127,7 +125,7 @@ pub fn joints(model: &Model) -> Vec<Segment> {
     by_edge(model, |shells| match shells {
         [a, b] => normal(a)
             .zip(normal(b))
-            .is_some_and(|(x, y)| x.dot(&y).abs() < BEND),
+            .is_some_and(|(x, y)| x.dot(&y).abs() < SMOOTH),
         more => more.len() > 2,
     })
 }

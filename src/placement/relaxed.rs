@@ -2,7 +2,7 @@
 
 use super::criterion::{Criterion, Point};
 
-/// Weight under which a row or a group counts as full.
+/// Weight under which a row counts as unused, and slack under which a group counts as full.
 pub(super) const FULL: f64 = 1e-12;
 
 /// The rows a relaxation works on.

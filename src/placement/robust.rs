@@ -2,6 +2,7 @@
 //!
 //! With `h_q` the leverages, losing gauge `q` multiplies `det M` by `1 - h_q`; the search raises `ln det M + ln(1 - max h)`.
 
+use super::coordinate_exchange::LEAST_GAIN;
 use super::exchange::Effort;
 use super::perturbation::moved;
 use super::relaxed::Active;
@@ -11,8 +12,6 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// Gain in `ln det` under which an exchange is rounding error.
-const LEAST_GAIN: f64 = 1e-9;
 /// Leverage that counts as 1: that gauge may not be lost.
 const WHOLE: f64 = 1.0 - 1e-9;
 

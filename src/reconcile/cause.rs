@@ -6,6 +6,7 @@
 
 use super::observation::Observations;
 use super::outcome::Verdict;
+use super::rules::DECISIVE;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 
@@ -45,8 +46,6 @@ pub struct CauseOutcome {
     pub next_measurement: String,
 }
 
-/// Log evidence beyond which a set is preferred: as for all effects.
-const DECISIVE: f64 = super::rules::DECISIVE;
 /// Sets within this log evidence can't be told apart.
 const ALIKE: f64 = 3.0;
 /// More causes than these are not weighed together: their sets double with each.

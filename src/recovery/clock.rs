@@ -15,7 +15,7 @@ const ENOUGH: usize = 200;
 /// J. von Neumann, Ann. Math. Stat. 12 (1941) 367.
 const SMOOTH: f64 = 0.5;
 
-/// Steps of time that differ, samples that are missing, times whose unit only their size shows: none of them stops a record.
+/// Returns findings on uneven steps, missing samples and a unit of time that only the size of the times shows. They do not stop a record.
 pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
     let mut out = Vec::new();
     out.extend(
@@ -59,7 +59,7 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
     out
 }
 
-/// The note that times are taken in a unit that the file does not state.
+/// Returns the note that times are taken in a unit that the file does not state.
 pub fn recognised(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
     let words = unit.words();
     Finding::new(
@@ -73,7 +73,7 @@ pub fn recognised(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
     )
 }
 
-/// The error of a rate, Hz, that records do not have, where no unit of time is stated.
+/// Returns the error of a rate, Hz, that records do not have, for times without a stated unit.
 pub fn check_rate(rate_hz: f64) -> Option<Finding> {
     if is_usual(rate_hz) {
         return None;
@@ -101,8 +101,8 @@ pub fn check_rate(rate_hz: f64) -> Option<Finding> {
     )
 }
 
-/// An error where the rate is none of a record, or where samples are `step_s` or more apart and yet follow each other as those of a fast logger
-/// do: time in milliseconds. `readings` are those of one piece, `n` gauges a sample.
+/// Returns an error for times that are in milliseconds and not in seconds: the rate is one that records do not have, or samples `step_s` apart
+/// follow each other as those of a fast logger do. `readings` are those of one piece, `n` gauges a sample.
 pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
     if let Some(found) = check_rate(1.0 / step_s) {
         return Some(found);

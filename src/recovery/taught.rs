@@ -5,6 +5,7 @@
 
 use super::types::RunEstimate;
 use super::unlike::chance_estimated;
+use super::verdict::SIGNIFICANT;
 use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
 use crate::sensitivity::Uncertainty;
@@ -12,8 +13,6 @@ use crate::sensitivity::Uncertainty;
 /// Code of runs whose loads act together as none were taught.
 pub const CODE: &str = "loads-unlike-known-runs";
 
-/// Chance under which several loads count as more than what scatter makes of one.
-const SIGNIFICANT: f64 = 1e-3;
 /// So many runs with several loads, when most have them, are how the loads are used: of runs with one load one in a hundred looks so.
 const USUAL: usize = 3;
 

@@ -4,16 +4,13 @@ use super::calibrated::{Excess, estimate_with};
 use super::errors::ErrorModel;
 use super::interval::student_95;
 use super::types::{Readings, RunEstimate};
-use super::verdict::chance;
+use super::verdict::{SIGNIFICANT, chance};
 use crate::finding::{Finding, Severity};
 use crate::linalg::tail::f_tail;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Code of a run that no combination of the loads explains.
 pub const CODE: &str = "run-unlike-calibration";
-
-/// Chance under which a run counts as unlike the calibration.
-const SIGNIFICANT: f64 = 1e-3;
 
 /// Chance of `chi2` over `dof` at least as large, where the covariance behind it was estimated with `from` degrees of freedom.
 pub fn chance_estimated(chi2: f64, dof: usize, from: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! What a gauge is expected to differ by from its prediction where no load was estimated from it.
+//! Expected difference between the reading of a validation gauge and its prediction.
 
 use super::errors::ErrorModel;
 use super::gain::Gain;

@@ -17,8 +17,8 @@ use crate::units::{MICROSTRAIN, number};
 pub const UNEXPLAINED: &str = "strain-not-explained";
 /// Code of runs whose gauges don't tell some of the loads.
 pub const NOT_SOLVABLE: &str = "run-not-solvable";
-/// Chance under which a sum of squares counts as larger than stated errors make it.
-const SIGNIFICANT: f64 = 1e-3;
+/// Chance under which a sum of squares counts as larger than stated errors or scatter make it.
+pub(super) const SIGNIFICANT: f64 = 1e-3;
 /// Chance from which it is beyond doubt.
 const BEYOND_DOUBT: f64 = 1e-6;
 /// Residual over readings (root mean squares): a right model with the wrong mesh stays under this, a missing load does not.

@@ -13,7 +13,7 @@ use crate::units::MICROSTRAIN;
 
 /// Centroids nearer to the shear centre than this share of the farthest point are rounding.
 const APART: f64 = 1e-6;
-/// Second moments of the points below this share of their sum are rounding: the points are on a line.
+/// Share of their sum below which second moments of the points are rounding: the points are on a line.
 const SINGULAR: f64 = 1e-12;
 /// Differences of strain below this share of the strain of the points are rounding of single precision.
 const DIFFERENT: f64 = 1e-4;

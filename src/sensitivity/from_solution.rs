@@ -31,16 +31,16 @@ pub struct NoStrain {
     pub subcase: u32,
     /// Load.
     pub load: String,
-    /// Why.
+    /// Cause of the missing strain.
     pub why: NoStrainCause,
 }
 
-/// Why a case has no strain at a gauge.
+/// Cause of missing strain at a gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoStrainCause {
-    /// It has none of the element.
+    /// The case has no strain of the element.
     Absent,
-    /// The station is between those of the result, and the strain of the bar is no straight line between them.
+    /// The station is between those of the result, and the strain between them is not linear.
     BetweenStations,
 }
 
@@ -76,7 +76,7 @@ impl NoStrain {
     }
 }
 
-/// Why a case has no reading of a gauge.
+/// Returns the cause of a missing reading.
 fn cause(gauge: &Gauge, case: &CaseResult) -> NoStrainCause {
     let between = |arm: &Arm| match arm.spot {
         Spot::Beam { beam, .. } | Spot::BeamAxis { beam, .. } => {

@@ -46,7 +46,7 @@ impl Answers {
     }
 }
 
-/// What is measured: the same in every model, by channel of the base model.
+/// Readings by channel of the base model, equal in every model.
 #[derive(Clone, Default)]
 pub struct Measured {
     readings: Vec<Vec<f64>>,
@@ -83,7 +83,7 @@ impl Measured {
     }
 }
 
-/// What is asked of a model.
+/// Commands that a model is tried with.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Asked {
     /// All commands.

@@ -66,7 +66,7 @@ pub struct Form {
     pub files: Files,
     /// Cards are in random order.
     pub permuted: bool,
-    /// Small field only: every continuation has a name of its own and is at the end of the deck, in reverse order.
+    /// Small field only: each continuation has its own name and is at the end of the deck, in reverse order.
     pub named: bool,
 }
 

@@ -201,7 +201,7 @@ pub fn readings(frame: &Frame, s: &[Vec<f64>]) -> Vec<Vec<f64>> {
     RUNS.iter().enumerate().map(run).collect()
 }
 
-/// What the payload adds to the forces of three wheels, N.
+/// Returns the forces that the payload adds to three wheels, N.
 fn wheel_forces(frame: &Frame, [f, x, y]: [f64; 3]) -> [f64; 3] {
     let places = WHEELS.map(|w| {
         let load = frame.loads.iter().find(|l| l.name == w);

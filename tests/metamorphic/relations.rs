@@ -20,7 +20,7 @@ fn base() -> &'static (Frame, Measured, Answers) {
     })
 }
 
-/// Fails where a number differs by more than `tolerance` of the largest of its group; `kept` tells which groups are compared.
+/// Fails where a number differs by more than `tolerance` of the largest of its group; `kept` selects the groups that are compared.
 fn compare(base: &Answers, got: &Answers, tolerance: f64, kept: impl Fn(&str) -> bool) {
     let mut wrong = String::new();
     let mut worst = (0.0, "");
@@ -69,7 +69,7 @@ fn holds_in_form(form: Form) {
     compare(base, &got, SAME, everything);
 }
 
-/// The same arithmetic in another order (measured: 1.4e-13).
+/// Tolerance for equal arithmetic in another order (measured: 1.4e-13).
 const SAME: f64 = 3e-13;
 
 #[test]
@@ -156,7 +156,7 @@ fn compare_study(base: &Answers, got: &Answers) {
 }
 
 #[test]
-fn a_rotated_structure_answers_alike() {
+fn a_rotated_structure_gives_equal_answers() {
     let (frame, measured, base) = base();
     let mut changed = frame.clone().turned(oblique());
     changed.loads.iter_mut().for_each(|l| l.system = 1);
@@ -175,7 +175,7 @@ const ROTATED: f64 = 2.8e-8;
 
 /// A quarter turn: the box about the structure, in which a payload may be, turns with it.
 #[test]
-fn a_structure_rotated_about_the_vertical_weighs_its_payload_alike() {
+fn a_structure_rotated_about_the_vertical_gives_the_same_payload() {
     let turn = Matrix3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
     let (frame, measured, base) = base();
     let mut changed = frame.clone().turned(turn);
@@ -191,7 +191,7 @@ fn a_structure_rotated_about_the_vertical_weighs_its_payload_alike() {
 }
 
 #[test]
-fn a_mirrored_structure_answers_alike() {
+fn a_mirrored_structure_gives_equal_answers() {
     let mirror = Matrix3::from_diagonal(&V::new(1.0, -1.0, 1.0));
     let (frame, measured, base) = base();
     let got = answers(&frame.clone().turned(mirror), FREE, measured, ALL);
@@ -217,12 +217,12 @@ fn holds_flipped(which: impl Fn(usize) -> bool) {
 }
 
 #[test]
-fn shells_with_their_normals_reversed_answer_alike_on_their_other_side() {
+fn shells_with_reversed_normals_give_equal_answers_on_their_other_side() {
     holds_flipped(|_| true);
 }
 
 #[test]
-fn shells_with_normals_to_either_side_answer_alike() {
+fn shells_with_normals_to_either_side_give_equal_answers() {
     holds_flipped(|i| i % 4 == 1);
 }
 

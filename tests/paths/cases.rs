@@ -58,7 +58,7 @@ impl Loader for Folder {
         Ok(Loaded {
             path: path.display().to_string(),
             bytes,
-            rival: None,
+            differing_path: None,
         })
     }
 }

@@ -139,7 +139,7 @@ fn the_second_side_left_out_is_the_opposite_one() {
     let gauge = |keys: &str| {
         format!("[[gauge]]\nname = \"g\"\nelement = 6\nbridge = \"half-bending\"\n{keys}")
     };
-    // Under tension half bridges read nothing; their arms are what tells.
+    // Half bridges read nothing under tension. Their arms show the difference.
     let arms = |keys: &str| {
         let files = files(&gauge(keys));
         let job = Job::read("job.toml", &files).unwrap();

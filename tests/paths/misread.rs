@@ -95,7 +95,7 @@ fn within(got: f64, right: f64, tolerance: f64) -> bool {
     (got - right).abs() <= tolerance * right.abs()
 }
 
-/// What is wrong with the solution of a deck.
+/// Returns the misread part of the solution of a deck.
 fn misread(path: &Path, moves: Moves, refusal: Option<&str>) -> Option<String> {
     let solved = strainbridge::solve_deck(path, SolveOptions::default(), &Context::new(&Disk));
     let solved = match (solved, refusal) {
@@ -342,7 +342,7 @@ fn gauges_read_what_closed_forms_give() {
     all_right(&wrong);
 }
 
-/// What is wrong between rows that are equal.
+/// Returns the difference between rows that must be equal.
 fn differ(what: &str, a: &[f64], b: &[f64]) -> Option<String> {
     let largest = a.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     let off = a
@@ -362,7 +362,7 @@ fn rows_do_not_depend_on_the_numbering_of_shells_or_the_form_of_a_table() {
         ("jobs/grid_over_flipped", "same.toml", "flipped.toml"),
         ("jobs/grid_over_flipped", "m_same.toml", "m_flipped.toml"),
         ("jobs/grid_over_flipped", "c_same.toml", "c_flipped.toml"),
-        // The gluing sheet says the same of every gauge.
+        // The gluing sheet states the same place for every gauge.
         ("jobs/gauge_columns", "g1.toml", "g2.toml"),
     ];
     for (folder, a, b) in pairs {

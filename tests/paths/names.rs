@@ -13,7 +13,7 @@ use strainbridge::finding::Finding;
 const ROD: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,1,1,2\nPROD,1,1,.01\nMAT1,1,1.+10,,.3,100.\n\
      FORCE,1,2,,1000.,1.,0.,0.\nSPC1,1,123456,1\nSPC1,1,23456,2\nTEMPD,3,20.\n";
 
-/// What `check` and `solve` make of a deck.
+/// Answers of `check` and `solve` to a deck.
 struct Tried {
     faults: Vec<String>,
     findings: Vec<Finding>,
@@ -231,7 +231,7 @@ fn sections_that_are_not_bulk_data_have_words_of_their_own() {
     assert!(t.solved.is_ok(), "{:?}", t.solved.err());
 }
 
-/// What case control does not select does not act.
+/// Loads act only where case control selects them.
 #[test]
 fn what_is_not_selected_does_not_act() {
     let matrices = "DMIG,PX,0,9,1,0,,,1\nDMIG,PX,2,0,,2,1,3000.\nBCTSET,5,1,2\nMATT2,1,7\n";

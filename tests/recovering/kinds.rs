@@ -1,4 +1,4 @@
-//! Files of every kind: results that hold a subcase twice, records in several units of time, files that are none of what is expected.
+//! Files of every kind: results that hold a subcase twice, records in several units of time, files of an unexpected kind.
 
 use super::{S, loads, strain};
 use std::fmt::Write;

@@ -116,7 +116,7 @@ fn columns_of_a_gauge_table_that_nothing_reads_are_named_once() {
 }
 
 #[test]
-fn a_gauge_table_without_directions_says_where_its_gauges_point() {
+fn a_gauge_table_without_directions_states_where_its_gauges_point() {
     let (_, findings) = asked("name,element,surface\nA,7,bottom\n").unwrap();
     assert!(findings.iter().any(|f| f.code == "gauges-assumed"));
     let (_, findings) = asked("name,element,surface,angle_deg\nA,7,bottom,0\n").unwrap();

@@ -14,7 +14,7 @@ impl Loader for Files {
                 return Ok(Loaded {
                     path,
                     bytes,
-                    rival: None,
+                    differing_path: None,
                 });
             }
         }

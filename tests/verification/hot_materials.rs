@@ -186,6 +186,7 @@ fn rigid_elements_that_would_expand_are_refused() {
         )
     };
     assert_eq!(of("RIGID = LAGRAN\nTEMP(LOAD) = 3"), ["RBE2 40"]);
+    assert_eq!(of("RIGI = LAGR\nTEMP(LOAD) = 3"), ["RBE2 40"]);
     assert_eq!(of("RIGID = LGELIM\nTEMP(LOAD) = 3"), ["RBE2 40"]);
     assert!(of("RIGID = LINEAR\nTEMP(LOAD) = 3").is_empty());
     assert!(of("RIGID = LAGRAN").is_empty());

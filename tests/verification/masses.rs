@@ -56,7 +56,7 @@ const KINDS: [(&str, &str, f64); 22] = [
         "CMASS1,50,8,3,1\nCMASS1,51,8,3,2\nCMASS1,52,8,3,3\nPMASS,7,1.,8,3.",
         3.0,
     ),
-    // A rotation and two ends that move alike add no mass; nor does a scalar point.
+    // A rotation and two ends with the same motion add no mass; nor does a scalar point.
     (
         "",
         "CMASS2,50,3.,3,5\nCMASS2,51,7.,3,1,4,1\nSPOINT,90\nCMASS4,52,9.,90\nCMASS3,53,8,91\nPMASS,8,4.",

@@ -16,12 +16,8 @@ fn deck_cases(deck: &str) -> Option<(strainbridge::model::Model, Vec<LoadCase>)>
         .effective_subcases()
         .iter()
         .map(|s| LoadCase {
-            subcase: s.id,
-            label: String::new(),
             loads: s.load.into_iter().map(UnitLoad::Set).collect(),
-            spc: s.spc,
-            mpc: s.mpc,
-            relief: relief_of(&model, s.spc, s.suport1),
+            ..LoadCase::of_subcase(&model, s, String::new())
         })
         .collect();
     Some((model, cases))

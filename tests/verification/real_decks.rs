@@ -48,12 +48,8 @@ fn prepared(deck: Option<&str>, file: &ResultsFile) -> Option<(Model, Vec<LoadCa
             .effective_subcases()
             .iter()
             .map(|s| LoadCase {
-                subcase: s.id,
-                label: String::new(),
-                loads: loads_of_subcase(s),
-                spc: s.spc,
-                mpc: s.mpc,
                 relief: Relief::None,
+                ..LoadCase::of_subcase(&model, s, String::new())
             })
             .collect();
         return Some((model, cases));

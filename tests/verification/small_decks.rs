@@ -1,4 +1,4 @@
-//! Decks of a few lines, solved as their case control says.
+//! Decks of a few lines, solved by their case control.
 
 use nastran::bdf::{Deck, MemoryLoader, read_deck};
 use strainbridge::fe::*;
@@ -12,14 +12,14 @@ pub fn deck(case_control: &str, bulk: &str) -> Deck {
     deck
 }
 
-/// Its model and the faults that stop a solution.
+/// Returns the model of a deck, and the faults that stop a solution.
 pub fn model(case_control: &str, bulk: &str) -> (Model, Vec<ModelFault>) {
     let (model, mut faults) = Model::from_deck(&deck(case_control, bulk));
     faults.retain(|f| f.weight() == FaultWeight::Error);
     (model, faults)
 }
 
-/// Its first subcase solved.
+/// Solves the first subcase of a deck.
 pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, Solved), FeError> {
     let deck = deck(case_control, bulk);
     let (model, faults) = Model::from_deck(&deck);
@@ -29,19 +29,12 @@ pub fn try_solve(case_control: &str, bulk: &str) -> Result<(Model, Solved), FeEr
         .collect();
     assert!(wrong.is_empty(), "{wrong:?}");
     let first = deck.case_control.effective_subcases().remove(0);
-    let case = LoadCase {
-        subcase: first.id,
-        label: String::new(),
-        loads: loads_of_subcase(&first),
-        spc: first.spc,
-        mpc: first.mpc,
-        relief: relief_of(&model, first.spc, first.suport1),
-    };
+    let case = LoadCase::of_subcase(&model, &first, String::new());
     let solved = solve_displacements(&model, &[case], &SolveOptions::default())?;
     Ok((model, solved))
 }
 
-/// Its first subcase solved.
+/// Solves the first subcase of a deck.
 pub fn solve(case_control: &str, bulk: &str) -> (Model, Solved) {
     try_solve(case_control, bulk).unwrap_or_else(|e| panic!("{e}"))
 }
@@ -51,7 +44,7 @@ pub fn at((model, solved): &(Model, Solved), grid: u32) -> [f64; 6] {
     solved.displacements[0][model.grid_ix(grid).unwrap().us()]
 }
 
-/// What the solver refuses, by card.
+/// Returns the cards that the solver refuses.
 pub fn refused(case_control: &str, bulk: &str) -> Vec<String> {
     match try_solve(case_control, bulk) {
         Err(FeError::Refused(list)) => list.into_iter().map(|r| r.card).collect(),

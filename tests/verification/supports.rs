@@ -379,7 +379,7 @@ fn bar_on(springs: &str, rho: &str) -> Bulk {
     b
 }
 
-/// A stiffness far below or above that of the bar counts alike; neither mass nor an SPC set is needed.
+/// A stiffness far below or above that of the bar counts the same; neither mass nor an SPC set is needed.
 #[test]
 fn a_structure_on_springs_to_ground_is_held_by_them() {
     for k in [1e3, 1e6, 1e12] {
@@ -524,7 +524,7 @@ fn stated_relief_of_a_structure_on_springs_is_limited_with_a_warning() {
     assert!(relief_finding(&b.model(), deck, SupportChoice::Deck).is_some());
 }
 
-/// Springs in series through scalar points are springs to ground; a spring between grids, or an idle one, is none.
+/// Springs in series through scalar points are springs to ground; a spring between grids, or an idle spring, is not a spring to ground.
 #[test]
 fn chains_of_scalar_points_reach_ground_and_springs_within_the_structure_do_not() {
     let by = |cards: &str| {

@@ -40,7 +40,7 @@ pub struct Deck {
     pub sol: Option<u32>,
     /// SOL as written.
     pub sol_text: Option<String>,
-    /// Where SOL stands.
+    /// Place of SOL.
     pub sol_at: Place,
     /// The approach that APP states, upper case, such as HEAT.
     pub approach: Option<(String, Place)>,

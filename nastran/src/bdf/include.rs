@@ -21,7 +21,7 @@ pub struct Loaded {
     /// Its bytes.
     pub bytes: Vec<u8>,
     /// Path of another file that the name may stand for, where its contents differ.
-    pub rival: Option<String>,
+    pub differing_path: Option<String>,
 }
 
 /// Reads included files for [`super::read_deck`], which opens none itself.
@@ -59,11 +59,11 @@ impl IncludeRequest {
             if is_absolute(&name) {
                 push(name);
             } else {
-                let mut beside = [&self.first_deck, &self.includer];
+                let mut folders = [&self.first_deck, &self.includer];
                 if !name.contains(['/', '\\']) {
-                    beside.reverse();
+                    folders.reverse();
                 }
-                for file in beside {
+                for file in folders {
                     push(join(file, &name));
                 }
             }
@@ -144,7 +144,7 @@ impl Loader for MemoryLoader {
         let mut found = paths.filter_map(|p| Some((self.files.get(&p)?, p)));
         let (bytes, path) = found.next().ok_or("no such file")?;
         Ok(Loaded {
-            rival: found.find(|other| other.0 != bytes).map(|other| other.1),
+            differing_path: found.find(|other| other.0 != bytes).map(|other| other.1),
             path,
             bytes: bytes.clone(),
         })

@@ -102,7 +102,7 @@ pub(super) struct Orphan {
 }
 
 impl Orphan {
-    /// Its first line.
+    /// Returns the place of the first line.
     pub(super) fn at(&self) -> Option<Place> {
         self.lines.first().map(|s| s.at)
     }

@@ -51,7 +51,7 @@ pub(super) struct Sections<'l> {
     pub chunks: Vec<Chunk>,
     pub faults: Vec<Fault>,
     pub notes: Vec<Note>,
-    /// Where bulk data begins that is kept and not read.
+    /// First lines of bulk data that is kept and not read.
     pub parts: Vec<Note>,
     pub bounds: SectionBounds,
     /// Files being read, outermost first.
@@ -143,11 +143,11 @@ impl Sections<'_> {
         }
     }
 
-    fn note_rival(&mut self, at: Place, loaded: &Loaded) {
-        self.notes.extend(loaded.rival.as_ref().map(|rival| Note {
+    fn note_differing_path(&mut self, at: Place, loaded: &Loaded) {
+        self.notes.extend(loaded.differing_path.as_ref().map(|differing_path| Note {
             at,
             text: format!(
-                "INCLUDE reads `{}`, and not `{rival}`, whose contents differ: delete or rename one of the two",
+                "INCLUDE reads `{}`, and not `{differing_path}`, whose contents differ: delete or rename one of the two",
                 loaded.path
             ),
         }));
@@ -250,7 +250,9 @@ impl Sections<'_> {
         let text = text.trim();
         self.notes.push(Note {
             at,
-            text: format!("`{text}` is kept but not read"),
+            text: format!(
+                "`{text}` begins bulk data that is not read: the model lacks what it defines"
+            ),
         });
         self.parts.push(Note {
             at,
@@ -356,7 +358,7 @@ impl Sections<'_> {
         };
         match self.loader.load(&request) {
             Ok(loaded) => {
-                self.note_rival(place, &loaded);
+                self.note_differing_path(place, &loaded);
                 let ix = match self.by_path.get(&loaded.path) {
                     Some(&ix) => {
                         self.repeated = self.repeated.saturating_add(loaded.bytes.len());

@@ -71,7 +71,7 @@ pub struct Matt1 {
 pub struct MaterialTable {
     /// Table id.
     pub id: u32,
-    /// Which of the four cards, with its parameters.
+    /// Form of the table (one of the four cards), with its parameters.
     pub form: MaterialTableForm,
     /// Words on the first line that ask for something other than straight lines between points; empty if there are none.
     pub options: String,

@@ -119,7 +119,7 @@ impl Header {
         }
     }
 
-    /// The analysis; complex numbers are results of none that is static.
+    /// Returns the analysis. Results in complex numbers are not static.
     pub(super) fn analysis(&self) -> Analysis {
         match (self.analysis, self.complex) {
             (Analysis::Statics, true) => Analysis::Other(0),
@@ -128,7 +128,7 @@ impl Header {
         }
     }
 
-    /// The quantity with plies told apart.
+    /// Returns the quantity, with results of plies as one of their own.
     pub(super) fn quantity(&self) -> Quantity {
         let plies = self
             .element
@@ -141,7 +141,7 @@ impl Header {
     }
 }
 
-/// The analysis whose steps a word names.
+/// Returns the analysis whose steps a word names.
 fn analysis_of(word: &str) -> Option<Analysis> {
     Some(match word {
         "FREQUENCY" => Analysis::Frequency,

@@ -90,7 +90,7 @@ impl Loader for Disk {
                 std::fs::read(&path).ok().map(|bytes| Loaded {
                     path,
                     bytes,
-                    rival: None,
+                    differing_path: None,
                 })
             })
             .ok_or_else(|| "no such file".to_owned())

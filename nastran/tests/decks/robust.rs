@@ -24,7 +24,7 @@ impl Loader for Kept {
                 return Ok(Loaded {
                     path,
                     bytes,
-                    rival: None,
+                    differing_path: None,
                 });
             }
         }

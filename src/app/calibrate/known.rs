@@ -3,7 +3,7 @@
 use super::payloads::{Payloads, add_columns};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::column_unit::{
-    asked_column, column_called, known_column, run_column, take_units, unread_in_runs,
+    asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
 };
 use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
@@ -72,9 +72,7 @@ pub(super) fn read_known(
     let mut headers = take_units(&mut table);
     table.check_rows()?;
     let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
-    if let Some(unread) = unread_in_runs(job, &table, &headers, &names) {
-        work.inputs.note(&table.file, unread.finding(&table.file));
-    }
+    note_unread_runs(&mut work.inputs, job, (&table, &headers), &names);
     let payloads = add_columns(work, (job, runs), &mut table, &mut headers, loads, origin)?;
     let mut faults = FaultList::new();
     let key = run_column(job, &table, &headers)?;

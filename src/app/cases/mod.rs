@@ -224,7 +224,7 @@ fn edits_of(
             Severity::Info,
             "suport-dropped",
             "SUPORT",
-            "SUPORT entries of the deck are left out: inertia relief of the written deck needs none of them, nor does a held structure",
+            "the written deck has no SUPORT entries: neither its inertia relief nor a held structure needs them",
             "",
         ));
     }

@@ -1,6 +1,6 @@
 //! `check`: what is in the files, every fault, and whether deck and results belong together.
 //!
-//! [`kind`] tells files apart by content; [`checked`] is the answer; [`decks`], [`results`] and [`records`] describe them; [`jobs`] follows a job to
+//! [`kind`] finds the kind of a file; [`checked`] is the answer; [`decks`], [`results`] and [`records`] describe them; [`jobs`] follows a job to
 //! the files it names, and [`asked`] asks what commands make of them; [`together`] compares.
 
 mod asked;

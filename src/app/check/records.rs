@@ -1,19 +1,17 @@
-//! Records and tables in `result.json` and in words.
+//! Records and tables in `result.json` and in the text for people.
 
 use crate::app::fault::Faults;
 use crate::app::files::as_table;
 use crate::app::job::strain::record_fault;
 use crate::app::words::short;
 use crate::app::work::Work;
+use crate::finding::few;
 use crate::recovery::clock;
 use crate::series::record::csv::Layout;
 use crate::series::record::{Column, Options, format_of, open_record};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;
-
-/// Channels that are named in words.
-const NAMED: usize = 12;
 
 /// One record, or one table.
 #[derive(Serialize)]
@@ -46,17 +44,13 @@ impl ChannelEntry {
 }
 
 impl RecordEntry {
-    /// For people: one line.
+    /// Returns the entry as one line for people.
     pub fn text(&self) -> String {
         let name = |c: &ChannelEntry| match c.unit.as_str() {
             "" => c.name.clone(),
             unit => format!("{} [{unit}]", c.name),
         };
-        let names: Vec<String> = self.channels.iter().take(NAMED).map(name).collect();
-        let more = match self.channels.len() > NAMED {
-            true => ", ..",
-            false => "",
-        };
+        let names: Vec<String> = self.channels.iter().map(name).collect();
         let n = self.channels.len();
         let (kind, what) = match self.samples {
             Some(_) => ("record", "channel"),
@@ -71,10 +65,10 @@ impl RecordEntry {
             _ => String::new(),
         };
         let line = format!(
-            "{kind} `{}`: {}, {n} {what}{plural} ({}{more}){times}",
+            "{kind} `{}`: {}, {n} {what}{plural} ({}){times}",
             self.path,
             self.format,
-            names.join(", ")
+            few(&names)
         );
         line.replace(char::is_control, " ")
     }

@@ -4,8 +4,9 @@ use super::same_name::{is_same_name, is_same_word};
 use super::suggest;
 use super::table::Table;
 use super::types::{Job, Runs};
-use super::unread::Unread;
+use super::unread::note_unread;
 use crate::app::fault::{Fault, FaultList};
+use crate::app::files::Inputs;
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
 use crate::series::record::{Clash, Column, name_and_unit, take_unit_below};
@@ -35,25 +36,36 @@ pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usiz
     // Last what the row of units makes a label: what stands in brackets is not what that row says.
     let readings: [fn(&Column) -> &str; 3] = [|c| &c.header.whole, |c| &c.name, |c| &c.header.name];
     for reading in readings {
-        let mut holding = columns
-            .iter()
-            .enumerate()
-            .filter(|(_, c)| reading(c) == name);
-        let Some((first, _)) = holding.next() else {
-            continue;
-        };
-        return match holding.next() {
-            None => Ok(Some(first)),
-            Some((_, second)) => Err(Fault::at(
-                &*t.file,
-                1,
-                &*second.header.whole,
-                format!("two columns hold `{name}`"),
-                "leave one of them out, or name it in [runs] columns",
-            )),
-        };
+        let found = sole_column(t, columns, name, |c| reading(c) == name)?;
+        if found.is_some() {
+            return Ok(found);
+        }
     }
     Ok(None)
+}
+
+/// Returns the only column that `is_meant` accepts.
+///
+/// # Errors
+/// Several columns.
+fn sole_column(
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+    is_meant: impl Fn(&Column) -> bool,
+) -> Result<Option<usize>, Fault> {
+    let mut meant = columns.iter().enumerate().filter(|(_, c)| is_meant(c));
+    let first = meant.next();
+    match meant.next() {
+        None => Ok(first.map(|(i, _)| i)),
+        Some((_, second)) => Err(Fault::at(
+            &*t.file,
+            1,
+            &*second.header.whole,
+            format!("two columns hold `{name}`"),
+            "leave one of them out, or name it in [runs] columns",
+        )),
+    }
 }
 
 /// Returns the column of `name` of the job: [`place_of`], else the one column that has this name apart from case and separators and no other
@@ -67,29 +79,26 @@ pub fn column_called(
     columns: &[Column],
     name: &str,
 ) -> Result<Option<usize>, Fault> {
+    column_among(&names_in_runs(job), t, columns, name)
+}
+
+/// Returns the column of `name` among the `names` that columns may have.
+///
+/// # Errors
+/// Several columns.
+fn column_among(
+    names: &[String],
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+) -> Result<Option<usize>, Fault> {
     let exact = place_of(t, columns, name)?;
     if exact.is_some() {
         return Ok(exact);
     }
-    let is_other = |c: &Column| names_in_runs(job).iter().any(|n| is_called(c, n));
+    let is_other = |c: &Column| names.iter().any(|n| is_called(c, n));
     let is_meant = |c: &Column| called(c).iter().any(|n| is_same_word(n, name));
-    let mut holding = columns
-        .iter()
-        .enumerate()
-        .filter(|(_, c)| is_meant(c) && !is_other(c));
-    let Some((first, _)) = holding.next() else {
-        return Ok(None);
-    };
-    match holding.next() {
-        None => Ok(Some(first)),
-        Some((_, second)) => Err(Fault::at(
-            &*t.file,
-            1,
-            &*second.header.whole,
-            format!("two columns hold `{name}`"),
-            "leave one of them out, or name it in [runs] columns",
-        )),
-    }
+    sole_column(t, columns, name, |c| is_meant(c) && !is_other(c))
 }
 
 /// Returns the names that a header may state.
@@ -126,26 +135,25 @@ pub fn names_in_runs(job: &Job) -> Vec<String> {
     out
 }
 
-/// Returns the columns of the runs file that no command reads; `given` are the loads of a given S.
-pub fn unread_in_runs(
+/// Adds a warning that names the columns of the runs file which no command reads; `given` are the loads of a given S.
+pub fn note_unread_runs(
+    inputs: &mut Inputs,
     job: &Job,
-    t: &Table,
-    columns: &[Column],
+    (t, columns): (&Table, &[Column]),
     given: &[String],
-) -> Option<Unread> {
-    let mut names = names_in_runs(job);
+) {
+    let of_job = names_in_runs(job);
+    let mut names = of_job.clone();
     names.extend(given.iter().flat_map(|n| [n.clone(), format!("{n}_sd")]));
     let mut read = vec![false; columns.len()];
     for name in &names {
-        if let Ok(Some(at)) = column_called(job, t, columns, name) {
+        if let Ok(Some(at)) = column_among(&of_job, t, columns, name) {
             read[at] = true;
         }
     }
-    let unread = columns.iter().zip(&read).filter(|(_, read)| !**read);
-    let unread: Vec<&str> = unread.map(|(c, _)| c.header.whole.as_str()).collect();
     let lacking = |n: &&String| !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd");
     let lacking: Vec<&str> = names.iter().filter(lacking).map(String::as_str).collect();
-    Unread::of(&unread, &lacking)
+    note_unread(inputs, t, |c| read[c], &lacking);
 }
 
 /// The column that the job asks for by `name`, at this line and key; a fault where there is none, or several.

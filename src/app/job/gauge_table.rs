@@ -4,8 +4,9 @@ use super::resolve::surface_from;
 use super::same_name::is_same_name;
 use super::suggest;
 use super::table::Table;
-use super::unread::Unread;
+use super::unread::note_unread;
 use crate::app::fault::{Fault, FaultList};
+use crate::app::files::Inputs;
 use crate::series::record::name_and_unit;
 use crate::units::{Quantity, find_unit, unit_names};
 
@@ -91,7 +92,7 @@ pub(super) struct GaugeColumns {
     unread: Vec<usize>,
 }
 
-/// A header as it may be meant: a name, and the unit that it states.
+/// Name and unit that a header may state.
 struct Stated<'a> {
     name: &'a str,
     unit: &'a str,
@@ -131,11 +132,10 @@ impl GaugeColumns {
         names.iter().any(|n| self.column(n).is_some())
     }
 
-    /// Returns the columns that nothing reads.
-    pub fn unread(&self, t: &Table) -> Option<Unread> {
-        let headers: Vec<&str> = self.unread.iter().map(|c| t.header[*c].as_str()).collect();
-        let lacking = self.lacking();
-        Unread::of(&headers, &lacking)
+    /// Adds a warning that names the columns which nothing reads.
+    pub fn note_unread(&self, inputs: &mut Inputs, t: &Table) {
+        let is_read = |c| !self.unread.contains(&c);
+        note_unread(inputs, t, is_read, &self.lacking());
     }
 
     /// Returns the names of columns that the table does not have.

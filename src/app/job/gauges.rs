@@ -35,9 +35,7 @@ pub(super) fn read_gauge_file(
     match table {
         Ok(t) => {
             let columns = GaugeColumns::of(&t, job.units.length_m(), faults);
-            if let Some(unread) = columns.unread(&t) {
-                inputs.note(&t.file, unread.finding(&t.file));
-            }
+            columns.note_unread(inputs, &t);
             let gauges = gauges_from_table(&t, &columns, faults);
             if let Some(finding) = without_direction(job, &t, &columns, &gauges) {
                 inputs.note(&t.file, finding);
@@ -243,7 +241,7 @@ impl Row<'_> {
 /// A location in job units, as a row states it.
 struct Location {
     at: Option<[f64; 3]>,
-    /// From `x`, `y`, `z`: where the gauge sits. `x_m`, `y_m`, `z_m` alone may only describe it.
+    /// Whether the location is stated by `x`, `y`, `z`, which place the gauge. `x_m`, `y_m`, `z_m` alone may describe it only.
     in_job_units: bool,
 }
 

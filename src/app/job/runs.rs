@@ -1,6 +1,6 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::column_unit::{PAYLOAD, known_column, run_column, take_units, unread_in_runs};
+use super::column_unit::{PAYLOAD, known_column, note_unread_runs, run_column, take_units};
 use super::given_columns::columns_of_given;
 use super::quantity::quantity_of_name;
 use super::table::read_table;
@@ -45,9 +45,7 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     let key = run_column(job, &t, &headers)?;
     let mut columns: Vec<(String, usize, (Option<Quantity>, f64))> = Vec::new();
     let given = given_loads(inputs, job)?;
-    if let Some(unread) = unread_in_runs(job, &t, &headers, &given) {
-        inputs.note(&t.file, unread.finding(&t.file));
-    }
+    note_unread_runs(inputs, job, (&t, &headers), &given);
     for (name, quantity) in known_columns(job, &given) {
         let column = known_column(job, runs, &t, &headers, &name, Some(quantity), &mut faults);
         columns.extend(column.map(|c| {
@@ -100,7 +98,7 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
 }
 
 /// Loads of a given S; where the job does not list them, S's own table does.
-fn given_loads(inputs: &mut Inputs, job: &Job) -> Result<Vec<String>, Faults> {
+pub fn given_loads(inputs: &mut Inputs, job: &Job) -> Result<Vec<String>, Faults> {
     let Some(given) = &job.sensitivity else {
         return Ok(Vec::new());
     };

@@ -1,53 +1,52 @@
 //! Columns of a table that nothing reads.
 
 use super::suggest;
-use crate::finding::{Finding, Severity};
+use super::table::Table;
+use crate::app::files::Inputs;
+use crate::finding::{Finding, Severity, few};
 
-/// Columns that a message names at most: a table of runs has fewer, and a record has thousands.
-const NAMED: usize = 20;
-
-/// Columns of a table that nothing reads.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unread {
-    columns: Vec<String>,
-    remedy: String,
+/// Adds a warning that names the columns of a table which `is_read` does not accept. `lacking` are names of columns that the table could have.
+pub fn note_unread(
+    inputs: &mut Inputs,
+    table: &Table,
+    is_read: impl Fn(usize) -> bool,
+    lacking: &[&str],
+) {
+    if let Some(finding) = unread_columns(table, is_read, lacking) {
+        inputs.note(&table.file, finding);
+    }
 }
 
-impl Unread {
-    /// Returns the columns `headers`, which nothing reads; `known` are names that the table could hold and does not. `None` without any.
-    pub fn of(headers: &[&str], known: &[&str]) -> Option<Self> {
-        let headers = headers.iter().filter(|h| !h.is_empty());
-        let columns: Vec<String> = headers.map(|h| (*h).to_owned()).collect();
-        let meant = |column: &String| {
-            let near = suggest::closest(column, known.iter().copied());
-            near.map(|name| format!("`{column}` to `{name}`"))
-        };
-        let renamed: Vec<String> = columns.iter().filter_map(meant).take(NAMED).collect();
-        let remedy = match renamed.is_empty() {
-            true => "drop these columns, or name them as the job does".to_owned(),
-            false => format!("rename {}, or drop the columns", renamed.join(", ")),
-        };
-        (!columns.is_empty()).then_some(Self { columns, remedy })
-    }
-
-    /// Returns the warning that names the columns of `file`.
-    pub fn finding(&self, file: &str) -> Finding {
-        let named: Vec<String> = self.columns.iter().map(|c| format!("`{c}`")).collect();
-        let more = match named.len().saturating_sub(NAMED) {
-            0 => String::new(),
-            n => format!(" and {n} more"),
-        };
-        let list = named.iter().take(NAMED).cloned().collect::<Vec<_>>();
+/// Returns the warning that [`note_unread`] adds; `None` for a table without unread columns.
+pub fn unread_columns(
+    table: &Table,
+    is_read: impl Fn(usize) -> bool,
+    lacking: &[&str],
+) -> Option<Finding> {
+    let columns = table.header.iter().enumerate();
+    let unread = columns.filter(|(c, name)| !name.is_empty() && !is_read(*c));
+    let unread: Vec<&str> = unread.map(|(_, name)| name.as_str()).collect();
+    let renamed = unread.iter().filter_map(|column| {
+        let near = suggest::closest(column, lacking.iter().copied())?;
+        Some(format!("`{column}` to `{near}`"))
+    });
+    let renamed: Vec<String> = renamed.collect();
+    let remedy = match renamed.is_empty() {
+        true => "drop these columns, or name them as the job does".to_owned(),
+        false => format!("rename {}, or drop the columns", few(&renamed)),
+    };
+    let named: Vec<String> = unread.iter().map(|c| format!("`{c}`")).collect();
+    (!named.is_empty()).then(|| {
         Finding::new(
             Severity::Warning,
             "column-not-read",
-            file,
+            &*table.file,
             format!(
-                "no command reads these columns of the table, and they change no result: {}{more}",
-                list.join(", ")
+                "no command reads these columns of the table, and they change no result: {}",
+                few(&named)
             ),
-            &self.remedy,
+            remedy,
         )
         .with_numbers(named.len() as f64, 0.0)
-    }
+    })
 }

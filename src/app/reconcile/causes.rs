@@ -2,7 +2,8 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{asked_column, run_column, take_units, unread_in_runs};
+use crate::app::job::column_unit::{asked_column, note_unread_runs, run_column, take_units};
+use crate::app::job::runs::given_loads;
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
 use crate::app::work::Work;
@@ -128,9 +129,8 @@ fn read(
     let mut t = read_table(&runs.file.given, &text)?;
     let headers = take_units(&mut t);
     t.check_rows()?;
-    if let Some(unread) = unread_in_runs(job, &t, &headers, &[]) {
-        work.inputs.note(&t.file, unread.finding(&t.file));
-    }
+    let given = given_loads(&mut work.inputs, job)?;
+    note_unread_runs(&mut work.inputs, job, (&t, &headers), &given);
     let key = run_column(job, &t, &headers)?;
     let mut faults = FaultList::new();
     let mut causes = Vec::new();

@@ -3,7 +3,7 @@
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
 use crate::app::job::table::{Table, read_table};
-use crate::app::job::unread::Unread;
+use crate::app::job::unread::note_unread;
 use crate::app::job::{Job, NamedFile};
 use std::cell::RefCell;
 
@@ -81,12 +81,7 @@ impl SignatureTable {
     /// Adds a finding that names the columns which were not read.
     pub(super) fn note_unread(&self, inputs: &mut Inputs) {
         let read = self.read.borrow();
-        let unread = self.table.header.iter().zip(&*read).filter(|(_, r)| !**r);
-        let unread: Vec<&str> = unread.map(|(h, _)| h.as_str()).collect();
-        if let Some(unread) = Unread::of(&unread, &[]) {
-            let file = &self.table.file;
-            inputs.note(file, unread.finding(file));
-        }
+        note_unread(inputs, &self.table, |c| read[c], &[]);
     }
 
     /// Does the column exist?

@@ -167,7 +167,7 @@ impl Record {
         self.inner.clock.time_s(sample)
     }
 
-    /// When its samples were taken.
+    /// Returns the times of the samples.
     pub fn clock(&self) -> &Clock {
         &self.inner.clock
     }

@@ -285,19 +285,12 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
     if worst.is_empty() {
         return Vec::new();
     }
-    let more = worst.len().saturating_sub(6);
-    worst.truncate(6);
-    let rest = if more > 0 {
-        format!(" and {more} more")
-    } else {
-        String::new()
-    };
     vec![
         Finding::new(
             Severity::Info,
             "loads-not-in-balance",
             "equilibrium",
-            format!("the recovered forces do not add up to zero: {}{rest}. Under inertia relief acceleration takes the rest", worst.join("; ")),
+            format!("the recovered forces do not add up to zero: {}. Under inertia relief acceleration takes the rest", few(&worst)),
             "at a standstill they must: then a load is missing, or a sign or an `applied` is wrong",
         )
         .with_numbers(largest, 0.1),

@@ -17,7 +17,7 @@ use serde::Serialize;
 /// fewer in several runs.
 const CONTRADICTED: f64 = 3.0;
 
-/// A gauge that no load was estimated from.
+/// Comparison of a gauge, from which no load was estimated, with its prediction.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ValidationGauge {
     /// Gauge.
@@ -176,7 +176,7 @@ pub(super) struct Compared {
 }
 
 impl Compared {
-    /// Adds another part.
+    /// Adds the sums of another part.
     pub fn merge(&mut self, other: &Self) {
         self.sums.resize(other.sums.len(), Differences::default());
         self.loads.resize(other.loads.len(), 0.0);

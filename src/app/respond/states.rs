@@ -2,7 +2,7 @@
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::table::{Table, each_part};
-use crate::app::job::unread::Unread;
+use crate::app::job::unread::unread_columns;
 use crate::app::job::{Job, JobLoad, NamedFile};
 use crate::app::recover::recovered_runs;
 use crate::app::strain::{LoadUnits, Prepared, load_units};
@@ -74,7 +74,7 @@ pub(super) fn from_table(
     let mut before = None;
     each_part(&named.given, &text, PART, &mut |part| {
         let columns = columns.get_or_insert_with(|| {
-            unread = unread_columns(&part, job, &names);
+            unread = unread_loads(&part, job, &names);
             Columns::of(&part, job, &names, &mut faults)
         });
         for row in 0..part.rows.len() {
@@ -86,7 +86,7 @@ pub(super) fn from_table(
         }
     })?;
     if let Some(unread) = unread {
-        work.inputs.note(&named.given, unread.finding(&named.given));
+        work.inputs.note(&named.given, unread);
     }
     Faults::check(faults)?;
     if states.is_empty() {
@@ -129,8 +129,8 @@ pub(super) fn from_table(
     Ok(states)
 }
 
-/// Returns the columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known: they follow from the loads.
-fn unread_columns(t: &Table, job: &Job, names: &[String]) -> Option<Unread> {
+/// Returns the warning of columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known.
+fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
     let key = t.column(&KEYS).unwrap_or(0);
     let sums = job.combinations.iter().map(|c| &c.name);
     let known: Vec<String> = names
@@ -138,11 +138,10 @@ fn unread_columns(t: &Table, job: &Job, names: &[String]) -> Option<Unread> {
         .chain(sums)
         .flat_map(|n| ["", ".low", ".high"].map(|end| format!("{n}{end}")))
         .collect();
-    let header = t.header.iter().enumerate();
-    let unread = header.filter(|(c, h)| *c != key && !known.contains(h));
-    let unread: Vec<&str> = unread.map(|(_, h)| h.as_str()).collect();
+    let is_read = |c: usize| c == key || known.contains(&t.header[c]);
     let lacking = known.iter().filter(|n| !t.header.contains(n));
-    Unread::of(&unread, &lacking.map(String::as_str).collect::<Vec<_>>())
+    let lacking: Vec<&str> = lacking.map(String::as_str).collect();
+    unread_columns(t, is_read, &lacking)
 }
 
 /// Names of the column with the run or the time of a row.

@@ -188,7 +188,7 @@ fn solve_fields(
         ..SolveOptions::default()
     };
     let (mut solved, report) = solve_kept(work, &deck, &cases, options)?;
-    // What is said of a load that nobody asked for is said to nobody.
+    // Findings on loads that the job does not state are dropped.
     let unasked = |c: &LoadCase| format!("subcase {}", c.subcase);
     let unasked: BTreeSet<String> = cases.iter().skip(of_reference).map(unasked).collect();
     solved.findings.retain(|f| !unasked.contains(&f.subject));

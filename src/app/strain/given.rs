@@ -7,7 +7,7 @@ use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::readings::readings_of;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
-use crate::app::job::unread::Unread;
+use crate::app::job::unread::note_unread;
 use crate::app::job::{Job, JobLoad, LoadRole};
 use crate::app::work::Work;
 use crate::linalg::Matrix;
@@ -78,13 +78,10 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     }
     check_wanted(job, given.line, &table, &loads, &mut faults);
     let is_read = |c: usize| c == key || at.iter().any(|a| a.0 == c);
-    let unread = (0..table.header.len()).filter(|c| !is_read(*c));
-    let unread: Vec<&str> = unread.map(|c| table.header[c].as_str()).collect();
     let lacking = job.loads.iter().map(|l| l.name.as_str());
     let lacking = lacking.filter(|n| loads.iter().all(|l| l.name != *n));
-    if let Some(unread) = Unread::of(&unread, &lacking.collect::<Vec<_>>()) {
-        work.inputs.note(&table.file, unread.finding(&table.file));
-    }
+    let lacking: Vec<&str> = lacking.collect();
+    note_unread(&mut work.inputs, &table, is_read, &lacking);
     let names: Vec<String> = table
         .rows
         .iter()

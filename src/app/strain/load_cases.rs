@@ -1,4 +1,4 @@
-//! Which case of the results each load of a job acts in.
+//! Search for the case of the results in which each load of a job acts.
 
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobLoad, NamedFile, Reference};
@@ -9,7 +9,7 @@ use crate::fe::{CaseResult, Solution};
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
 
-/// What takes a subcase of the results.
+/// Load or reference state that takes a subcase of the results.
 struct Taker<'a> {
     line: u32,
     key: &'static str,
@@ -119,10 +119,12 @@ fn check_shared(
             let first = r.files.first().and_then(|(f, _)| names.get(*f));
             let remedy = match taker.key {
                 "load.subcase" => format!(
-                    "name the file that holds the load: result = \"{}\"",
+                    "name the file that contains the load: result = \"{}\"",
                     first.copied().unwrap_or_default()
                 ),
-                _ => "name results in `model.results` of which one alone holds it".to_owned(),
+                _ => {
+                    "name result files in `model.results` of which only one contains it".to_owned()
+                }
             };
             faults.push(taker.fault(job, &r.words(&names), remedy));
         }
@@ -181,7 +183,7 @@ fn without_case(job: &Job, load: &JobLoad, solutions: &[Solution]) -> Fault {
     );
     let remedy = match there.is_empty() {
         true => "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned(),
-        false => format!("state `subcase`; the results hold {}", there.join(", ")),
+        false => format!("state `subcase`; the results contain {}", there.join(", ")),
     };
     Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
 }

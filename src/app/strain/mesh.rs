@@ -13,7 +13,7 @@ use crate::app::job::{Job, Measured};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::work::Work;
 use crate::fe::{CaseResult, ShellField, Solution};
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
 use crate::model::{Model, RefinedModel, ShellIx};
 use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
@@ -41,8 +41,6 @@ const LEFT_IN_PART: f64 = 0.5;
 const LARGE: f64 = 0.05;
 /// Entries of S, beyond which their covariance would take more than 128 MB: the rest of the error is then not weighed.
 const MOST_ENTRIES: usize = 4_000;
-/// Gauges that a finding names.
-const NAMED: usize = 6;
 
 /// The mesh error of a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -295,24 +293,19 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
     large.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
     let worst = large.first()?.1.abs();
     let n = large.len();
-    large.truncate(NAMED);
     let named: Vec<String> = large
         .iter()
         .map(|(g, e)| format!("`{}` {:+.0} % (element {})", g.name, 100.0 * e, g.element))
         .collect();
-    let more = match n - large.len() {
-        0 => String::new(),
-        more => format!(" and {more} more"),
-    };
     Some(
         Finding::new(
             Severity::Warning,
             "mesh-coarse-at-gauges",
             "model",
             format!(
-                "the deck's mesh is too coarse at {n} of {} gauges: it reads {}{more}. This is taken out of S, and {:.0} % of it counts as not known",
+                "the deck's mesh is too coarse at {n} of {} gauges: it reads {}. This is taken out of S, and {:.0} % of it counts as not known",
                 gauges.len(),
-                named.join(", "),
+                few(&named),
                 100.0 * left
             ),
             "refine the deck around these elements, elements half as wide leave a quarter of it; or move the gauges",

@@ -8,7 +8,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
 use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
 use crate::model::{GridIx, Model, Vec3};
-use crate::units::MICROSTRAIN;
+use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
 use nastran::bdf::{MemoryLoader, read_deck};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -111,8 +111,6 @@ const GROUND: f64 = 4.0;
 /// Scatter of gauge factors, 1 sd.
 const GAIN: f64 = 0.002;
 const SEED: u64 = 11;
-const GRAVITY: f64 = 9.806_65;
-const KILO: f64 = 1e3;
 
 /// Drives twelve runs.
 ///
@@ -209,7 +207,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
     });
     for (i, (kilogram, dx)) in RUNS.into_iter().enumerate() {
         let run = format!("R{:02}", i + 1);
-        let weight = kilogram * GRAVITY;
+        let weight = kilogram * STANDARD_GRAVITY_M_S2;
         // Force down, and its moment about the point: d x F.
         let amounts = [-weight, 0.0, weight * dx];
         let heights: Vec<f64> = WHEELS.iter().map(|_| GROUND * normal()).collect();

@@ -1,11 +1,9 @@
 //! Elements and grids that one has and the other lacks.
 
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
 use nastran::results::{Analysis, Block, Quantity, ResultsFile};
 use std::collections::{BTreeMap, BTreeSet};
-
-const IDS_SHOWN: usize = 5;
 
 /// Findings for ids of the file that the model lacks, and for grids and strained shells of the model that the file lacks.
 ///
@@ -37,7 +35,7 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
                 "{} of {} grids of the deck have no displacements in the file: {}",
                 absent.len(),
                 ours_g.len(),
-                some(&absent)
+                few(&absent)
             );
             let remedy =
                 "request DISPLACEMENT = ALL if the deck is the run's deck; else give that deck";
@@ -58,7 +56,7 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
             "{} of {} shells of the deck have no results in the file: {}",
             shells.len(),
             model.shells.len(),
-            some(&shells)
+            few(&shells)
         );
         let remedy =
             "request STRAIN(FIBER) = ALL, or a SET with the elements that may carry gauges";
@@ -144,22 +142,8 @@ fn lacking(
         "{} of {} {what}s with results are not in the deck: {}",
         absent.len(),
         theirs.len(),
-        some(&absent)
+        few(&absent)
     );
     let finding = Finding::new(severity, code, name, message, "give the deck of this run");
     findings.push(finding.with_numbers(absent.len() as f64, 0.0));
-}
-
-/// The first ids of a list, in words.
-fn some(ids: &[u32]) -> String {
-    let mut text = ids
-        .iter()
-        .take(IDS_SHOWN)
-        .map(u32::to_string)
-        .collect::<Vec<_>>()
-        .join(", ");
-    if ids.len() > IDS_SHOWN {
-        text += ", ..";
-    }
-    text
 }

@@ -13,6 +13,7 @@ mod shear_panel;
 pub(crate) mod shell;
 pub(crate) mod solid;
 mod spring;
+mod triangle_points;
 
 pub(crate) use matrix::{ElementMatrix, point_mass};
 pub(crate) use rod::{rod_mass, rod_thermal_force};

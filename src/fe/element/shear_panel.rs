@@ -5,12 +5,7 @@ use crate::fe::error::Refusal;
 use crate::model::{MaterialKind, Model, ShearPanel, Vec3};
 
 fn refuse(panel: &ShearPanel, reason: &str, remedy: &str) -> Refusal {
-    Refusal {
-        card: format!("CSHEAR {}", panel.id),
-        at: panel.at,
-        reason: reason.to_owned(),
-        remedy: remedy.to_owned(),
-    }
+    Refusal::new(format!("CSHEAR {}", panel.id), panel.at, reason, remedy)
 }
 
 /// A panel in its mean plane: x along side 1-2, corner 1 at the origin.

@@ -1,4 +1,4 @@
-//! Which elements a block holds results of.
+//! Kinds of elements in a block of results.
 
 use nastran::results::Block;
 

@@ -28,7 +28,7 @@ pub(super) fn merge(solutions: Vec<Solution>, repeated: &[Repeated]) -> Solution
     all
 }
 
-/// Adds to a case what only the other one has: elements, displacements, a label.
+/// Adds elements, displacements and label to a case that only another case has.
 pub fn complete(case: &mut CaseResult, other: CaseResult) {
     if case.label.is_empty() {
         case.label = other.label;

@@ -10,21 +10,21 @@ const ROUNDINGS: f64 = 4.0;
 /// Share of the largest value of a table up to which two values are one: results of one run on two machines differ by less.
 const SHARE: f64 = 1e-6;
 
-/// What to do where a file holds a subcase more than once.
-pub const HOLD_ONCE: &str = "export results that hold each subcase once; of an optimisation, the design that the deck describes";
+/// Remedy for a file that contains a subcase more than once.
+pub const HOLD_ONCE: &str = "export results that contain each subcase once; of an optimisation, export the design that the deck describes";
 
 /// A subcase that is there more than once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Repeated {
-    /// Its id.
+    /// Id of the subcase.
     pub subcase: u32,
-    /// What differs.
+    /// Quantity whose values differ.
     pub quantity: Quantity,
     /// Number of each file that holds it, with how many times.
     pub files: Vec<(usize, usize)>,
 }
 
-/// What tables have in common whose rows may be compared: subcase, quantity, card of the elements, form, table of vectors.
+/// Key of tables whose rows are comparable: subcase, quantity, card of the elements, form, table of vectors.
 type Key = (u32, Quantity, u32, Option<u8>, String);
 
 /// Returns the static subcases, `wanted` ones or all, whose strain (stress where there is no strain) or displacement is there more than once
@@ -62,7 +62,7 @@ pub fn repeated(files: &[&ResultsFile], wanted: Option<&BTreeSet<u32>>) -> Vec<R
         }
     }
     found.retain(|_, files| !files.is_empty());
-    // The displacements of a subcase whose strain is there twice say nothing more.
+    // One finding is enough for a subcase whose strain and displacements are both repeated.
     let strained = found.keys().filter(|k| k.1 != Quantity::Displacement);
     let strained: BTreeSet<u32> = strained.map(|k| k.0).collect();
     found.retain(|k, _| k.1 != Quantity::Displacement || !strained.contains(&k.0));

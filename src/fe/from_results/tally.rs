@@ -1,6 +1,6 @@
 //! What was met on the way, counted, so that each kind makes one finding.
 
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, LISTED, Severity};
 use std::collections::BTreeMap;
 
 /// What can be met.
@@ -32,13 +32,11 @@ struct Entry {
     measured: Option<(f64, f64)>,
 }
 
-const IDS_SHOWN: usize = 5;
-
 impl Tally {
     pub(super) fn add(&mut self, met: Met, id: u32) {
         let entry = self.0.entry(met).or_default();
         entry.count += 1;
-        if entry.ids.len() < IDS_SHOWN && !entry.ids.contains(&id) {
+        if entry.ids.len() < LISTED && !entry.ids.contains(&id) {
             entry.ids.push(id);
         }
     }
@@ -62,7 +60,7 @@ impl Tally {
             // Subcases usually repeat one another's elements: the largest count says more than the sum.
             ours.count = ours.count.max(theirs.count);
             for id in theirs.ids {
-                if ours.ids.len() < IDS_SHOWN && !ours.ids.contains(&id) {
+                if ours.ids.len() < LISTED && !ours.ids.contains(&id) {
                     ours.ids.push(id);
                 }
             }

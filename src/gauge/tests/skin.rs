@@ -12,7 +12,7 @@ fn flipped(mut m: Model, which: &[usize]) -> Model {
 }
 
 /// Adds the shells of `other`, its grids moved by `by` and not joined to those of `m`.
-fn beside(mut m: Model, other: Model, by: Vec3) -> Model {
+fn with_plate(mut m: Model, other: Model, by: Vec3) -> Model {
     let first = m.grids.len() as u32;
     m.grids.extend(other.grids.into_iter().map(|g| Grid {
         id: g.id + first,
@@ -62,11 +62,11 @@ fn a_position_is_on_the_nearest_skin_whatever_the_offset_and_the_normal() {
 }
 
 #[test]
-fn the_nearest_of_close_plates_is_told_by_their_skins() {
+fn the_nearest_of_close_plates_is_found_by_their_skins() {
     // Plates of 2 mm: skins at -1 and 1, and at 2 and 4 of the second, whose grids are at 8.
     let mut upper = plate(1, 1, 0);
     upper.shells[0].zoffs = -5.0;
-    let m = beside(plate(1, 1, 0), upper, Vec3::z() * 8.0);
+    let m = with_plate(plate(1, 1, 0), upper, Vec3::z() * 8.0);
     for (z, expected) in [
         (-1.0, (1, Surface::Bottom)),
         (1.0, (1, Surface::Top)),
@@ -79,7 +79,7 @@ fn the_nearest_of_close_plates_is_told_by_their_skins() {
     // Two plates on the same grids, one above and one below: their common face belongs to both, and the stated side decides.
     let [mut lower, mut upper] = [plate(1, 1, 0), plate(1, 1, 0)];
     (lower.shells[0].zoffs, upper.shells[0].zoffs) = (-1.0, 1.0);
-    let m = beside(lower, upper, Vec3::zeros());
+    let m = with_plate(lower, upper, Vec3::zeros());
     for (side, element) in [(Surface::Top, 1), (Surface::Bottom, 2)] {
         let spec = GaugeSpec {
             surface: Some(side),
@@ -90,13 +90,13 @@ fn the_nearest_of_close_plates_is_told_by_their_skins() {
 }
 
 #[test]
-fn beside_a_web_the_skin_of_the_flange_is_found() {
+fn next_to_a_web_the_skin_of_the_flange_is_found() {
     // A web in the plane y = 5, its middle surface nearer to the point than that of the flange below it.
     let mut web = plate(1, 1, 0);
     for g in &mut web.grids {
         g.x = Vec3::new(g.x.x, 5.0, g.x.y);
     }
-    let m = beside(plate(1, 1, 0), web, Vec3::zeros());
+    let m = with_plate(plate(1, 1, 0), web, Vec3::zeros());
     assert_eq!(found(&m, &at([4.0, 4.5, 1.0])), (1, Surface::Top));
     // Inside the flange, nearer to a skin of the web than to its own: a place stated on the middle surface is in that plate.
     assert_eq!(found(&m, &at([4.0, 3.5, 0.0])).0, 1);
@@ -286,10 +286,8 @@ fn a_leg_of_a_rosette_can_be_turned_alone() {
     let m = plate(1, 1, 0);
     let case = field(&m, CornerRows::Absent, |_, _| E);
     let spec = GaugeSpec {
-        direction: Some(Vec3::x()),
-        rosette: Some(Rosette::Rectangular),
         leg_turns_rad: [0.0, 0.1, 0.0],
-        ..GaugeSpec::on("R", ShellIx(0))
+        ..rectangular()
     };
     let legs = read(&m, &spec, CornerRows::Absent, &case);
     let turned = std::f64::consts::FRAC_PI_4 + 0.1;
@@ -302,18 +300,7 @@ fn a_grid_on_a_bar_is_no_longer_than_the_straight_bars_along_it() {
     // Three bars of 10 along x and one that turns off.
     let mut m = plate(3, 1, 0);
     for (id, [a, b]) in [[0, 1], [2, 1], [2, 3], [3, 7]].into_iter().enumerate() {
-        m.beams.push(Beam {
-            id: id as u32 + 1,
-            is_beam: false,
-            grids: [GridIx(a), GridIx(b)],
-            property: BeamPropertyIx(0),
-            offsets: [Vec3::zeros(); 2],
-            axes: Mat3::identity(),
-            pins: Default::default(),
-            warping: None,
-            idle_points: false,
-            at: Place::default(),
-        });
+        m.beams.push(bar(id as u32 + 1, [a, b]));
     }
     for (length, fits) in [(6.0, true), (30.0, true), (31.0, false), (1e6, false)] {
         let spec = GaugeSpec {

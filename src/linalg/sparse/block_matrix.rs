@@ -5,7 +5,7 @@ use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
 /// Groups of a task.
-const GROUPS: usize = 4096;
+pub(super) const GROUPS: usize = 4096;
 
 /// Lower triangle of a symmetric matrix by block columns; a block is stored by columns, diagonal blocks in full.
 #[derive(Clone, Debug, Default)]

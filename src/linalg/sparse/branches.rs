@@ -1,7 +1,7 @@
 //! Branches of the elimination tree that have nothing to do with each other, and the top of the tree above them: what can be factored and
 //! substituted side by side.
 
-use super::forest::NONE;
+use super::graph::NONE;
 use super::supernodes::Supernodes;
 use std::ops::Range;
 

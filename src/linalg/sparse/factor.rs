@@ -4,8 +4,8 @@ use super::block_matrix::BlockMatrix;
 use super::branches::Branch;
 use super::eliminate::Tiles;
 use super::error::FactorError;
-use super::forest::NONE;
 use super::front::{Eliminated, Front, MOST_LOST, Spare, Update};
+use super::graph::NONE;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 

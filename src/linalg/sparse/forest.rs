@@ -1,9 +1,6 @@
 //! The elimination tree of an order, its subtrees contiguous, and the size of the factor.
 
-use super::graph::{BlockGraph, inverse};
-
-/// No parent: a root.
-pub(super) const NONE: u32 = u32::MAX;
+use super::graph::{BlockGraph, NONE, inverse};
 
 /// An order in postorder, with its elimination tree.
 #[derive(Debug)]

@@ -1,5 +1,8 @@
 //! The graph of groups of unknowns: who shares an entry of the matrix with whom.
 
+/// No vertex: a root has no parent, and a vertex that no walk has reached has no component.
+pub(super) const NONE: u32 = u32::MAX;
+
 /// An undirected graph, both directions stored, no loops, neighbours ascending.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct BlockGraph {
@@ -71,7 +74,6 @@ impl BlockGraph {
 
     /// Component number of every vertex, and how many components there are.
     pub fn components(&self) -> (Vec<u32>, usize) {
-        const NONE: u32 = u32::MAX;
         let mut of = vec![NONE; self.n()];
         let mut count = 0;
         let mut stack = Vec::new();

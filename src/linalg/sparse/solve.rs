@@ -2,15 +2,13 @@
 //!
 //! Right-hand sides are kept row by row (all values of an unknown side by side) in elimination order.
 
+use super::block_matrix::GROUPS;
 use super::factor::Factor;
 use rayon::prelude::*;
 use std::ops::Range;
 
 /// Right-hand sides substituted together: the factor is read once for all of them, and a row of them stays in registers.
 const TOGETHER: usize = 12;
-
-/// Groups that a task brings into elimination order.
-const GROUPS: usize = 4096;
 
 /// How well a solution satisfies its equation: Nastran's epsilon before and after refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,8 @@
 //! # Reference
 //! C. Ashcraft, R. Grimes, The influence of relaxed supernode partitions on the multifrontal method, ACM Trans. Math. Softw. 15 (1989) 291.
 
-use super::forest::{EliminationForest, NONE};
+use super::forest::EliminationForest;
+use super::graph::NONE;
 use super::graph::{BlockGraph, inverse};
 use std::ops::Range;
 

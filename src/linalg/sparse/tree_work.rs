@@ -2,7 +2,7 @@
 
 use super::branches::work;
 use super::eliminate::longest_chain;
-use super::forest::NONE;
+use super::graph::NONE;
 use super::symbolic::Symbolic;
 
 /// Multiplications of a factorisation.

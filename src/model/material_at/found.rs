@@ -1,4 +1,4 @@
-//! What is refused, or wrong, with temperature dependent materials.
+//! Refused cards and faults of temperature dependent materials.
 
 use crate::model::fault::ModelFault;
 use crate::model::types::UnsupportedCard;

@@ -1,4 +1,4 @@
-//! Which temperatures case control selects for materials.
+//! Temperatures that case control selects for materials.
 
 use super::found::Found;
 use crate::model::fault::{FaultKind, ModelFault};

@@ -75,7 +75,7 @@ pub struct BeamProperty {
     pub k: [f64; 2],
     /// Section type of PBARL and PBEAML, empty for numbers.
     pub section_type: String,
-    /// Centroid of a PBARL section, (y, z) from its shear centre, which the element axis of a CBAR does not tell apart; zero for others.
+    /// Centroid of a PBARL section, (y, z) from its shear centre; zero for other cards. The element axis of a CBAR is both.
     pub bar_centroid: [f64; 2],
     /// Warping constant CW at A and B (integral omega^2 dA); it counts for elements with warping points.
     pub warping: [f64; 2],

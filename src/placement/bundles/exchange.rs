@@ -3,9 +3,8 @@
 use super::relaxation::Relaxed;
 use super::set::{BundleSpec, Bundles, CENT, fits};
 use crate::linalg::spd;
+use crate::placement::coordinate_exchange::LEAST_GAIN;
 
-/// Gain in the criterion under which an exchange is rounding error.
-const LEAST_GAIN: f64 = 1e-9;
 /// Of the candidates of an exchange, those judged exactly.
 const JUDGED: usize = 24;
 

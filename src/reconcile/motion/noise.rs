@@ -5,6 +5,9 @@ use super::frame::MotionFrame;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
+/// Noise of a channel without a declared noise, as a share of its root mean square: no weight is then divided by zero.
+pub(super) const UNDECLARED: f64 = 1e-4;
+
 /// Power of what no effect explains, by equation and band of frequencies, on top of sensor noise.
 #[derive(Clone, Debug, Default)]
 pub struct Background {
@@ -36,8 +39,6 @@ pub fn covariance(
     responses: &[Vec<Vec<Complex64>>],
     background: &Background,
 ) -> Vec<Vec<Complex64>> {
-    /// Where no noise is declared: a ten-thousandth of each channel's power, so that nothing is divided by zero.
-    const UNDECLARED: f64 = 1e-4;
     let n = design.equations.len();
     let powers: Vec<f64> = design
         .channels

@@ -173,8 +173,8 @@ fn finding(f: &Finding) -> Markup {
     html! {
         div class=(class) {
             b { (word) } " · " (f.subject) ": " (f.message.trim_end_matches('.')) "."
-            @if let Some(m) = f.measured {
-                small { " Measured " (number(m)) @if let Some(l) = f.limit { ", limit " (number(l)) } "." }
+            @if let Some((m, limit)) = f.shown_numbers() {
+                small { " Measured " (number(m)) @if let Some(l) = limit { ", limit " (number(l)) } "." }
             }
             @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy.trim_end_matches('.')) "." } } }
         }

@@ -62,10 +62,10 @@ fn finding(f: &Finding) -> Value {
         Severity::Warning => ("Warning", "#d68910"),
         Severity::Info => ("Note", "#5d7f9e"),
     };
-    let numbers = match (f.measured, f.limit) {
-        (Some(m), Some(l)) => format!("Measured {}, limit {}.", number(m), number(l)),
-        (Some(m), None) => format!("Measured {}.", number(m)),
-        _ => String::new(),
+    let numbers = match f.shown_numbers() {
+        Some((m, Some(l))) => format!("Measured {}, limit {}.", number(m), number(l)),
+        Some((m, None)) => format!("Measured {}.", number(m)),
+        None => String::new(),
     };
     json!({
         "word": word,

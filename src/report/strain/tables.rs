@@ -79,7 +79,7 @@ pub(in crate::report) fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32,
         .collect()
 }
 
-/// What the technician takes to the structure, as CSV. The axis has all digits: a job that names this table as its gauges reads the same S.
+/// Writes the table that the technician takes to the structure. The axis has all digits: a job that names this table as its gauges reads the same S.
 ///
 /// # Errors
 /// What `out` says.

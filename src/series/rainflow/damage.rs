@@ -1,11 +1,10 @@
 //! Pseudo-damage of counted cycles.
 
 use super::count::Cycle;
+use super::interval::NORMAL_95;
 
 /// Ranges are counted in this many bins.
 const BINS: usize = 64;
-/// Half width of a 95 % interval over one standard deviation.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Cycles of ranges between two limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -37,7 +37,7 @@ pub struct RateChange {
 }
 
 impl RateChange {
-    /// When, and from what to what, in words.
+    /// Returns the time of the change and both rates in words.
     pub fn words(&self) -> String {
         let rounded = |x: f64, parts: f64| (x * parts).round() / parts;
         let [from, to] = self.rates_hz.map(|r| rounded(r, 1e4));
@@ -84,7 +84,7 @@ pub struct Clock {
     pub n_gaps: usize,
     /// Absolute time of the first sample, s since 1970, where the file has it.
     pub epoch_s: Option<f64>,
-    /// What the stored times count, where the file does not state it and their size shows it.
+    /// Unit of the stored times, recognised by their size; `None` where the file states it or their size does not show it.
     pub unit: Option<TimeUnit>,
 }
 

@@ -1,5 +1,6 @@
 //! What a channel is called and what its numbers are in: headers such as `P01 [um/m]`, rows of units below them, units of a whole file.
 
+use super::time_unit::DAY;
 use crate::units::{Quantity, find_unit, microstrain_in};
 
 /// A channel of a file.
@@ -256,7 +257,7 @@ pub fn seconds_in(unit: &str) -> Option<f64> {
         "ns" | "nanoseconds" => Some(1e-9),
         "min" | "minutes" => Some(60.0),
         "h" | "hours" => Some(3600.0),
-        "d" | "day" | "days" => Some(86_400.0),
+        "d" | "day" | "days" => Some(DAY),
         _ => None,
     }
 }

@@ -18,7 +18,7 @@ use std::ops::ControlFlow;
 pub struct Options {
     /// Its sample rate as stated elsewhere, Hz: needed where the file has no times, else held against them.
     pub declared_hz: Option<f64>,
-    /// Seconds in one of its times, where the file states no unit of them.
+    /// Seconds in one stored time, for a file that states no unit of time.
     pub time_unit_s: Option<f64>,
     /// Channels that must be among those sampled together, where a file holds several clocks; none: those of the group with most
     /// numbers.

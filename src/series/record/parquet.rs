@@ -9,6 +9,7 @@ use super::rows::{Shared, Strips};
 use super::source::Source;
 use super::strip::{Strip, broken, texts};
 use super::tile::Tile;
+use super::time_unit::single_rounding_s;
 use crate::series::error::SeriesError;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
 use parquet::column::reader::{ColumnReader, get_column_reader};
@@ -198,12 +199,11 @@ impl Parquet {
             kind == Kind::FLOAT,
         );
         self.times = Times::Stored {
-            // A stored unit is rounded to a half; seconds since 1970 in 64 bits are good to a quarter of a microsecond; a real of 32
-            // bits to 2^-24 of itself, of which the end of a day's record is taken.
+            // A stored unit is rounded to a half; seconds since 1970 in 64 bits are good to a quarter of a microsecond.
             rounding_s: match (instant, integers, reals) {
                 (true, ..) => 0.5 * factor + 2.5e-7,
                 (false, true, _) => 0.5 * factor,
-                (false, _, true) => 86_400.0 * 6e-8 * factor,
+                (false, _, true) => single_rounding_s(factor),
                 _ => 0.0,
             },
             epoch_s: instant.then_some(self.epoch),

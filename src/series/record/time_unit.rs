@@ -1,4 +1,4 @@
-//! What the numbers of a column of time count, where the file does not state it.
+//! Units of times, recognised by the size of the numbers where the file states none.
 
 /// Rates of records, Hz: without a stated unit of time a rate outside of this range is doubtful.
 pub const USUAL_RATES_HZ: [f64; 2] = [0.2, 1e5];
@@ -16,7 +16,7 @@ pub(super) const DAY: f64 = 86_400.0;
 /// Intervals of slow loggers, s.
 const SLOW_S: [f64; 5] = [10.0, 15.0, 20.0, 30.0, 60.0];
 
-/// What a number of time counts, recognised by its size.
+/// Unit of a column of times, recognised by its size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TimeUnit {
     /// Days of a spreadsheet.
@@ -83,6 +83,11 @@ impl TimeUnit {
             Self::EpochNanoseconds => "nanoseconds since 1970",
         }
     }
+}
+
+/// Returns the rounding, s, of times in reals of 32 bits, of which one counts `second` seconds: 2^-24 of the last time of a day's record.
+pub(super) fn single_rounding_s(second: f64) -> f64 {
+    DAY * 6e-8 * second.abs()
 }
 
 /// Whether a rate, Hz, is one of records.

@@ -15,7 +15,7 @@ struct Timed {
     origin: f64,
     /// Seconds in one stored time.
     second: f64,
-    /// Seconds that each piece begins later by than its times of day state; empty where times are not those of a day.
+    /// Seconds to add to the times of day of each piece; empty for other times.
     later_s: Vec<f64>,
     times: Times,
 }

@@ -3,7 +3,7 @@
 use super::span::EVEN;
 use crate::series::error::SeriesError;
 
-/// When the samples of a channel were taken.
+/// Times of the samples of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sampling {
     /// Time of the first sample, s.

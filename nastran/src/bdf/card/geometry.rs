@@ -70,26 +70,17 @@ pub(super) fn cord2(f: &mut Fields) -> Coord {
     }
 }
 
-/// A card holds up to two systems.
-pub(super) fn cord1(f: &mut Fields, cards: &mut Cards) {
-    for first in [0, 4] {
-        if first > 0 && (first..first + 4).all(|i| f.is_blank(i)) {
-            break;
-        }
-        f.unusable = false;
-        let id = f.id(first, "CID");
-        let grids = [
-            f.id(first + 1, "G1"),
-            f.id(first + 2, "G2"),
-            f.id(first + 3, "G3"),
-        ];
-        if !f.unusable {
-            let card = Coord {
-                id,
-                kind: kind(f.name),
-                definition: CoordDefinition::Grids(grids),
-            };
-            cards.coords.push(Placed { card, at: f.at });
-        }
+/// Reads the system of a CORD1R, CORD1C or CORD1S that begins at field `first`.
+pub(super) fn cord1(f: &mut Fields, first: usize) -> Coord {
+    let id = f.id(first, "CID");
+    let grids = [
+        f.id(first + 1, "G1"),
+        f.id(first + 2, "G2"),
+        f.id(first + 3, "G3"),
+    ];
+    Coord {
+        id,
+        kind: kind(f.name),
+        definition: CoordDefinition::Grids(grids),
     }
 }

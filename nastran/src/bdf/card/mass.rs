@@ -53,20 +53,11 @@ pub(super) fn mass_of_points(f: &mut Fields) -> ScalarMass {
     }
 }
 
-/// Reads the up to four properties of a PMASS.
-pub(super) fn pmass(f: &mut Fields, cards: &mut Cards) {
-    for first in [0, 2, 4, 6] {
-        if first > 0 && f.is_blank(first) {
-            continue;
-        }
-        f.unusable = false;
-        let card = Pmass {
-            id: f.id(first, "PID"),
-            mass: f.real_or(first + 1, "M", 0.0),
-        };
-        if !f.unusable {
-            cards.pmasses.push(Placed { card, at: f.at });
-        }
+/// Reads the property of a PMASS that begins at field `first`.
+pub(super) fn pmass(f: &mut Fields, first: usize) -> Pmass {
+    Pmass {
+        id: f.id(first, "PID"),
+        mass: f.real_or(first + 1, "M", 0.0),
     }
 }
 

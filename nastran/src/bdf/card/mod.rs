@@ -32,7 +32,9 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"GRID" => keep(&mut cards.grids, f, geometry::grid),
         b"GRDSET" => keep_one(&mut cards.grdset, f, geometry::grdset),
         b"CORD2R" | b"CORD2C" | b"CORD2S" => keep(&mut cards.coords, f, geometry::cord2),
-        b"CORD1R" | b"CORD1C" | b"CORD1S" => geometry::cord1(f, cards),
+        b"CORD1R" | b"CORD1C" | b"CORD1S" => {
+            keep_several(&mut cards.coords, f, (2, 4), geometry::cord1)
+        }
         b"SPOINT" => geometry::spoint(f, cards),
         b"CQUAD4" | b"CQUADR" | b"CQUAD8" | b"CTRIA3" | b"CTRIAR" | b"CTRIA6" => {
             keep(&mut cards.shells, f, shell::shell)
@@ -54,7 +56,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"CTETRA" | b"CPENTA" | b"CHEXA" | b"CPYRAM" => keep(&mut cards.solids, f, solid::solid),
         b"CMASS1" | b"CMASS2" => keep(&mut cards.scalar_masses, f, mass::scalar_mass),
         b"CMASS3" | b"CMASS4" => keep(&mut cards.scalar_masses, f, mass::mass_of_points),
-        b"PMASS" => mass::pmass(f, cards),
+        b"PMASS" => keep_several(&mut cards.pmasses, f, (4, 2), mass::pmass),
         b"CONM1" => keep(&mut cards.conm1s, f, mass::conm1),
         b"CONM2" => keep(&mut cards.conm2s, f, mass::conm2),
         b"NSM" | b"NSM1" | b"NSML" | b"NSML1" => mass::nonstructural(f, cards),
@@ -83,7 +85,7 @@ pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
         b"PROD" => keep(&mut cards.prods, f, property::prod),
         b"PTUBE" => keep(&mut cards.ptubes, f, property::ptube),
         b"PBUSH" => keep(&mut cards.pbushes, f, springs::pbush),
-        b"PELAS" => springs::pelas(f, cards),
+        b"PELAS" => keep_several(&mut cards.pelas, f, (2, 4), springs::pelas),
         b"PWELD" => keep(&mut cards.pwelds, f, connector::pweld),
         b"PFAST" => keep(&mut cards.pfasts, f, connector::pfast),
         b"PGAP" => keep(&mut cards.pgaps, f, connector::pgap),
@@ -125,6 +127,22 @@ fn keep<T>(list: &mut Vec<Placed<T>>, f: &mut Fields, read: impl FnOnce(&mut Fie
     let card = read(f);
     if !f.unusable {
         list.push(Placed { card, at: f.at });
+    }
+}
+
+/// Adds the entries of a card that has several, each in `width` fields. Entries of blank fields are left out, the first one excepted.
+fn keep_several<T>(
+    list: &mut Vec<Placed<T>>,
+    f: &mut Fields,
+    (most, width): (usize, usize),
+    read: impl Fn(&mut Fields, usize) -> T,
+) {
+    for first in (0..most * width).step_by(width) {
+        if first > 0 && (first..first + width).all(|i| f.is_blank(i)) {
+            continue;
+        }
+        f.unusable = false;
+        keep(list, f, |f| read(f, first));
     }
 }
 

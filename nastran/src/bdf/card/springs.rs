@@ -3,8 +3,7 @@
 use super::super::fault::Wrong;
 use super::super::fields::Fields;
 use super::line::orientation;
-use crate::cards::{Bush, Cards, Pbush, Pelas, Spring, SpringStiffness};
-use crate::place::Placed;
+use crate::cards::{Bush, Pbush, Pelas, Spring, SpringStiffness};
 
 pub(super) fn bush(f: &mut Fields) -> Bush {
     Bush {
@@ -125,21 +124,12 @@ pub(super) fn pbush(f: &mut Fields) -> Pbush {
     p
 }
 
-/// A card holds up to two properties.
-pub(super) fn pelas(f: &mut Fields, cards: &mut Cards) {
-    for first in [0, 4] {
-        if first > 0 && f.is_blank(first) {
-            break;
-        }
-        f.unusable = false;
-        let card = Pelas {
-            id: f.id(first, "PID"),
-            k: f.real_or(first + 1, "K", 0.0),
-            ge: f.real_or(first + 2, "GE", 0.0),
-            s: f.real_or(first + 3, "S", 0.0),
-        };
-        if !f.unusable {
-            cards.pelas.push(Placed { card, at: f.at });
-        }
+/// Reads the property of a PELAS that begins at field `first`.
+pub(super) fn pelas(f: &mut Fields, first: usize) -> Pelas {
+    Pelas {
+        id: f.id(first, "PID"),
+        k: f.real_or(first + 1, "K", 0.0),
+        ge: f.real_or(first + 2, "GE", 0.0),
+        s: f.real_or(first + 3, "S", 0.0),
     }
 }

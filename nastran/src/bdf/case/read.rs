@@ -99,7 +99,7 @@ fn subcase_kind(name: &str) -> Option<SubcaseKind> {
     })
 }
 
-/// Requests whose selection says for which grids and elements results are to be expected.
+/// Requests whose selection lists the grids and elements with results.
 const READ_REQUESTS: [&str; 4] = ["DISPLACEMENT", "STRAIN", "STRESS", "FORCE"];
 
 const WANTED_SELECTION: &str = "ALL, NONE, a set number or a list of ids is needed";

@@ -117,13 +117,13 @@ impl Set {
     }
 }
 
-/// A SET as far as it is read.
+/// State of the reader of a SET.
 #[derive(Default)]
 struct SetReader {
     items: Vec<SetItem>,
     /// The words are behind EXCEPT.
     excepting: bool,
-    /// The ids are of grids that are drawn with the elements, which say nothing of elements.
+    /// Whether the ids are of grids that are plotted with the elements, and not of elements.
     of_grids: bool,
 }
 
@@ -146,6 +146,7 @@ impl SetReader {
             Some(SetItem::Thru { last, except, .. }) if self.excepting && id <= *last => {
                 except.push(id);
             }
+            Some(SetItem::One(_)) | None if self.excepting => return Err("EXCEPT".to_owned()),
             Some(SetItem::One(_) | SetItem::Thru { .. }) | None => {
                 self.excepting = false;
                 self.items.push(SetItem::One(id));

@@ -265,6 +265,9 @@ fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
         "TABLEM3,9,1.,0.\n,0.,1.,1.,2.,ENDT\n",
         "ACCEL,5,,1.,0.,0.,W\n,1.,2.\n",
         "ACCEL1,5,,1.,1.,0.,0.\n",
+        // A value whose entry has no id.
+        "PMASS,7,1.,,2.\n",
+        "PELAS,7,1.,,,,2.\n",
     ] {
         assert_eq!(super::bulk(wrong).faults.len(), 1, "{wrong}");
     }

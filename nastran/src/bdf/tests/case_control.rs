@@ -174,3 +174,12 @@ fn sets_list_types_of_elements_and_exceptions() {
     assert!(has(4, 1, "CSHEAR") && has(4, 5, "CBAR") && !has(4, 6, "CBAR"));
     assert!(has(10, 8, "CBAR") && !has(10, 7, "CBAR"));
 }
+
+#[test]
+fn an_exception_from_single_ids_is_refused() {
+    // EXCEPT follows a range, ALL or types.
+    for items in ["1, 2, 3 EXCEPT 2", "EXCEPT 2"] {
+        let deck = bulk(&format!("SOL 101\nCEND\nSET 1 = {items}\nBEGIN BULK\n"));
+        assert_eq!(shown(&deck).len(), 1, "{items}");
+    }
+}

@@ -48,7 +48,8 @@ fn include_names_are_quoted_or_not_and_may_take_two_lines() {
 }
 
 #[test]
-fn a_bare_name_is_looked_for_beside_the_including_file_and_a_path_beside_the_first_deck() {
+fn a_bare_name_is_looked_for_in_the_folder_of_the_including_file_and_a_path_in_that_of_the_first_deck()
+ {
     let files = [
         (
             "jobs/run/sub/one.inc",

@@ -1,7 +1,7 @@
 use super::super::vocabulary::{Effect, all_cards, case_word, effect_of_card};
 use super::{bulk, clean, shown};
 
-/// Only names that the table calls carried have a struct.
+/// Names with a struct are those that the table calls carried.
 #[test]
 fn names_that_are_not_carried_have_no_struct() {
     for (name, effect) in all_cards().filter(|c| c.1 != Effect::Carried) {

@@ -1,31 +1,31 @@
-//! What a name does in linear statics, mass and modes.
+//! Effects of names on linear statics, mass and modes.
 
 /// Effect of a name on linear statics, mass and modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     /// The readers of this program carry it.
     Carried,
-    /// An output request that is read.
+    /// Output request that is read.
     Request,
-    /// It changes none of them, for this reason.
+    /// No influence, for this reason.
     None(&'static str),
-    /// It acts wherever it is in the deck, and is not carried.
+    /// Acts wherever the deck has it, and is not carried.
     Acts,
-    /// A load that is not carried; its first field is its set, and it acts where the set is selected.
+    /// Load that is not carried and acts where its set, the first field, is selected.
     Load,
-    /// It acts where this word of case control is stated, or with what is named here, and is not carried.
+    /// Acts together with this word of case control, or with these cards, and is not carried.
     ActsWith(&'static str),
-    /// A statement of executive control, above CEND.
+    /// Statement of executive control, above CEND.
     Executive,
 }
 
 /// A word of case control as Nastran reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaseWord {
-    /// Its full name; synonyms have one name.
+    /// Full name of the word; synonyms have one name.
     pub name: &'static str,
-    /// What it does.
+    /// Effect of the word.
     pub effect: Effect,
-    /// It is no abbreviation of the full name: its first four letters decide.
+    /// Whether the word is not an abbreviation of the full name and was found by its first four letters.
     pub misspelt: bool,
 }

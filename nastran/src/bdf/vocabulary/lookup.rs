@@ -29,8 +29,8 @@ pub fn case_word(word: &str) -> Option<CaseWord> {
     if let Some(e) = abbreviated.min_by_key(|e| preference(e.effect)) {
         return Some(of(e, false));
     }
-    let alike = words.iter().filter(|e| e.written.starts_with(head));
-    let e = alike.min_by_key(|e| spelling::distance(e.written, word))?;
+    let of_head = words.iter().filter(|e| e.written.starts_with(head));
+    let e = of_head.min_by_key(|e| spelling::distance(e.written, word))?;
     Some(of(e, true))
 }
 
@@ -70,7 +70,7 @@ pub fn all_words() -> impl Iterator<Item = (&'static str, CaseWord)> {
 /// Shortest abbreviation of a word of case control.
 const ABBREVIATION: usize = 4;
 
-/// Which of several words an abbreviation means: one that is carried, then one that acts.
+/// Returns the rank of a word among several that an abbreviation may mean: carried words come first, then words that act.
 fn preference(effect: Effect) -> u8 {
     match effect {
         Effect::Carried | Effect::Request => 0,

@@ -1,4 +1,4 @@
-//! What every name of bulk data and every word of case control does in linear statics, mass and modes.
+//! Tables of every name of bulk data and every word of case control with its effect on linear statics, mass and modes.
 
 mod effect;
 mod lookup;

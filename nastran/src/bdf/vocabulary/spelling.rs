@@ -1,4 +1,4 @@
-//! Which known name is nearest to a misspelt one.
+//! Search for the known name nearest to a misspelt one.
 
 /// Returns the known name that one letter more, less, other or exchanged with its neighbour makes of `word`: of several the one with the
 /// longest common beginning, then the shortest.
@@ -10,7 +10,7 @@ pub(super) fn nearest(
     near.min_by_key(|k| (std::cmp::Reverse(common(k, word)), k.len()))
 }
 
-/// How many letters two words share at their beginning.
+/// Returns the number of letters that two words share at their beginning.
 fn common(a: &str, b: &str) -> usize {
     a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count()
 }

@@ -9,7 +9,7 @@ pub(super) struct Entry {
     pub written: &'static str,
     /// The name that it stands for.
     pub name: &'static str,
-    /// What it does.
+    /// Effect of the name.
     pub effect: Effect,
 }
 

@@ -153,7 +153,7 @@ pub(super) fn celas2(f: &mut Fields<'_>) -> Option<Spring> {
     })
 }
 
-/// Two grids, then a component of each.
+/// Reads two grids, then a component of each.
 pub(super) fn ends(f: &mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]> {
     let grids = [f.blank_or_id()?, f.blank_or_id()?];
     let mut ends = [None; 2];

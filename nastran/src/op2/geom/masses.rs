@@ -26,43 +26,48 @@ pub(super) fn conm2(f: &mut Fields<'_>) -> Option<Conm2> {
     })
 }
 
-/// CMASS1: `eid pid g1 g2 c1 c2`.
+/// Reads CMASS1: `eid pid g1 g2 c1 c2`.
 pub(super) fn cmass1(f: &mut Fields<'_>) -> Option<ScalarMass> {
-    Some(ScalarMass {
-        id: f.id()?,
-        mass: ScalarMassValue::Property(Some(f.id()?)),
-        ends: ends(f)?,
-    })
+    mass(f, property, ends)
 }
 
-/// CMASS2: `eid m g1 g2 c1 c2`.
+/// Reads CMASS2: `eid m g1 g2 c1 c2`.
 pub(super) fn cmass2(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    mass(f, value, ends)
+}
+
+/// Reads CMASS3: `eid pid s1 s2`.
+pub(super) fn cmass3(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    mass(f, property, points)
+}
+
+/// Reads CMASS4: `eid m s1 s2`.
+pub(super) fn cmass4(f: &mut Fields<'_>) -> Option<ScalarMass> {
+    mass(f, value, points)
+}
+
+/// Reads the id of a scalar mass, then its value or property as `value` does, and its ends as `ends` does.
+fn mass(
+    f: &mut Fields<'_>,
+    value: fn(&mut Fields<'_>) -> Option<ScalarMassValue>,
+    ends: fn(&mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]>,
+) -> Option<ScalarMass> {
     Some(ScalarMass {
         id: f.id()?,
-        mass: ScalarMassValue::Direct(f.real()?),
+        mass: value(f)?,
         ends: ends(f)?,
     })
 }
 
-/// CMASS3: `eid pid s1 s2`.
-pub(super) fn cmass3(f: &mut Fields<'_>) -> Option<ScalarMass> {
-    Some(ScalarMass {
-        id: f.id()?,
-        mass: ScalarMassValue::Property(Some(f.id()?)),
-        ends: points(f)?,
-    })
+fn property(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
+    Some(ScalarMassValue::Property(Some(f.id()?)))
 }
 
-/// CMASS4: `eid m s1 s2`.
-pub(super) fn cmass4(f: &mut Fields<'_>) -> Option<ScalarMass> {
-    Some(ScalarMass {
-        id: f.id()?,
-        mass: ScalarMassValue::Direct(f.real()?),
-        ends: points(f)?,
-    })
+fn value(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
+    Some(ScalarMassValue::Direct(f.real()?))
 }
 
-/// Two scalar points; 0 is ground.
+/// Reads two scalar points; 0 is ground.
 fn points(f: &mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]> {
     let points = [f.blank_or_id()?, f.blank_or_id()?];
     Some(points.map(|p| p.map(|p| (p, 0))))

@@ -41,7 +41,7 @@ pub(crate) fn surface_from(word: &str) -> Option<Surface> {
     from(word, &SURFACES)
 }
 
-/// A wiring by its name; `full` and `half` mean bending.
+/// Returns a wiring by its name; `full` and `half` mean bending.
 pub(crate) fn bridge_from(name: &str) -> Option<Bridge> {
     match name {
         "full" => Some(Bridge::FullBending),

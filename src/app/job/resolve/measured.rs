@@ -11,17 +11,9 @@ use super::placement::DEFAULT_NOISE_MICROSTRAIN;
 use super::units::{stated, units};
 use crate::payload::Place;
 use crate::reconcile::strain::WheelForces;
+use crate::series::record::seconds_in;
 use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
 
-/// Units of time with the seconds in one.
-const TIME_UNITS: [(&str, f64); 6] = [
-    ("s", 1.0),
-    ("ms", 1e-3),
-    ("us", 1e-6),
-    ("min", 60.0),
-    ("h", 3600.0),
-    ("d", 86_400.0),
-];
 /// Elements that `respond` reports where the job says nothing.
 const DEFAULT_HOTTEST: usize = 20;
 /// Power of the load range in pseudo-damage where the job says nothing: usual for welded and cast parts of vehicles.
@@ -108,10 +100,11 @@ pub(super) fn measured(
             .at_least_zero(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
             .unwrap_or(0.0),
         hold_out,
-        time_unit_s: raw
-            .time_unit
-            .as_ref()
-            .and_then(|word| c.choose_at(word, "measured.time_unit", &TIME_UNITS)),
+        time_unit_s: raw.time_unit.as_ref().and_then(|word| {
+            let units = ["s", "ms", "us", "min", "h", "d"];
+            let units = units.map(|unit| (unit, seconds_in(unit).unwrap_or(1.0)));
+            c.choose_at(word, "measured.time_unit", &units)
+        }),
         line: c.line(section),
     })
 }

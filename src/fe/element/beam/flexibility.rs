@@ -51,18 +51,22 @@ pub(crate) fn section_at(sections: &[(f64, Section)], xi: f64) -> Section {
     }
 }
 
+/// Returns the largest of the area, and of second moments and torsion constant over the squared length `l2`.
+fn largest_of(s: &Section, l2: f64) -> f64 {
+    s.area
+        .max(s.i1 / l2)
+        .max(s.i2 / l2)
+        .max(s.j / l2)
+        .max(f64::MIN_POSITIVE)
+}
+
 /// Compliance of a section for N, My, Mz about the reference line: strain of the line, curvatures d(theta_y)/dx, d(theta_z)/dx.
 ///
 /// Strain at (y, z) is e0 + z ky - y kz.
 pub(super) fn compliance(s: &Section, e: f64, length: f64) -> Matrix3<f64> {
     let tiny = ALMOST_NOTHING;
     let l2 = length * length;
-    let largest = s
-        .area
-        .max(s.i1 / l2)
-        .max(s.i2 / l2)
-        .max(s.j / l2)
-        .max(f64::MIN_POSITIVE);
+    let largest = largest_of(s, l2);
     let a = s.area.max(tiny * largest);
     let (i1, i2) = (s.i1.max(tiny * largest * l2), s.i2.max(tiny * largest * l2));
     let [yn, zn] = s.neutral;
@@ -103,12 +107,7 @@ impl LocalBeam<'_> {
                     }
                 }
                 let l2 = l * l;
-                let largest = s
-                    .area
-                    .max(s.i1 / l2)
-                    .max(s.i2 / l2)
-                    .max(s.j / l2)
-                    .max(f64::MIN_POSITIVE);
+                let largest = largest_of(&s, l2);
                 f[(3, 3)] += dx / (self.g * s.j.max(ALMOST_NOTHING * largest * l2));
             }
         }

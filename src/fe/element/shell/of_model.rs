@@ -30,12 +30,12 @@ fn corners<const N: usize>(model: &Model, shell: &Shell) -> [Vec3; N] {
 }
 
 fn refuse(shell: &Shell, reason: &str, remedy: &str) -> Refusal {
-    Refusal {
-        card: format!("{} {}", shell.shape.card(), shell.id),
-        at: shell.at,
-        reason: reason.to_owned(),
-        remedy: remedy.to_owned(),
-    }
+    Refusal::new(
+        format!("{} {}", shell.shape.card(), shell.id),
+        shell.at,
+        reason,
+        remedy,
+    )
 }
 
 /// Angle of the material x axis from the output x axis, radians.

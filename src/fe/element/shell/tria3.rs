@@ -7,24 +7,9 @@ use super::kinematics::{
 use super::output_frame::output_frame;
 use super::products::Products;
 use super::types::{BadShape, Parts, Row, ShellInput, ShellMatrices, Sides, StrainRows};
+use crate::fe::element::triangle_points::RADON;
 use crate::linalg::SMatrix;
 
-/// Degree 5 on the triangle (Radon 1948): r, s, weight; weights sum to 1/2.
-const POINTS: [(f64, f64, f64); 7] = {
-    const A: f64 = 0.101_286_507_323_456_3;
-    const B: f64 = 0.470_142_064_105_115_1;
-    const WA: f64 = 0.062_969_590_272_413_6;
-    const WB: f64 = 0.066_197_076_394_253_1;
-    [
-        (1.0 / 3.0, 1.0 / 3.0, 0.1125),
-        (A, A, WA),
-        (1.0 - 2.0 * A, A, WA),
-        (A, 1.0 - 2.0 * A, WA),
-        (B, B, WB),
-        (1.0 - 2.0 * B, B, WB),
-        (B, 1.0 - 2.0 * B, WB),
-    ]
-};
 /// Distance of the inner tying points from the centre in MITC3+.
 const TYING: f64 = 1.0e-4;
 /// Unknowns with the two of the bubble.
@@ -40,7 +25,7 @@ fn shape(r: f64, s: f64) -> Shape<3> {
 
 /// Shape functions and weights of the integration points; weights sum to half the parallelogram of the two sides.
 pub(super) fn tria_points() -> [(Shape<3>, f64); 7] {
-    POINTS.map(|(r, s, w)| (shape(r, s), w))
+    RADON.map(|(r, s, w)| (shape(r, s), w))
 }
 
 /// Stiffness and strain of a three-node shell. The rotation has a cubic bubble whose two amplitudes are eliminated.
@@ -93,7 +78,7 @@ pub(crate) fn tria3(input: &ShellInput<'_, 3>) -> Result<ShellMatrices<3, 18>, B
 
     let mut products = Products::new();
     let mut thermal = [0.0; 18];
-    for (r, s, w) in POINTS {
+    for (r, s, w) in RADON {
         let shape = shape(r, s);
         let t = Tangents::new(&x, d, &shape);
         let thickness = shape

@@ -17,12 +17,12 @@ pub(crate) struct SolidStrain {
 }
 
 fn refuse(solid: &Solid, reason: &str, remedy: &str) -> Refusal {
-    Refusal {
-        card: format!("{} {}", solid.shape.card(), solid.id),
-        at: solid.at,
-        reason: reason.to_owned(),
-        remedy: remedy.to_owned(),
-    }
+    Refusal::new(
+        format!("{} {}", solid.shape.card(), solid.id),
+        solid.at,
+        reason,
+        remedy,
+    )
 }
 
 fn folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {

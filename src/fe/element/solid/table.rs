@@ -1,5 +1,6 @@
 //! Shape functions of solids at the points of their rules, made once.
 
+use crate::fe::element::triangle_points::RADON;
 use crate::model::{solid_edges, solid_functions};
 use nastran::cards::SolidShape;
 use std::sync::OnceLock;
@@ -78,7 +79,7 @@ impl Tables {
             ),
             SolidShape::Penta => (
                 with_height(&triangle(), &TWO),
-                with_height(&radon(), &THREE),
+                with_height(&RADON.map(|(r, s, w)| (w, [r, s])), &THREE),
                 with_height(&triangle(), &TWO),
                 [1.0 / 3.0, 1.0 / 3.0, 0.5],
             ),
@@ -127,24 +128,6 @@ fn square(line: &[(f64, f64)]) -> Vec<(f64, [f64; 2])> {
 fn triangle() -> Vec<(f64, [f64; 2])> {
     let (a, b) = (1.0 / 6.0, 2.0 / 3.0);
     [[a, a], [b, a], [a, b]].map(|p| (1.0 / 6.0, p)).to_vec()
-}
-
-/// Degree 5 (Radon 1948).
-fn radon() -> Vec<(f64, [f64; 2])> {
-    const A: f64 = 0.101_286_507_323_456_3;
-    const B: f64 = 0.470_142_064_105_115_1;
-    const WA: f64 = 0.062_969_590_272_413_6;
-    const WB: f64 = 0.066_197_076_394_253_1;
-    let t = 1.0 / 3.0;
-    vec![
-        (0.1125, [t, t]),
-        (WA, [A, A]),
-        (WA, [1.0 - 2.0 * A, A]),
-        (WA, [A, 1.0 - 2.0 * A]),
-        (WB, [B, B]),
-        (WB, [1.0 - 2.0 * B, B]),
-        (WB, [B, 1.0 - 2.0 * B]),
-    ]
 }
 
 fn with_height(base: &[(f64, [f64; 2])], line: &[(f64, f64)]) -> Vec<(f64, [f64; 3])> {

@@ -9,7 +9,7 @@ use crate::reconcile::motion::corrections::adjustments;
 use crate::reconcile::motion::design::{BinChannel, BinEquation, Bins, Design, design, size};
 use crate::reconcile::motion::fitted::MotionFit;
 use crate::reconcile::motion::frame::MotionFrame;
-use crate::reconcile::motion::noise::{Background, Whitener, band_of, covariance};
+use crate::reconcile::motion::noise::{Background, UNDECLARED, Whitener, band_of, covariance};
 use crate::reconcile::motion::part::ColumnOf;
 use crate::reconcile::motion::response::responses;
 use crate::series::channels::{Channel, Channels};
@@ -394,8 +394,6 @@ fn with_columns(
 
 /// The channels of a design, with what the corrections make of them.
 fn entered(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<Entered> {
-    /// Noise of a channel that is not declared, as a share of what it reads.
-    const UNDECLARED: f64 = 1e-4;
     let one = |(c, channel): (usize, &BinChannel)| {
         let n = channel.bins.len().max(1) as f64;
         let assumed = UNDECLARED * size(&channel.bins) / n.sqrt();

@@ -1,5 +1,7 @@
 //! Dates and times of day, in one field or in two.
 
+use crate::series::record::time_unit::DAY;
+
 /// Seconds since 1970 of a date with a time: `2026-05-01 12:00:00.002`, `2026-05-01T12:00:00,002Z`, `01.05.2026 12:00:00`,
 /// `2026/05/01 12:00:00`, `5/31/2026 1:05:09 PM`. A time zone other than `Z` is refused, so are dates whose day and month could be exchanged
 /// (`05/01/2026`).
@@ -25,9 +27,6 @@ pub fn of_day(field: &[u8]) -> Option<f64> {
     let parts = text.split(':').count();
     (parts == 3).then(|| seconds_of_day(text))?
 }
-
-/// Seconds of a day.
-const DAY: f64 = 86_400.0;
 
 /// Days since 1970.
 fn days_of(date: &str) -> Option<i64> {

@@ -1,5 +1,6 @@
 //! One number of a record.
 
+use crate::series::record::time_unit::single_rounding_s;
 use falcon_mdf::blocks::{ChannelType, DataType};
 use falcon_mdf::{Channel, ChannelGroup, Conversion};
 
@@ -109,7 +110,7 @@ impl Field {
             - self.conversion.convert(0.0, self.is_float);
         match self.kind {
             Kind::Index | Kind::F64 => 0.0,
-            Kind::F32 => 86_400.0 * 6e-8 * one.abs(),
+            Kind::F32 => single_rounding_s(one),
             Kind::Unsigned | Kind::Signed => 0.5 * one.abs(),
         }
     }

@@ -11,6 +11,7 @@ mod tests;
 
 use super::column::{Column, is_time, seconds_in};
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::time_unit::single_rounding_s;
 use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use fault::broken;
@@ -119,8 +120,7 @@ impl Tdms {
         self.times = Times::Stored {
             rounding_s: match c.kind {
                 Kind::F64 => 0.0,
-                // A real of 32 bits is good to 2^-24 of itself, of which the end of a day's record is taken.
-                Kind::F32 => 86_400.0 * 6e-8 * one,
+                Kind::F32 => single_rounding_s(one),
                 // Seconds since 1970 in 64 bits are good to a quarter of a microsecond.
                 Kind::Time => 2.5e-7,
                 _ => 0.5 * one,
@@ -133,7 +133,7 @@ impl Tdms {
     }
 }
 
-/// When the samples of each channel were taken. Channels that state a step are on even steps from their start on; the others have the times
+/// Returns the times of the samples of each channel. Channels that state a step are on even steps from their start on; the others have the times
 /// of the channel of time in their group, else of the first one in the file.
 fn samplings(all: &[Channel], file: &[u8]) -> Vec<Sampling> {
     let step = |c: &Channel| c.number("wf_increment").filter(|s| *s > 0.0);
