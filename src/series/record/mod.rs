@@ -48,7 +48,7 @@ pub use clock::{Clock, Evenness, RateChange};
 pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
 pub use open::{Format, Options, format_of, is_format, open_record, open_source, read_channels};
-pub use reader::{Block, Bytes, Pick, RecordReader, Sink, Times};
+pub use reader::{Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
 #[cfg(feature = "parquet")]
 pub use runs::runs_as_csv;
 pub use source::{Parts, Source, is_read_in_parts};
