@@ -10,7 +10,7 @@ pub use super::whole_file::{FileBytes, Opened, Stamp};
 use crate::finding::{Finding, Severity};
 use crate::series::record::csv::{Layout, is_cut, unsure_end};
 #[cfg(feature = "parquet")]
-use crate::series::record::{Format, runs_of_parquet};
+use crate::series::record::runs_as_csv;
 use crate::series::record::{format_of, is_format};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -171,7 +171,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet with a column `run` its table as
+    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet and Feather with a column `run` the table as
     /// CSV text.
     ///
     /// # Errors
@@ -279,11 +279,10 @@ impl<'a> Inputs<'a> {
 pub(super) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault> {
     if let Some(kind) = no_table(&bytes) {
         let wrong = format!("it is {kind}, neither a table nor a record");
-        let remedy =
-            "name a CSV or XLSX table, or a record (CSV, RPC III, Parquet, TDMS, UFF, MDF4)";
+        let remedy = "name a CSV or XLSX table, or a record (CSV, RPC III, Parquet, Feather, TDMS, UFF, MDF4)";
         return Err(Fault::of(given, "file", wrong, remedy));
     }
-    if let Some(text) = runs_in_parquet(given, &bytes)? {
+    if let Some(text) = runs_in_columns(given, &bytes)? {
         return Ok(text.into_bytes().into());
     }
     if !is_sheet(&bytes) {
@@ -294,22 +293,19 @@ pub(super) fn as_table(given: &str, bytes: FileBytes) -> Result<FileBytes, Fault
         .map_err(|wrong| Fault::of(given, "sheet", wrong, "save the sheet as CSV (UTF-8)"))
 }
 
-/// Returns the table of runs in a Parquet file as CSV text; `None` for another file.
+/// Returns the table of runs in a Parquet or Feather file as CSV text; `None` for another file.
 #[cfg(feature = "parquet")]
-fn runs_in_parquet(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fault> {
-    if format_of(bytes) != Some(Format::Parquet) {
-        return Ok(None);
-    }
-    let read = runs_of_parquet(std::sync::Arc::new(bytes.clone()));
+fn runs_in_columns(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fault> {
+    let read = runs_as_csv(std::sync::Arc::new(bytes.clone()));
     read.map_err(|e| {
         let (wrong, remedy) = e.parts();
         Fault::of(given, "record", wrong, remedy)
     })
 }
 
-/// Returns `None`: this build does not read Parquet.
+/// Returns `None`: this build reads neither Parquet nor Feather.
 #[cfg(not(feature = "parquet"))]
-fn runs_in_parquet(_: &str, _: &FileBytes) -> Result<Option<String>, Fault> {
+fn runs_in_columns(_: &str, _: &FileBytes) -> Result<Option<String>, Fault> {
     Ok(None)
 }
 

@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, FaultList, Faults};
 use super::files::unreadable_at;
-use super::job::{HoldOut, Job, NamedFile};
+use super::job::{EffectSource, HoldOut, Job, NamedFile};
 use super::work::Work;
 use nastran::results::{ResultsError, ResultsFile};
 
@@ -52,7 +52,8 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
     )
 }
 
-/// Refuses tables that the job names and that are not there: runs, zero, held-out runs, covariance and signatures, whether or not the command
+/// Refuses tables that the job names and that are not there: runs, zero, held-out runs, covariance, signatures and
+/// described effects, whether or not the command
 /// reads them. The list of files that were read does not contain them.
 ///
 /// # Errors
@@ -68,6 +69,11 @@ pub fn check_tables(work: &Work, job: &Job) -> Result<(), Faults> {
     if let Some(given) = &job.sensitivity {
         named.extend(&given.covariance);
         named.extend(given.signatures.files());
+    }
+    for effect in job.reconcile.iter().flat_map(|r| &r.described) {
+        if let EffectSource::Signature(file) = &effect.source {
+            named.push(file);
+        }
     }
     let missing = |n: &&NamedFile| match work.inputs.load(&job.folder.join(&n.given)) {
         Err(e) => Some(unreadable_at(job, n, &e)),

@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::fault::Faults;
 use super::job::{AngleStep, Job};
+use super::named_results::check_tables;
 use super::outcome::{Answer, Outcome, StatedUnits};
 use super::place::allowed_sites;
 use super::strain::{
@@ -47,6 +48,7 @@ impl Answer for Sensed {
 /// Every fault of the job and of the files it names.
 pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     let mut work = Work::of_job(cx, job);
+    check_tables(&work, job)?;
     let prepared = prepared(&mut work, job)?;
     let s = &prepared.sensitivity;
     let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();

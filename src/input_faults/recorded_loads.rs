@@ -22,7 +22,7 @@ const UNDONE: f64 = 0.25;
 const SEPARATED: f64 = 1e-6;
 /// Sum of squares between readings and model, in units of what noise and the stated error of the model make, up to which nothing is wrong.
 const BEYOND: f64 = 4.0;
-/// How close a factor comes to that of a pair of units to be called after it.
+/// How close a factor comes to that of a pair of units to be called after it; the least part that one of several exchanged pairs explains.
 const NEAR: f64 = 0.15;
 
 /// Factors between what readings show and what the records make of them, with what each stands for.
@@ -281,8 +281,8 @@ fn exchanges(runs: &RecordedRuns, base: f64) -> (Vec<[usize; 2]>, f64) {
         let Some((squares, [a, b])) = tried.min_by(|x, y| x.0.total_cmp(&y.0)) else {
             break;
         };
-        // The last pair explains most of what is left; one before it, among several, at least a part.
-        if squares > (1.0 - UNDONE) * left {
+        // Each of several pairs explains a part of what is left.
+        if squares > (1.0 - NEAR) * left {
             break;
         }
         record.swap(a, b);

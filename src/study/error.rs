@@ -31,6 +31,14 @@ impl ErrorKind {
         Self::Factor,
     ];
 
+    /// Whether its size is a fraction of the reading.
+    pub fn is_relative(self) -> bool {
+        matches!(
+            self,
+            Self::RelativeUniform | Self::RelativeNormal | Self::Factor
+        )
+    }
+
     /// As a job names it.
     pub fn word(self) -> &'static str {
         match self {

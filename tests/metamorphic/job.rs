@@ -12,11 +12,7 @@ const RUNS: [&[f64]; 3] = [
 ];
 
 /// Payloads: weight in N, place in mm.
-const PAYLOADS: [[f64; 3]; 3] = [
-    [800.0, 400.0, 20.0],
-    [1200.0, 500.0, 0.0],
-    [500.0, 300.0, 40.0],
-];
+const PAYLOADS: [[f64; 3]; 2] = [[800.0, 400.0, 20.0], [1200.0, 500.0, 0.0]];
 
 /// Channels of the gauges as the base model names them, in its order.
 pub fn channels(frame: &Frame) -> Vec<String> {
@@ -154,7 +150,7 @@ pub fn job(frame: &Frame, results: &str) -> String {
     let properties = [1, 2].map(|p| frame.id(p));
     head(frame, &frame.loads, results)
         + &format!(
-            "[candidates]\nproperties = {properties:?}\nangle_step_deg = 15\n\
+            "[candidates]\nproperties = {properties:?}\nangle_step_deg = 30\n\
              [placement]\ngauges = {}\nspacing = {:?}\n\
              [respond]\nhottest = 15\n\
              [study]\nlayouts = [\"given\"]\ntrials = {TRIALS}\n\

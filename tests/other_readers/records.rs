@@ -51,7 +51,7 @@ fn records_that_nptdms_pyuff_asammdf_and_pandas_write_hold_the_samples_they_were
         .iter()
         .filter_map(Value::as_str)
         .collect();
-    assert_eq!(files.len(), 17);
+    assert_eq!(files.len(), 21);
     for file in files {
         if file.ends_with("mf4") && !cfg!(feature = "mdf") {
             continue;

@@ -1,7 +1,7 @@
 //! Gauges of a job on closed forms: directions in cylindrical systems, second pairs, names, corrections, reference states, placed grids.
 
 use strainbridge::app::context::InMemory;
-use strainbridge::{Context, Job, place, recover, sensitivity};
+use strainbridge::{Context, Job, place, recover, sensitivity, study};
 
 /// A square plate of 4 by 4 elements of 10 mm, 2 mm thick, its middle at the origin, with the coordinate system 7 (cylindrical) there and the
 /// pull of 2,000 N along x on two edges: 100 MPa, so that the strain along x is `100 / E` everywhere.
@@ -357,6 +357,71 @@ fn a_placed_grid_reads_the_same_from_the_table_of_gauges() {
         text.contains("`grid_length` is 41") && text.contains("40.0000 long"),
         "{text}"
     );
+}
+
+#[test]
+fn a_placed_grid_that_reaches_past_the_edge_is_replaced_by_one_that_fits() {
+    // A grid of 20 mm along x fits where its middle is 10 mm or more from the edges at x = -20 and 20: in the two columns at x = -5 and 5.
+    let keys = "[candidates]\nangle_step_deg = 180\ngrid_length = 20.0\n";
+    let plan = files(&format!("{keys}[placement]\ngauges = 4\nspacing = 1.0\n"));
+    let job = Job::read("job.toml", &plan).unwrap();
+    let placed = place(&job, &Context::new(&plan)).unwrap();
+    for g in &placed.gauges {
+        let column = (g.element - 1) % 4;
+        assert!(column == 1 || column == 2, "element {}", g.element);
+    }
+    // Without such a place the refusal names the keys that help.
+    let long =
+        files("[candidates]\nangle_step_deg = 180\ngrid_length = 41.0\n[placement]\ngauges = 3\n");
+    let job = Job::read("job.toml", &long).unwrap();
+    let text = place(&job, &Context::new(&long)).err().unwrap().to_string();
+    for part in [
+        "lower [candidates] `grid_length` to 40.0000 or less",
+        "`exclude_elements`",
+    ] {
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn tables_that_a_job_names_and_that_are_missing_are_faults_of_every_command_on_gauges() {
+    let gauge = "[[gauge]]\nname = \"a\"\nelement = 6\n";
+    let head = HEAD.replace("[[load]]", "TABLE[[load]]");
+    let head = head.replace("load_set = 2\n", "load_set = 2\nexpected = 1.0\n");
+    let rest = "[candidates]\nangle_step_deg = 90\n[placement]\ngauges = 1\n\
+                [study]\nlayouts = [\"given\"]\ngauges = [1]\ntrials = 10\n";
+    for (table, name) in [
+        (
+            "[measured]\nstrain = \"s.csv\"\n[runs]\nfile = \"none.csv\"\n",
+            "none.csv",
+        ),
+        (
+            "[measured]\nstrain = \"s.csv\"\nzero = \"zero.csv\"\n",
+            "zero.csv",
+        ),
+        (
+            "[measured]\nstrain = \"s.csv\"\nhold_out = \"held.csv\"\n",
+            "held.csv",
+        ),
+    ] {
+        let text = format!("{}{gauge}{rest}", head.replace("TABLE", table));
+        let files = InMemory::default()
+            .with("plate.bdf", plate())
+            .with("s.csv", "run,a\nR1,1\nR2,2\n")
+            .with("job.toml", text);
+        let cx = Context::new(&files);
+        let job = Job::read("job.toml", &files).unwrap();
+        for (command, faults) in [
+            ("sensitivity", sensitivity(&job, &cx).err()),
+            ("place", place(&job, &cx).err()),
+            ("study", study(&job, &cx).err()),
+            ("recover", recover(&job, &cx).err()),
+        ] {
+            let text = faults.map(|f| f.to_string()).unwrap_or_default();
+            let is_named = text.contains(name) && text.contains("no such file");
+            assert!(is_named, "{command} {name}: {text}");
+        }
+    }
 }
 
 #[test]

@@ -1,4 +1,4 @@
-"""One record as loggers and their programs store it: TDMS by npTDMS, universal files by pyuff, MDF4 by asammdf, Parquet and CSV by pandas.
+"""One record as loggers and their programs store it: TDMS by npTDMS, universal files by pyuff, MDF4 by asammdf, Parquet, Feather and CSV by pandas.
 
     python write_loggers.py FOLDER
 
@@ -13,7 +13,7 @@ try:
     import nptdms
     import numpy as np
     import pandas
-    import pyarrow  # noqa: F401  (pandas writes Parquet with it)
+    import pyarrow  # noqa: F401  (pandas writes Parquet and Feather with it)
     import pyuff
 except Exception as e:  # absent, or of versions that don't go together
     print(f"absent: {e}")
@@ -108,9 +108,13 @@ timed.insert(0, "Time [s]", t.round(3))
 timed.to_parquet(path("timed.parquet"), index=False, compression="zstd")
 timed.to_parquet(path("lz4.parquet"), index=False, compression="lz4")
 timed.to_parquet(path("brotli.parquet"), index=False, compression="brotli")
+timed.to_feather(path("lz4.feather"))
+timed.to_feather(path("zstd.feather"), compression="zstd")
+timed.to_feather(path("plain.feather"), compression="uncompressed")
+dated.reset_index().to_feather(path("dated.feather"))
 half = timed.astype({name: "float16" for name in named})
 half.to_parquet(path("half.parquet"), index=False)
 timed.to_csv(path("timed.csv"), quoting=1)
 timed.to_csv(path("utf16.csv"), sep=";", decimal=",", encoding="utf-16", index=False)
-files = sorted(f for f in os.listdir(folder) if f.rsplit(".", 1)[-1] in ("tdms", "uff", "mf4", "parquet", "csv"))
+files = sorted(f for f in os.listdir(folder) if f.rsplit(".", 1)[-1] in ("tdms", "uff", "mf4", "parquet", "feather", "csv"))
 print(json.dumps({"columns": {k: v.tolist() for k, v in columns.items()}, "files": files}))

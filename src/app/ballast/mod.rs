@@ -13,7 +13,7 @@ use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
 use super::job::{Ballast, Job};
 use super::job_deck::read_deck;
-use super::named_results::{Absent, check_named};
+use super::named_results::{Absent, check_named, check_tables};
 use super::outcome::{Outcome, StatedUnits};
 use super::wheels::{floor_fault, wheels_of};
 use super::work::Work;
@@ -119,6 +119,7 @@ fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckMod
         .as_ref()
         .ok_or_else(|| missing("model", "name the deck: [model] deck = \"model.bdf\""))?;
     check_named(work, job, Absent::Refused)?;
+    check_tables(work, job)?;
     let read = work.stage("read model", |s| read_deck(s, job, files))?;
     if read.deck.sources.is_empty() {
         return Err(Faults::from(Fault::of(

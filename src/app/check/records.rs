@@ -8,7 +8,7 @@ use crate::app::work::Work;
 use crate::finding::few;
 use crate::recovery::clock;
 use crate::series::record::csv::Layout;
-use crate::series::record::{Column, Options, format_of, open_record};
+use crate::series::record::{Column, Options, OtherChannel, format_of, open_record};
 use serde::Serialize;
 use std::path::Path;
 use std::sync::Arc;
@@ -20,6 +20,9 @@ pub struct RecordEntry {
     /// RPC III, Parquet ..
     format: &'static str,
     channels: Vec<ChannelEntry>,
+    /// Channels that are sampled at other times, or that are no numbers.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    other_channels: Vec<OtherEntry>,
     /// `None` for a table without times.
     samples: Option<usize>,
     sample_rate_hz: Option<f64>,
@@ -32,6 +35,18 @@ struct ChannelEntry {
     name: String,
     /// Empty where the file states none.
     unit: String,
+    /// Empty where the format has no groups.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    group: String,
+}
+
+/// A channel that is not read together with the others.
+#[derive(Serialize)]
+struct OtherEntry {
+    #[serde(flatten)]
+    channel: ChannelEntry,
+    samples: usize,
+    sample_rate_hz: Option<f64>,
 }
 
 impl ChannelEntry {
@@ -39,18 +54,66 @@ impl ChannelEntry {
         Self {
             name: column.name.clone(),
             unit: column.unit.clone(),
+            group: String::new(),
+        }
+    }
+
+    /// Name and unit, for people.
+    fn text(&self) -> String {
+        match self.unit.as_str() {
+            "" => self.name.clone(),
+            unit => format!("{} [{unit}]", self.name),
         }
     }
 }
 
+impl OtherEntry {
+    fn of(c: &OtherChannel) -> Self {
+        Self {
+            channel: ChannelEntry {
+                name: c.name.clone(),
+                unit: c.unit.clone(),
+                group: c.group.clone(),
+            },
+            samples: c.samples,
+            sample_rate_hz: c.rate_hz,
+        }
+    }
+
+    /// For people: its name, its unit, how many samples at which rate.
+    fn text(&self) -> String {
+        let rate = self.sample_rate_hz.map(|r| format!(" at {} Hz", short(r)));
+        let (name, rate) = (self.channel.text(), rate.unwrap_or_default());
+        let plural = if self.samples == 1 { "" } else { "s" };
+        format!("{name}, {} sample{plural}{rate}", self.samples)
+    }
+}
+
+/// Returns a line for each group, in file order, with the texts of its channels.
+fn by_group(list: impl Iterator<Item = (String, String)>) -> Vec<String> {
+    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+    for (group, text) in list {
+        match groups.iter_mut().find(|g| g.0 == group) {
+            Some((_, texts)) => texts.push(text),
+            None => groups.push((group, vec![text])),
+        }
+    }
+    let line = |(group, texts): (String, Vec<String>)| match group.as_str() {
+        "" => texts.join("; "),
+        group => format!("group `{group}`: {}", texts.join("; ")),
+    };
+    groups.into_iter().map(line).collect()
+}
+
 impl RecordEntry {
-    /// Returns the entry as one line for people.
+    /// Returns the entry as one line for people; where the file has channels at other times, one more line for each group.
     pub fn text(&self) -> String {
-        let name = |c: &ChannelEntry| match c.unit.as_str() {
-            "" => c.name.clone(),
-            unit => format!("{} [{unit}]", c.name),
+        let is_whole = self.other_channels.is_empty();
+        let names = self.channels.iter();
+        let listed = match is_whole {
+            true => few(&names.map(ChannelEntry::text).collect::<Vec<_>>()),
+            false => by_group(names.map(|c| (c.group.clone(), c.text()))).join(", "),
         };
-        let names: Vec<String> = self.channels.iter().map(name).collect();
         let n = self.channels.len();
         let (kind, what) = match self.samples {
             Some(_) => ("record", "channel"),
@@ -68,9 +131,16 @@ impl RecordEntry {
             "{kind} `{}`: {}, {n} {what}{plural} ({}){times}",
             self.path,
             self.format,
-            few(&names)
+            listed
         );
-        line.replace(char::is_control, " ")
+        let others = self.other_channels.iter();
+        let others = others.map(|c| (c.channel.group.clone(), c.text()));
+        let mut lines = vec![line];
+        for group in by_group(others) {
+            lines.push(format!("  not read with them: {group}"));
+        }
+        let plain = lines.iter().map(|l| l.replace(char::is_control, " "));
+        plain.collect::<Vec<String>>().join("\n")
     }
 }
 
@@ -89,6 +159,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str) -> Result<RecordEn
                 path: given.to_owned(),
                 format,
                 channels: layout.columns.iter().map(ChannelEntry::of).collect(),
+                other_channels: Vec::new(),
                 samples: None,
                 sample_rate_hz: None,
                 duration_s: None,
@@ -102,10 +173,16 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str) -> Result<RecordEn
         work.findings.extend(clock::check_rate(rate));
     }
     work.findings.extend(clock::irregular(given, &record.clock));
+    let columns = record.columns().iter().enumerate();
+    let channels = columns.map(|(i, c)| ChannelEntry {
+        group: record.group(i).to_owned(),
+        ..ChannelEntry::of(c)
+    });
     Ok(RecordEntry {
         path: given.to_owned(),
         format,
-        channels: record.columns().iter().map(ChannelEntry::of).collect(),
+        channels: channels.collect(),
+        other_channels: record.others().iter().map(OtherEntry::of).collect(),
         samples: Some(record.clock.samples),
         sample_rate_hz: Some(rate),
         duration_s: Some(record.clock.duration_s()),
@@ -118,5 +195,61 @@ fn text_format(given: &str) -> &'static str {
         Some("xlsx" | "xlsm") => "XLSX",
         Some("csv") => "CSV",
         _ => "text",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn other(group: &str, name: &str, samples: usize, rate: Option<f64>) -> OtherEntry {
+        OtherEntry::of(&OtherChannel {
+            group: group.to_owned(),
+            name: name.to_owned(),
+            unit: String::new(),
+            samples,
+            rate_hz: rate,
+        })
+    }
+
+    #[test]
+    fn channels_at_other_times_are_listed_by_group_with_samples_and_rate() {
+        let channel = |i: usize| ChannelEntry {
+            name: format!("P{i}"),
+            unit: "um/m".to_owned(),
+            group: "strain".to_owned(),
+        };
+        let mut entry = RecordEntry {
+            path: "day.tdms".to_owned(),
+            format: "TDMS",
+            channels: (0..20).map(channel).collect(),
+            other_channels: Vec::new(),
+            samples: Some(100),
+            sample_rate_hz: Some(100.0),
+            duration_s: Some(1.0),
+        };
+        assert!(entry.text().contains("P11 [um/m], ..)"));
+        entry.other_channels = vec![
+            other("slow", "battery", 3, Some(1.0)),
+            other("notes", "remark", 1, None),
+            other("slow", "cabin", 3, Some(1.0)),
+        ];
+        let text = entry.text();
+        let lines: Vec<&str> = text.lines().collect();
+        assert!(
+            lines[0].contains("(group `strain`: P0 [um/m]; P1 [um/m]; "),
+            "{text}"
+        );
+        assert!(
+            lines[0].contains("; P19 [um/m]), 100 samples at 100 Hz"),
+            "{text}"
+        );
+        assert_eq!(
+            lines[1..],
+            [
+                "  not read with them: group `slow`: battery, 3 samples at 1 Hz; cabin, 3 samples at 1 Hz",
+                "  not read with them: group `notes`: remark, 1 sample",
+            ]
+        );
     }
 }

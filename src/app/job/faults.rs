@@ -6,6 +6,7 @@ use super::spanned::Spanned;
 use super::suggest;
 use super::types::NamedFile;
 use crate::app::fault::{Fault, FaultList};
+use crate::app::words::short;
 
 /// No quantity of a job is larger in any system of units; the square of one that is smaller stays a number.
 const LARGEST: f64 = 1e30;
@@ -144,6 +145,21 @@ impl<'a> Collector<'a> {
     /// A number of 0 or more.
     pub(super) fn at_least_zero(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
         self.number(value, key, "0 or more", |x| x >= 0.0)
+    }
+
+    /// A relative error, a fraction from 0 to 1; a larger one may be percent, which the fault asks for.
+    pub(super) fn fraction(&mut self, value: &S<f64>, key: &str) -> Option<f64> {
+        const EXPECTED: &str = "a fraction from 0 to 1";
+        let percent = |x: f64| x > 1.0 && x <= 100.0;
+        match value.as_ref().map(|v| (v, *v.value())) {
+            Some((v, x)) if percent(x) => {
+                let wrong = format!("`{x}` is {} %, expected {EXPECTED}", short(100.0 * x));
+                let remedy = format!("was percent meant? Write {} for {x} %", short(x / 100.0));
+                self.fault(v, key, wrong, remedy);
+                None
+            }
+            _ => self.number(value, key, EXPECTED, |x| (0.0..=1.0).contains(&x)),
+        }
     }
 
     /// A number above 0.

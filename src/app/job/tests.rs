@@ -813,3 +813,67 @@ fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
     assert_eq!(table.gauges, ["G1", "G2"]);
     assert!(table.row(0)[0] == 1.0 && table.row(0)[1].is_nan());
 }
+
+#[test]
+fn a_relative_error_above_1_asks_whether_percent_was_meant() {
+    let head = "units = \"mm-t-s\"\n[model]\ndeck = \"d.bdf\"\n";
+    let measured = "[measured]\nstrain = \"s.csv\"\nmodel_uncertainty_rel = ";
+    let study = |kind: &str| {
+        format!("[study]\ntrials = 10\nerrors = [{{ kind = \"{kind}\", size = SIZE }}]\n")
+    };
+    let dynamic = "[dynamic]\nup_to_hz = 4.0\ndamping = 0.02\n";
+    for (key, text) in [
+        (
+            "measured.model_uncertainty_rel",
+            format!("{measured}SIZE\n"),
+        ),
+        (
+            "placement.model_uncertainty_rel",
+            "[placement]\nmodel_uncertainty_rel = SIZE\n".into(),
+        ),
+        (
+            "placement.gauge_factor_rel",
+            "[placement]\ngauge_factor_rel = SIZE\n".into(),
+        ),
+        (
+            "calibration.model_uncertainty_rel",
+            "[calibration]\nmodel_uncertainty_rel = SIZE\n".into(),
+        ),
+        (
+            "dynamic.frequency_uncertainty_rel",
+            format!("{dynamic}frequency_uncertainty_rel = SIZE\n"),
+        ),
+        (
+            "dynamic.damping_uncertainty_rel",
+            format!("{dynamic}damping_uncertainty_rel = SIZE\n"),
+        ),
+        ("study.errors.size", study("relative-uniform")),
+        ("study.errors.size", study("relative-normal")),
+        ("study.errors.size", study("factor")),
+    ] {
+        let of = |size: &str| match read_text(&format!("{head}{}", text.replace("SIZE", size))) {
+            Ok(_) => Vec::new(),
+            Err(faults) => {
+                let faults = faults.into_list().into_iter();
+                let named = faults.filter(|f| f.field == key);
+                named.map(|f| format!("{} {}", f.wrong, f.remedy)).collect()
+            }
+        };
+        for size in ["0.05", "1.0"] {
+            assert!(of(size).is_empty(), "{key} {size}: {:?}", of(size));
+        }
+        let found = of("15");
+        let asks = |t: &String| t.contains("1500 %") && t.contains("Write 0.15 for 15 %");
+        assert!(found.iter().any(asks), "{key}: {found:?}");
+        for size in ["-0.1", "1e6"] {
+            assert!(!of(size).is_empty(), "{key} {size}");
+        }
+    }
+    // A size in microstrain or degrees is no fraction.
+    for kind in ["absolute-normal", "angle"] {
+        let text = format!("{head}{}", study(kind).replace("SIZE", "15"));
+        let found = read_text(&text).err().map(Faults::into_list);
+        let sizes = found.iter().flatten();
+        assert!(sizes.filter(|f| f.field == "study.errors.size").count() == 0);
+    }
+}

@@ -4,9 +4,10 @@ use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
 use super::wanted::on_wanted;
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::Optimality;
+use crate::app::job::{Job, Optimality};
 use crate::app::work::Work;
-use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build};
+use crate::finding::Finding;
+use crate::gauge::{Bridge, CornerRows, Gauge, GaugeError, GaugeSpec, build};
 use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
@@ -32,6 +33,8 @@ pub(super) struct Channel {
     pub turn: f64,
     /// The angle of its first grid.
     pub angle: f64,
+    /// The refusal of a grid that does not fit on the part there; its strain is then that at its middle.
+    pub misfit: Option<Fault>,
 }
 
 /// A layout chosen.
@@ -203,14 +206,24 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
         ..GaugeSpec::on(&*name, shell)
     };
     let corners = task.fields.corner_rows(job);
-    let lay = |spec: &GaugeSpec| -> Result<Gauge, Refused> {
-        let laid = build(task.fields.model(), spec, corners);
-        let (gauges, _) = laid.map_err(|e| {
+    let build = |spec: &GaugeSpec| build(task.fields.model(), spec, corners);
+    let laid = |built: Result<(Vec<Gauge>, Vec<Finding>), GaugeError>| {
+        let (gauges, _) = built.map_err(|e| {
             let (wrong, remedy) = e.parts();
             refused(wrong, remedy)
         })?;
         gauges.into_iter().next().ok_or_else(no_place)
     };
+    let built = build(&by_angle);
+    let misfit = misfit(job, &built);
+    let by_angle = match built {
+        Err(GaugeError::GridBeyondPart { .. }) => GaugeSpec {
+            grid_length: 0.0,
+            ..by_angle
+        },
+        _ => by_angle,
+    };
+    let lay = |spec: &GaugeSpec| laid(build(spec));
     let direction = lay(&by_angle)?.direction;
     let by_direction = GaugeSpec {
         direction: Some(direction),
@@ -228,7 +241,37 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
         sd: kind.candidates.sd(choice),
         turn: kind.candidates.turn_rms(choice),
         angle: choice.angle,
+        misfit,
     })
+}
+
+/// Returns the fault of a grid that is longer than the part or that reaches past its edge.
+fn misfit(job: &Job, built: &Result<(Vec<Gauge>, Vec<Finding>), GaugeError>) -> Option<Fault> {
+    let (wrong, remedy) = match built {
+        Err(e @ GaugeError::GridBeyondPart { element, part, .. }) => (
+            e.parts().0,
+            format!(
+                "lower [candidates] `grid_length` to {part:.4} or less, or add element {element} to [candidates] `exclude_elements`"
+            ),
+        ),
+        Ok((_, findings)) => {
+            let off = findings.iter().find(|f| f.code == "gauge-off-structure")?;
+            let remedy = format!(
+                "lower [candidates] `grid_length`, or keep gauges away from edges: [candidates] clear_of = {{ edges = {} }}",
+                0.5 * job.candidates.grid_length
+            );
+            (off.message.clone(), remedy)
+        }
+        Err(_) => return None,
+    };
+    let line = job.candidates.line;
+    Some(Fault::at(
+        &*job.file,
+        line,
+        "candidates.grid_length",
+        wrong,
+        remedy,
+    ))
 }
 
 /// What a bundle is: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.

@@ -19,6 +19,7 @@ pub(super) use region::allowed_sites;
 use super::context::Context;
 use super::fault::{Fault, Faults};
 use super::job::Job;
+use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits, finite};
 use super::recover::listed;
 use super::strain::{
@@ -37,11 +38,15 @@ use crate::sensitivity::{Sensitivity, check_separability, common_shells};
 /// Every fault of the job and of the files it names; a layout that nothing fits.
 pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     let mut work = Work::of_job(cx, job);
+    check_tables(&work, job)?;
     let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
     let answer = placed(&mut work, job, &fields)?;
     let answer = answer.with(fields, job);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
+
+/// Layouts that are looked for at most until every grid fits: each leaves out the places of the one before where a grid does not fit.
+const ROUNDS: usize = 20;
 
 /// The layout on the model.
 fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Faults> {
@@ -56,15 +61,36 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     task.keep(work)?;
     let (ordered, scales) = task.nuisance_first();
     let errors = task.errors_nuisance_first();
-    let kinds = work.stage("candidates", |_| {
-        let angles = angles(job.candidates.angles);
-        let strain = (ordered.as_slice(), errors.as_slice());
-        pool::kinds(job, fields.model(), &task.sites, strain, &scales, &angles)
-    });
     let mut spec = task.spec(work);
-    let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec));
-    work.go_on()?;
-    let chosen = chosen?;
+    let places = task.sites.len();
+    let (mut misfit, mut rounds): (Option<Fault>, usize) = (None, 0);
+    let (kinds, chosen) = loop {
+        let kinds = work.stage("candidates", |_| {
+            let angles = angles(job.candidates.angles);
+            let strain = (ordered.as_slice(), errors.as_slice());
+            pool::kinds(job, fields.model(), &task.sites, strain, &scales, &angles)
+        });
+        let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec));
+        work.go_on()?;
+        let chosen = match (chosen, misfit.take()) {
+            (Ok(chosen), _) => chosen,
+            // Too few places are left.
+            (Err(_), Some(misfit)) => return Err(misfit.into()),
+            (Err(refused), None) => return Err(refused),
+        };
+        misfit = task.leave_out_misfits(&chosen.channels, rounds < ROUNDS)?;
+        if misfit.is_none() {
+            break (kinds, chosen);
+        }
+        rounds += 1;
+    };
+    if task.sites.len() < places {
+        work.notes.push(format!(
+            "{} places were chosen and left out: a grid of {} does not fit on the part there",
+            places - task.sites.len(),
+            job.candidates.grid_length
+        ));
+    }
     let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
     let Some(quality) =
         judge_rows(&rows, &spec.prior, k).map(|q| judge::in_job_order(q, &task.order))

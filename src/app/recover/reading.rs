@@ -139,6 +139,7 @@ impl Record {
             },
             samples: readings,
             stored: Vec::new(),
+            others: Vec::new(),
         };
         let inner = series::Record::new(Box::new(whole), None, None)
             .map_err(|e| record_fault(&self.file, &e))?;

@@ -10,7 +10,9 @@ use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::{NORMAL_95, beyond_expected};
 use crate::respond::{LoadState, Spread};
+use crate::series::record::{is_time, name_and_unit};
 use crate::units::Quantity;
+use std::collections::HashSet;
 
 /// Rows of the table whose fields are in memory at a time.
 const PART: usize = 10_000;
@@ -71,14 +73,14 @@ pub(super) fn from_table(
     let mut unread = None;
     let mut states = Vec::new();
     let mut blank = 0_usize;
-    let mut before = None;
+    let mut keys = KeysRead::default();
     each_part(&named.given, &text, PART, &mut |part| {
         let columns = columns.get_or_insert_with(|| {
             unread = unread_loads(&part, job, &names);
             Columns::of(&part, job, &names, &mut faults)
         });
         for row in 0..part.rows.len() {
-            faults.extend(columns.out_of_order(&part, row, &mut before));
+            faults.extend(columns.wrong_key(&part, row, &mut keys));
             match columns.state(&part, row, &units, &mut faults) {
                 Some(state) => states.push(state),
                 None => blank += 1,
@@ -131,7 +133,7 @@ pub(super) fn from_table(
 
 /// Returns the warning of columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known.
 fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
-    let key = t.column(&KEYS).unwrap_or(0);
+    let key = key_of(t).0;
     let sums = job.combinations.iter().map(|c| &c.name);
     let known: Vec<String> = names
         .iter()
@@ -147,11 +149,40 @@ fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
 /// Names of the column with the run or the time of a row.
 const KEYS: [&str; 4] = ["run", "time", "t", "state"];
 
+/// What the key of a row is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Key {
+    Run,
+    Time,
+    /// The first column, whatever it contains.
+    Label,
+}
+
+/// Keys of the rows so far.
+#[derive(Default)]
+struct KeysRead {
+    runs: HashSet<String>,
+    time: Option<f64>,
+}
+
+/// Returns the number of the column with the run or the time of a row.
+fn key_of(t: &Table) -> (usize, Key) {
+    let is_time = |header: &str, first| is_time(&name_and_unit(header).name, first);
+    let named = t.column(&KEYS);
+    let mut headers = t.header.iter().enumerate();
+    let of_time = headers.find(|(c, h)| is_time(h, *c == 0)).map(|(c, _)| c);
+    let key = named.or(of_time).unwrap_or(0);
+    match t.header.get(key) {
+        Some(header) if is_time(header, key == 0) => (key, Key::Time),
+        _ if named.is_some() => (key, Key::Run),
+        _ => (key, Key::Label),
+    }
+}
+
 /// Where in the table the loads stand.
 struct Columns {
     key: usize,
-    /// Whether the rows are samples of a record.
-    is_record: bool,
+    kind: Key,
     /// Of each load its value and its interval.
     loads: Vec<(usize, Option<(usize, usize)>)>,
     /// Of each load what it measures, and SI units of one report unit.
@@ -163,11 +194,10 @@ impl Columns {
     fn of(t: &Table, job: &Job, names: &[String], faults: &mut FaultList) -> Self {
         let unit = |l: &JobLoad| l.report_unit(&job.report_units).map_or(1.0, |u| u.si);
         let sizes = job.loads.iter().map(|l| (l.quantity(), unit(l)));
-        let key = t.column(&KEYS).unwrap_or(0);
-        let named = t.header.get(key).map(String::as_str);
+        let (key, kind) = key_of(t);
         let mut out = Self {
             key,
-            is_record: matches!(named, Some("time" | "t")),
+            kind,
             loads: Vec::new(),
             sizes: sizes.collect(),
             without_interval: Vec::new(),
@@ -193,20 +223,35 @@ impl Columns {
         out
     }
 
-    /// A fault where the time of a row is no number, or not later than that of the row before.
-    fn out_of_order(&self, t: &Table, row: usize, before: &mut Option<f64>) -> Option<Fault> {
-        if !self.is_record {
-            return None;
-        }
-        let time = match t.number(row, self.key) {
-            Ok(time) => time?,
-            Err(fault) => return Some(fault),
+    /// Returns a fault where a run has two rows, or where the time of a row is missing or not later than that of the row before.
+    fn wrong_key(&self, t: &Table, row: usize, before: &mut KeysRead) -> Option<Fault> {
+        let (line, fields) = t.rows.get(row)?;
+        let (field, wrong, remedy) = match self.kind {
+            Key::Label => return None,
+            Key::Run => {
+                let run = fields.get(self.key).map_or("", String::as_str);
+                if before.runs.insert(run.to_owned()) {
+                    return None;
+                }
+                let wrong = format!("run `{run}` has two rows");
+                ("run", wrong, "give every run its own name")
+            }
+            Key::Time => {
+                let remedy = "write samples in order of time, each once";
+                let time = match t.number(row, self.key) {
+                    Ok(time) => time,
+                    Err(fault) => return Some(fault),
+                };
+                match time {
+                    None => ("time", "the time is missing".to_owned(), remedy),
+                    Some(time) => {
+                        let last = before.time.replace(time).filter(|last| time <= *last)?;
+                        ("time", format!("time {time} after {last}"), remedy)
+                    }
+                }
+            }
         };
-        let last = before.replace(time).filter(|last| time <= *last)?;
-        let line = t.rows.get(row).map_or(0, |r| r.0);
-        let wrong = format!("time {time} after {last}");
-        let remedy = "write samples in order of time, each once";
-        Some(Fault::at(&*t.file, line, "time", wrong, remedy))
+        Some(Fault::at(&*t.file, *line, field, wrong, remedy))
     }
 
     /// The state of a row; `None` where it lacks a load.
@@ -251,5 +296,51 @@ impl Columns {
             values,
             spread: Spread::Sigma(sigma),
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::app::job::table::read_table;
+
+    fn wrong_keys(text: &str) -> Vec<String> {
+        let t = read_table("loads.csv", text).unwrap();
+        let (key, kind) = key_of(&t);
+        let columns = Columns {
+            key,
+            kind,
+            loads: Vec::new(),
+            sizes: Vec::new(),
+            without_interval: Vec::new(),
+        };
+        let mut before = KeysRead::default();
+        let rows = 0..t.rows.len();
+        rows.filter_map(|row| columns.wrong_key(&t, row, &mut before))
+            .map(|f| format!("{}: {}", f.line.unwrap(), f.wrong))
+            .collect()
+    }
+
+    #[test]
+    fn a_run_has_one_row_and_a_history_each_time_once() {
+        for (text, expected) in [
+            (
+                "run,A\nR1,1\nR2,2\nR1,3\n",
+                vec!["4: run `R1` has two rows"],
+            ),
+            ("state,A\nR1,1\nR1,1\n", vec!["3: run `R1` has two rows"]),
+            ("run,A\nR1,1\nR2,1\n", vec![]),
+            (
+                "time,A\n0,1\n0.01,2\n0.01,3\n",
+                vec!["4: time 0.01 after 0.01"],
+            ),
+            ("time [s],A\n0,1\n0,2\n", vec!["3: time 0 after 0"]),
+            ("A,t\n1,1\n2,0.5\n", vec!["3: time 0.5 after 1"]),
+            ("time,A\n0,1\n,2\n", vec!["3: the time is missing"]),
+            // Rows without a name: equal loads are no fault.
+            ("A,B\n1,1\n1,2\n", vec![]),
+        ] {
+            assert_eq!(wrong_keys(text), expected, "{text}");
+        }
     }
 }

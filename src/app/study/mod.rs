@@ -7,6 +7,7 @@ use super::context::Context;
 use super::fault::{Fault, FaultList, Faults};
 use super::job::runs::read_runs;
 use super::job::{self, Job, Study};
+use super::named_results::check_tables;
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::strain::{Conditioning, LoadUnits, load_units};
 use super::work::Work;
@@ -94,6 +95,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
         )));
     };
     let errors = errors(job, study)?;
+    check_tables(&work, job)?;
     let prepared = pool::prepare(&mut work, job)?;
     let loads = &prepared.loads;
     let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();

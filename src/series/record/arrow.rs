@@ -1,31 +1,59 @@
-//! Which columns of a Parquet file hold durations: Parquet has no such type, and Arrow says it in a schema of its own beside the file's.
+//! Schemas of Arrow: the columns of a Feather file with their types, and those of a Parquet file that are durations, a type that Parquet lacks.
 
+use super::flat_buffer::Buffer;
+use super::typed::Meaning;
 use parquet::file::metadata::FileMetaData;
 use std::collections::HashMap;
 
-/// The key under which Arrow keeps its schema.
+/// The key under which Arrow keeps its schema in a Parquet file.
 const KEY: &str = "ARROW:schema";
-/// What a message begins with, before its length; old ones begin with the length.
+/// First word of a message, before its length; old messages begin with the length.
 const CONTINUED: u32 = u32::MAX;
-/// Number of the type of durations.
-const DURATION: u8 = 18;
-/// Field of a message: the schema.
+/// Field of a message: what it contains.
 const HEADER: usize = 2;
-/// Field of a schema: the list of columns.
-const FIELDS: usize = 1;
-/// Field of a column: its name.
-const NAME: usize = 0;
-/// Field of a column: the number of its type.
-const TYPE: usize = 2;
-/// Field of a column: its type.
-const DETAILS: usize = 3;
-/// Field of a duration.
-const UNIT: usize = 0;
+/// Columns in columns that are read at most.
+const DEPTH: usize = 32;
 
-/// Seconds in one unit of the durations of a file, by column; nothing of a schema that can't be read.
+/// How the values of a column are stored.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Stored {
+    /// A bit each.
+    Bits,
+    Integer {
+        bytes: usize,
+        is_signed: bool,
+        meaning: Meaning,
+    },
+    /// Reals of 2, 4 or 8 bytes.
+    Real { bytes: usize },
+    /// Text between offsets of 4 or 8 bytes.
+    Text { bytes: usize },
+    /// Text in place, or in one of several buffers.
+    TextView,
+    /// Values that are no channel.
+    Other,
+}
+
+/// A column of a schema.
+#[derive(Clone)]
+pub(super) struct Field {
+    pub name: String,
+    pub stored: Stored,
+    /// Number of its buffers in a batch, without those of its children; of views the fixed ones.
+    pub buffers: usize,
+    /// Whether it has as many more buffers as each batch states.
+    pub is_view: bool,
+    /// Whether its first buffer marks missing values.
+    pub has_validity: bool,
+    /// Identifier and storage of the dictionary that its values count in.
+    pub dictionary: Option<(usize, Stored)>,
+    pub children: Vec<Field>,
+}
+
+/// Seconds in one unit of the durations of a Parquet file, by column; nothing of a schema that can't be read.
 ///
 /// # Reference
-/// Apache Arrow, Columnar format 1.5: Schema.fbs, Message.fbs; FlatBuffers, internals.
+/// Apache Arrow, Columnar format 1.5: Schema.fbs, Message.fbs.
 pub(super) fn durations(file: &FileMetaData) -> HashMap<String, f64> {
     let list = file.key_value_metadata().into_iter().flatten();
     let value = list
@@ -37,82 +65,160 @@ pub(super) fn durations(file: &FileMetaData) -> HashMap<String, f64> {
 
 fn of_schema(bytes: &[u8]) -> Option<HashMap<String, f64>> {
     let buffer = Buffer(bytes);
-    let begin = if buffer.word(0)? == CONTINUED { 8 } else { 4 };
-    let message = buffer.follow(begin)?;
-    let schema = buffer.follow(buffer.field(message, HEADER)?)?;
-    let list = buffer.follow(buffer.field(schema, FIELDS)?)?;
-    let mut out = HashMap::new();
-    for i in 0..buffer.word(list)? as usize {
-        let field = buffer.follow(list.checked_add(4 + 4 * i)?)?;
-        let kind = buffer.field(field, TYPE).and_then(|at| bytes.get(at));
-        if kind != Some(&DURATION) {
-            continue;
-        }
-        let (Some(name), Some(details)) = (
-            buffer.text(buffer.follow(buffer.field(field, NAME)?)?),
-            buffer
-                .field(field, DETAILS)
-                .and_then(|at| buffer.follow(at)),
-        ) else {
-            continue;
-        };
-        // Milliseconds are what is left out.
-        let unit = buffer
-            .field(details, UNIT)
-            .map_or(Some(1), |at| buffer.half(at));
-        let worth = match unit {
-            Some(0) => 1.0,
-            Some(1) => 1e-3,
-            Some(2) => 1e-6,
-            Some(3) => 1e-9,
-            _ => continue,
-        };
-        out.insert(name.to_owned(), worth);
-    }
-    Some(out)
+    let schema = buffer.child(message(buffer, 0)?, HEADER)?;
+    let fields = fields(buffer, schema)?.into_iter();
+    let duration = |f: Field| match f.stored {
+        Stored::Integer {
+            meaning: Meaning::Duration(worth),
+            ..
+        } => Some((f.name, worth)),
+        _ => None,
+    };
+    Some(fields.filter_map(duration).collect())
 }
 
-/// Tables of FlatBuffers: places count from the first byte.
-struct Buffer<'a>(&'a [u8]);
+/// Returns the table of the message that begins at a place.
+pub(super) fn message(buffer: Buffer<'_>, at: usize) -> Option<usize> {
+    let before = if buffer.word(at)? == CONTINUED { 8 } else { 4 };
+    buffer.follow(at.checked_add(before)?)
+}
 
-impl<'a> Buffer<'a> {
-    fn word(&self, at: usize) -> Option<u32> {
-        let bytes = self.0.get(at..)?.first_chunk()?;
-        Some(u32::from_le_bytes(*bytes))
+/// Returns the content of a message: its kind and its table.
+pub(super) fn content(buffer: Buffer<'_>, message: usize) -> Option<(u8, usize)> {
+    let kind = buffer.byte(buffer.field(message, HEADER - 1)?)?;
+    Some((kind, buffer.child(message, HEADER)?))
+}
+
+/// Returns the columns of a schema; `None` where it is damaged, or its numbers are not in little-endian order.
+pub(super) fn fields(buffer: Buffer<'_>, schema: usize) -> Option<Vec<Field>> {
+    let order = buffer.field(schema, 0);
+    let is_little = order.is_none_or(|at| buffer.half(at) == Some(0));
+    let list = buffer.list(schema, 1, 4)?.into_iter();
+    let read = |at: usize| field(buffer, buffer.follow(at)?, DEPTH);
+    is_little.then(|| list.map(read).collect())?
+}
+
+fn field(buffer: Buffer<'_>, at: usize, depth: usize) -> Option<Field> {
+    let depth = depth.checked_sub(1)?;
+    let name = buffer.child(at, 0).and_then(|text| buffer.text(text));
+    let kind = buffer.byte(buffer.field(at, 2)?)?;
+    let details = buffer.child(at, 3)?;
+    let children = buffer.list(at, 5, 4)?.into_iter();
+    let children = children.map(|c| field(buffer, buffer.follow(c)?, depth));
+    let stored = stored(buffer, kind, details)?;
+    let plain = Field {
+        name: name.unwrap_or_default().to_owned(),
+        stored,
+        buffers: match kind {
+            NULL | RUN_ENDS => 0,
+            // Types, and offsets of the dense form.
+            UNION => 1 + usize::from(half(buffer, details, 0, 0)? == 1),
+            STRUCT | FIXED_LIST => 1,
+            BINARY | UTF8 | LARGE_BINARY | LARGE_UTF8 | LIST_VIEW | LARGE_LIST_VIEW => 3,
+            _ => 2,
+        },
+        is_view: matches!(kind, BINARY_VIEW | UTF8_VIEW),
+        has_validity: !matches!(kind, NULL | RUN_ENDS | UNION),
+        dictionary: None,
+        children: children.collect::<Option<_>>()?,
+    };
+    let Some(dictionary) = buffer.child(at, 4) else {
+        return Some(plain);
+    };
+    let id = buffer.field(dictionary, 0);
+    let id = id.map_or(Some(0), |at| buffer.size(at))?;
+    let index = match buffer.child(dictionary, 1) {
+        Some(details) => self::stored(buffer, INT, details)?,
+        None => integer(4, true, Meaning::Number(1.0)),
+    };
+    Some(Field {
+        stored: index,
+        buffers: 2,
+        is_view: false,
+        has_validity: true,
+        dictionary: Some((id, stored)),
+        children: Vec::new(),
+        ..plain
+    })
+}
+
+// Numbers of the types.
+const NULL: u8 = 1;
+const INT: u8 = 2;
+const REAL: u8 = 3;
+const BINARY: u8 = 4;
+const UTF8: u8 = 5;
+const BOOL: u8 = 6;
+const TIME: u8 = 9;
+const TIMESTAMP: u8 = 10;
+const STRUCT: u8 = 13;
+const UNION: u8 = 14;
+const FIXED_LIST: u8 = 16;
+const DURATION: u8 = 18;
+const LARGE_BINARY: u8 = 19;
+const LARGE_UTF8: u8 = 20;
+const RUN_ENDS: u8 = 22;
+const BINARY_VIEW: u8 = 23;
+const UTF8_VIEW: u8 = 24;
+const LIST_VIEW: u8 = 25;
+const LARGE_LIST_VIEW: u8 = 26;
+
+fn integer(bytes: usize, is_signed: bool, meaning: Meaning) -> Stored {
+    Stored::Integer {
+        bytes,
+        is_signed,
+        meaning,
     }
+}
 
-    fn half(&self, at: usize) -> Option<u16> {
-        let bytes = self.0.get(at..)?.first_chunk()?;
-        Some(u16::from_le_bytes(*bytes))
-    }
+/// Returns a number of 16 bits in a table; `otherwise` where it was left out.
+fn half(buffer: Buffer<'_>, table: usize, number: usize, otherwise: u16) -> Option<u16> {
+    let at = buffer.field(table, number);
+    at.map_or(Some(otherwise), |at| buffer.half(at))
+}
 
-    /// Where the offset at a place leads.
-    fn follow(&self, at: usize) -> Option<usize> {
-        at.checked_add(self.word(at)? as usize)
-    }
-
-    /// Where field `number` of a table stands; `None` where it was left out.
-    fn field(&self, table: usize, number: usize) -> Option<usize> {
-        let back = self.word(table)? as i32;
-        let list = (table as i64).checked_sub(i64::from(back))?;
-        let list = usize::try_from(list).ok()?;
-        let place = 4 + 2 * number;
-        if place >= usize::from(self.half(list)?) {
-            return None;
+/// Returns how the values of a type are stored; `None` where its details are damaged.
+fn stored(buffer: Buffer<'_>, kind: u8, details: usize) -> Option<Stored> {
+    let bits = |number: usize, otherwise: u32| {
+        let at = buffer.field(details, number);
+        at.map_or(Some(otherwise), |at| buffer.word(at))
+    };
+    let bytes = |bits: u32| matches!(bits, 8 | 16 | 32 | 64).then_some(bits as usize / 8);
+    // Timestamps count in s, times and durations in ms, where no unit is stated.
+    let unit = |otherwise: u16| match half(buffer, details, 0, otherwise)? {
+        0 => Some(1.0),
+        1 => Some(1e-3),
+        2 => Some(1e-6),
+        3 => Some(1e-9),
+        _ => None,
+    };
+    Some(match kind {
+        INT => {
+            let at = buffer.field(details, 1);
+            let is_signed = at.is_some_and(|at| buffer.byte(at) == Some(1));
+            integer(bytes(bits(0, 0)?)?, is_signed, Meaning::Number(1.0))
         }
-        let offset = self.half(list.checked_add(place)?)?;
-        (offset > 0).then(|| table.checked_add(usize::from(offset)))?
-    }
-
-    fn text(&self, at: usize) -> Option<&'a str> {
-        let length = self.word(at)? as usize;
-        let bytes = self.0.get(at.checked_add(4)?..)?.get(..length)?;
-        std::str::from_utf8(bytes).ok()
-    }
+        REAL => Stored::Real {
+            bytes: match half(buffer, details, 0, 0)? {
+                0 => 2,
+                1 => 4,
+                2 => 8,
+                _ => return None,
+            },
+        },
+        UTF8 => Stored::Text { bytes: 4 },
+        LARGE_UTF8 => Stored::Text { bytes: 8 },
+        UTF8_VIEW => Stored::TextView,
+        BOOL => Stored::Bits,
+        TIME => integer(bytes(bits(1, 32)?)?, true, Meaning::Instant(unit(1)?)),
+        TIMESTAMP => integer(8, true, Meaning::Instant(unit(0)?)),
+        DURATION => integer(8, true, Meaning::Duration(unit(1)?)),
+        _ => Stored::Other,
+    })
 }
 
 /// RFC 4648, section 4.
-fn from_base64(text: &str) -> Option<Vec<u8>> {
+pub(super) fn from_base64(text: &str) -> Option<Vec<u8>> {
     let digit = |c: u8| match c {
         b'A'..=b'Z' => Some(c - b'A'),
         b'a'..=b'z' => Some(c - b'a' + 26),

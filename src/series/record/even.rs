@@ -2,7 +2,7 @@
 
 use super::clock::{Clock, Evenness, Steps, clock_of, counts};
 use super::column::Column;
-use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
+use super::reader::{BLOCK, Block, OtherChannel, Pick, RecordReader, Sink, Times};
 use super::timed::timed;
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
@@ -80,6 +80,16 @@ impl Record {
     /// Its columns, in file order.
     pub fn columns(&self) -> &[Column] {
         self.reader.columns()
+    }
+
+    /// Name of the group of a column; empty where the format or the file has none.
+    pub fn group(&self, column: usize) -> &str {
+        self.reader.group(column)
+    }
+
+    /// Channels of the file that are not among the columns, in file order.
+    pub fn others(&self) -> &[OtherChannel] {
+        self.reader.others()
     }
 
     /// How many pieces it is read in.

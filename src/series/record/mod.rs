@@ -1,6 +1,6 @@
 //! Records of any length and origin, read a piece at a time: names with units split off, one clock, pieces that decode in parallel.
 //!
-//! A format is a [`RecordReader`]: [`csv`], the binary record of strainbridge, RPC III, Parquet, MDF4, TDMS, UFF 58. [`open_record`]
+//! A format is a [`RecordReader`]: [`csv`], the binary record of strainbridge, RPC III, Parquet, Feather, MDF4, TDMS, UFF 58. [`open_record`]
 //! tells them apart by their first bytes, passes once over the times ([`Clock`]) and gives a [`Record`], whose samples stand on even
 //! steps whatever the file held. Nothing is kept of a file but what lists its parts.
 
@@ -10,6 +10,10 @@ mod clock;
 mod column;
 pub mod csv;
 mod even;
+#[cfg(feature = "parquet")]
+mod feather;
+#[cfg(feature = "parquet")]
+mod flat_buffer;
 #[cfg(feature = "mdf")]
 mod mdf;
 mod open;
@@ -19,11 +23,11 @@ mod pages;
 mod parquet;
 #[cfg(feature = "parquet")]
 mod parquet_bytes;
-#[cfg(feature = "parquet")]
-mod parquet_runs;
 mod reader;
 #[cfg(feature = "parquet")]
 mod rows;
+#[cfg(feature = "parquet")]
+mod runs;
 mod source;
 mod span;
 mod stored;
@@ -35,6 +39,8 @@ mod tile;
 mod time_unit;
 mod timed;
 mod together;
+#[cfg(feature = "parquet")]
+mod typed;
 mod uff;
 mod whole;
 
@@ -42,9 +48,9 @@ pub use clock::{Clock, Evenness, RateChange};
 pub use column::{Clash, Column, Header, is_time, name_and_unit, seconds_in, take_unit_below};
 pub use even::Record;
 pub use open::{Format, Options, format_of, is_format, open_record, open_source, read_channels};
+pub use reader::{Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
 #[cfg(feature = "parquet")]
-pub use parquet_runs::runs_of_parquet;
-pub use reader::{Block, Bytes, Pick, RecordReader, Sink, Times};
+pub use runs::runs_as_csv;
 pub use source::{Parts, Source, is_read_in_parts};
 pub use span::{EVEN, Gap};
 pub use time_unit::{TimeUnit, USUAL_RATES_HZ, is_usual};

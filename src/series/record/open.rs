@@ -66,6 +66,8 @@ pub enum Format {
     Rpc,
     /// Apache Parquet.
     Parquet,
+    /// Feather, the file format of Apache Arrow.
+    Feather,
     /// ASAM MDF 4.
     Mdf,
     /// TDMS of National Instruments.
@@ -81,6 +83,7 @@ impl Format {
             Self::Binary => "a binary record of strainbridge",
             Self::Rpc => "a record in RPC III form",
             Self::Parquet => "a Parquet file",
+            Self::Feather => "a Feather file",
             Self::Mdf => "a record in MDF form",
             Self::Tdms => "a record in TDMS form",
             Self::Uff => "a universal file (UFF)",
@@ -93,6 +96,7 @@ impl Format {
             Self::Binary => "binary record",
             Self::Rpc => "RPC III",
             Self::Parquet => "Parquet",
+            Self::Feather => "Feather",
             Self::Mdf => "MDF4",
             Self::Tdms => "TDMS",
             Self::Uff => "UFF 58",
@@ -110,6 +114,9 @@ pub fn format_of(bytes: &[u8]) -> Option<Format> {
     }
     if bytes.starts_with(b"PAR1") {
         return Some(Format::Parquet);
+    }
+    if bytes.starts_with(b"ARROW1") {
+        return Some(Format::Feather);
     }
     if bytes.starts_with(b"MDF ") || bytes.starts_with(b"UnFinMF") {
         return Some(Format::Mdf);
@@ -130,6 +137,7 @@ fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, S
         Some(Format::Binary) => Box::new(Stored::binary(bytes)?),
         Some(Format::Rpc) => Box::new(Stored::rpc(bytes)?),
         Some(Format::Parquet) => return parquet(Source::Memory(bytes)),
+        Some(Format::Feather) => return feather(bytes),
         Some(Format::Mdf) => return mdf(bytes, &options.wanted),
         Some(Format::Tdms) => Box::new(Tdms::new(bytes, &options.wanted)?),
         Some(Format::Uff) => Box::new(Uff::new(bytes, &options.wanted)?),
@@ -146,6 +154,19 @@ fn parquet(source: Source) -> Result<Box<dyn RecordReader>, SeriesError> {
 fn parquet(_: Source) -> Result<Box<dyn RecordReader>, SeriesError> {
     Err(SeriesError::NotBuilt {
         name: "a Parquet file",
+        feature: "parquet",
+    })
+}
+
+#[cfg(feature = "parquet")]
+fn feather(bytes: Bytes) -> Result<Box<dyn RecordReader>, SeriesError> {
+    Ok(Box::new(super::feather::Feather::new(bytes)?))
+}
+
+#[cfg(not(feature = "parquet"))]
+fn feather(_: Bytes) -> Result<Box<dyn RecordReader>, SeriesError> {
+    Err(SeriesError::NotBuilt {
+        name: "a Feather file",
         feature: "parquet",
     })
 }

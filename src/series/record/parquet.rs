@@ -1,7 +1,7 @@
 //! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
 use super::arrow::durations;
-use super::column::{Column, is_time, name_and_unit, seconds_in};
+use super::column::Column;
 use super::pages::Pages;
 use super::parquet_bytes::Whole;
 use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
@@ -9,7 +9,7 @@ use super::rows::{Shared, Strips};
 use super::source::Source;
 use super::strip::{Strip, broken, texts};
 use super::tile::Tile;
-use super::time_unit::single_rounding_s;
+use super::typed::{Meaning, Precision, TimeColumn, Typed};
 use crate::series::error::SeriesError;
 use parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type as Kind};
 use parquet::column::reader::{ColumnReader, get_column_reader};
@@ -63,15 +63,6 @@ struct Unit {
     pieces: usize,
 }
 
-/// What an index column says beside its values: a plain number, or a point in time.
-#[derive(Clone, Copy, PartialEq)]
-enum Meaning {
-    Number(f64),
-    Instant(f64),
-    /// Time that has passed.
-    Duration(f64),
-}
-
 impl Parquet {
     /// The table in a file. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or durations, such
     /// as the index that pandas writes. Columns of numbers alone are read; a null is NaN.
@@ -85,34 +76,17 @@ impl Parquet {
             .map_err(broken)?;
         let schema = metadata.file_metadata().schema_descr();
         let durations = durations(metadata.file_metadata());
-        let mut time: Option<(usize, Meaning, String, bool)> = None;
-        let mut found = Vec::new();
-        for (leaf, c) in schema.columns().iter().enumerate() {
-            let (0, Some(meaning)) = (c.max_rep_level(), meaning(c)) else {
-                continue;
-            };
+        let columns = schema.columns().iter().enumerate();
+        // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
+        let typed = Typed::of(columns.filter_map(|(leaf, c)| {
+            let meaning = meaning(c).filter(|_| c.max_rep_level() == 0)?;
             let meaning = match durations.get(c.name()) {
                 Some(worth) if c.path().parts().len() == 1 => Meaning::Duration(*worth),
                 _ => meaning,
             };
-            // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
-            let column = name_and_unit(c.name());
-            let named = is_time(&column.name, leaf == 0);
-            if named && time.as_ref().is_none_or(|t| !t.3) {
-                time = Some((leaf, meaning, column.unit.clone(), true));
-            } else if !matches!(meaning, Meaning::Number(_)) && time.is_none() {
-                time = Some((leaf, meaning, column.unit.clone(), false));
-            }
-            found.push((leaf, meaning, column));
-        }
-        let at = time.as_ref().map(|t| t.0);
-        let (leaves, columns) = found
-            .into_iter()
-            // A row number that pandas or others left over is no channel.
-            .filter(|(leaf, _, c)| Some(*leaf) != at && !c.name.starts_with("__index_level_"))
-            .map(|(leaf, m, c)| (leaf, worth(m), c))
-            .map(|(leaf, worth, c)| ((leaf, worth), c))
-            .unzip();
+            Some((leaf, c.name(), meaning))
+        }));
+        let (leaves, columns) = typed.channels.into_iter().unzip();
         let (mut pieces, mut units): (Vec<Part>, Vec<Unit>) = (Vec::new(), Vec::new());
         for (g, group) in metadata.row_groups().iter().enumerate() {
             let rows = usize::try_from(group.num_rows()).unwrap_or(0);
@@ -158,30 +132,18 @@ impl Parquet {
             units,
             shared: Shared::default(),
         };
-        if let Some((leaf, meaning, unit, _)) = time {
-            file.set_time(leaf, meaning, &unit)?;
+        if let Some(time) = typed.time {
+            file.set_time(&time)?;
         }
         Ok(file)
     }
 
-    fn set_time(&mut self, leaf: usize, meaning: Meaning, unit: &str) -> Result<(), SeriesError> {
+    fn set_time(&mut self, time: &TimeColumn) -> Result<(), SeriesError> {
         let schema = self.metadata.file_metadata().schema_descr();
-        let kind = schema.column(leaf).physical_type();
-        let factor = match meaning {
-            // What type the column has says more than its name.
-            Meaning::Instant(worth) | Meaning::Duration(worth) => worth,
-            Meaning::Number(worth) => {
-                let s = seconds_in(unit).ok_or_else(|| SeriesError::Broken {
-                    wrong: format!("`{unit}` is no unit of time"),
-                    remedy: "give times in s or ms",
-                })?;
-                worth * s
-            }
-        };
-        self.time = Some((leaf, factor));
-        let instant = matches!(meaning, Meaning::Instant(_));
-        let duration = matches!(meaning, Meaning::Duration(_));
-        if instant {
+        let kind = schema.column(time.at).physical_type();
+        let factor = time.factor()?;
+        self.time = Some((time.at, factor));
+        if time.is_instant() {
             let mut first = None;
             for piece in 0..self.pieces.len() {
                 self.head(piece, &[Pick::Time], &mut |block| {
@@ -194,21 +156,12 @@ impl Parquet {
             }
             self.epoch = first.filter(|t| t.is_finite()).unwrap_or(0.0);
         }
-        let (integers, reals) = (
-            matches!(kind, Kind::INT32 | Kind::INT64),
-            kind == Kind::FLOAT,
-        );
-        self.times = Times::Stored {
-            // A stored unit is rounded to a half; seconds since 1970 in 64 bits are good to a quarter of a microsecond.
-            rounding_s: match (instant, integers, reals) {
-                (true, ..) => 0.5 * factor + 2.5e-7,
-                (false, true, _) => 0.5 * factor,
-                (false, _, true) => single_rounding_s(factor),
-                _ => 0.0,
-            },
-            epoch_s: instant.then_some(self.epoch),
-            unit_stated: instant || duration || !unit.is_empty(),
+        let precision = match kind {
+            Kind::INT32 | Kind::INT64 => Precision::Integer,
+            Kind::FLOAT => Precision::Single,
+            _ => Precision::Double,
         };
+        self.times = time.times(precision, factor, self.epoch);
         Ok(())
     }
 
@@ -390,12 +343,6 @@ impl Parquet {
 
     fn descriptor(&self, leaf: usize) -> ColumnDescPtr {
         self.metadata.file_metadata().schema_descr().column(leaf)
-    }
-}
-
-fn worth(m: Meaning) -> f64 {
-    match m {
-        Meaning::Number(w) | Meaning::Instant(w) | Meaning::Duration(w) => w,
     }
 }
 

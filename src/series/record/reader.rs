@@ -61,6 +61,21 @@ pub struct Block<'a> {
     pub values: &'a [f64],
 }
 
+/// A channel of a file that is not part of the record: its samples were taken at other times, or they are no numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OtherChannel {
+    /// Name of its group; empty where the file states none.
+    pub group: String,
+    /// Its name, without the unit.
+    pub name: String,
+    /// Its unit as the file states it; empty where it doesn't.
+    pub unit: String,
+    /// Number of samples.
+    pub samples: usize,
+    /// Its sample rate, Hz, where the file states one.
+    pub rate_hz: Option<f64>,
+}
+
 /// Takes blocks in order until it has enough.
 pub type Sink<'a> = dyn FnMut(Block<'_>) -> ControlFlow<()> + 'a;
 
@@ -68,6 +83,14 @@ pub type Sink<'a> = dyn FnMut(Block<'_>) -> ControlFlow<()> + 'a;
 pub trait RecordReader: Send + Sync {
     /// Its columns but time, in file order.
     fn columns(&self) -> &[Column];
+    /// Name of the group of a column; empty where the format or the file has none.
+    fn group(&self, _column: usize) -> &str {
+        ""
+    }
+    /// Channels of the file that are not among the columns, in file order.
+    fn others(&self) -> &[OtherChannel] {
+        &[]
+    }
     /// Where its times come from.
     fn times(&self) -> Times;
     /// How many pieces it is read in.

@@ -204,7 +204,7 @@ where
 }
 
 /// The value of a real of 16 bits (IEEE 754: one bit of sign, five of exponent, ten of fraction).
-fn of_half(bits: u16) -> f64 {
+pub(super) fn of_half(bits: u16) -> f64 {
     let fraction = f64::from(bits & 0x3ff) / 1024.0;
     let size = match i32::from(bits >> 10 & 0x1f) {
         0 => fraction * 2_f64.powi(-14),

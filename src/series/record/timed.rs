@@ -1,7 +1,7 @@
 //! Stored times brought to seconds from one beginning: times in another unit, times since 1970, times of day that pass midnight.
 
 use super::column::Column;
-use super::reader::{Block, Pick, RecordReader, Sink, Times};
+use super::reader::{Block, OtherChannel, Pick, RecordReader, Sink, Times};
 use super::span::typical_steps;
 use super::time_unit::{DAY, TimeUnit};
 use crate::series::error::SeriesError;
@@ -178,6 +178,14 @@ impl Timed {
 impl RecordReader for Timed {
     fn columns(&self) -> &[Column] {
         self.inner.columns()
+    }
+
+    fn group(&self, column: usize) -> &str {
+        self.inner.group(column)
+    }
+
+    fn others(&self) -> &[OtherChannel] {
+        self.inner.others()
     }
 
     fn times(&self) -> Times {

@@ -1,7 +1,7 @@
 //! A record in memory as a reader: what small files and formats without parts become.
 
 use super::column::Column;
-use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
+use super::reader::{BLOCK, Block, OtherChannel, Pick, RecordReader, Sink, Times};
 use crate::series::error::SeriesError;
 
 /// Samples a piece.
@@ -17,6 +17,8 @@ pub struct Whole {
     pub stored: Vec<f64>,
     /// Where the times come from.
     pub times: Times,
+    /// Channels of the file that are not among the columns.
+    pub others: Vec<OtherChannel>,
 }
 
 impl Whole {
@@ -48,6 +50,10 @@ impl Whole {
 impl RecordReader for Whole {
     fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    fn others(&self) -> &[OtherChannel] {
+        &self.others
     }
 
     fn times(&self) -> Times {

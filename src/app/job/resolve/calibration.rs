@@ -30,7 +30,9 @@ pub(super) fn calibration(
     out.repeats = raw.repeats.as_ref().map(words).unwrap_or_default();
     out.depends_on = raw.depends_on.as_ref().map(|w| w.value().clone());
     let key = "calibration.model_uncertainty_rel";
-    if let Some(rel) = c.positive(&raw.model_uncertainty_rel, key) {
+    if c.fraction(&raw.model_uncertainty_rel, key).is_some()
+        && let Some(rel) = c.positive(&raw.model_uncertainty_rel, key)
+    {
         out.model_uncertainty_rel = rel;
     }
     for (raw, key, out) in [

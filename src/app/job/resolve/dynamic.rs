@@ -28,19 +28,13 @@ pub(super) fn dynamic(c: &mut Collector, raw: Option<&Spanned<RawDynamic>>) -> O
         "a share of critical damping above 0 and below 0.5, such as 0.02",
         |x| x > 0.0 && x < 0.5,
     );
-    let share = "a share from 0 to 1";
-    let is_share = |x: f64| (0.0..=1.0).contains(&x);
-    let frequency = c.number(
+    let frequency = c.fraction(
         &raw.frequency_uncertainty_rel,
         "dynamic.frequency_uncertainty_rel",
-        share,
-        is_share,
     );
-    let of_damping = c.number(
+    let of_damping = c.fraction(
         &raw.damping_uncertainty_rel,
         "dynamic.damping_uncertainty_rel",
-        share,
-        is_share,
     );
     Some(Dynamic {
         up_to_hz: up_to?,

@@ -97,7 +97,7 @@ pub(super) fn measured(
             .unwrap_or(DEFAULT_NOISE_MICROSTRAIN),
         states_noise: raw.noise_microstrain.is_some(),
         model_uncertainty_rel: c
-            .at_least_zero(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
+            .fraction(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
             .unwrap_or(0.0),
         hold_out,
         time_unit_s: raw.time_unit.as_ref().and_then(|word| {

@@ -9,6 +9,7 @@ use super::gauge::{ROSETTES, SURFACES, bridges};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Bridge;
 use crate::placement::Loss;
+use crate::study::ErrorKind;
 
 /// Noise of a strain channel where the job says nothing, microstrain.
 pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;
@@ -208,7 +209,7 @@ pub(super) fn placement(
         .at_least_zero(&raw.angle_tolerance_deg, "placement.angle_tolerance_deg")
         .unwrap_or(0.0);
     out.model_uncertainty_rel = c
-        .at_least_zero(
+        .fraction(
             &raw.model_uncertainty_rel,
             "placement.model_uncertainty_rel",
         )
@@ -218,7 +219,7 @@ pub(super) fn placement(
         .at_least_zero(&raw.position_tolerance, "placement.position_tolerance")
         .unwrap_or(0.0);
     out.gauge_factor_rel = c
-        .at_least_zero(&raw.gauge_factor_rel, "placement.gauge_factor_rel")
+        .fraction(&raw.gauge_factor_rel, "placement.gauge_factor_rel")
         .unwrap_or(0.0);
     let bridges = bridges();
     for (name, noise) in &raw.noise_by_bridge {
@@ -293,7 +294,14 @@ pub(super) fn study(c: &mut Collector, raw: Option<&Spanned<RawStudy>>) -> Optio
             "study.errors.kind",
             "kind = \"relative-uniform\"",
         );
-        let size = c.at_least_zero(&e.value().size, "study.errors.size");
+        let is_relative = kind
+            .as_deref()
+            .and_then(ErrorKind::from_word)
+            .is_some_and(ErrorKind::is_relative);
+        let size = match is_relative {
+            true => c.fraction(&e.value().size, "study.errors.size"),
+            false => c.at_least_zero(&e.value().size, "study.errors.size"),
+        };
         if e.value().size.is_none() {
             c.fault(
                 e,

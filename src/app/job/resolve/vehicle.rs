@@ -106,7 +106,7 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
     let mut gain = None;
     let mut sync = None;
     if let Some(t) = tolerance {
-        gain = c.at_least_zero(&t.gain, "vehicle.tolerance.gain");
+        gain = c.fraction(&t.gain, "vehicle.tolerance.gain");
         sync = c.at_least_zero(&t.sync, "vehicle.tolerance.sync");
     }
     let sample_rate = c.positive(&raw.sample_rate, "vehicle.sample_rate");

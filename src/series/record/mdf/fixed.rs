@@ -4,7 +4,9 @@ use super::fault::broken;
 use super::field::{Field, values};
 use crate::series::error::SeriesError;
 use crate::series::record::column::Column;
-use crate::series::record::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use crate::series::record::reader::{
+    BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times,
+};
 use crate::series::record::tile::Tile;
 use falcon_mdf::blocks::CompressionType;
 use falcon_mdf::data_index::DataBlockInfo;
@@ -246,11 +248,12 @@ pub(super) struct Fixed {
     places: Vec<(usize, usize)>,
     /// First sample of each piece, and the number of samples.
     starts: Vec<usize>,
+    others: Vec<OtherChannel>,
 }
 
 impl Fixed {
     /// Pieces end where blocks of the first group do, so that a deflated block is mostly expanded once.
-    pub(super) fn new(bytes: Bytes, groups: Vec<Group>) -> Self {
+    pub(super) fn new(bytes: Bytes, groups: Vec<Group>, others: Vec<OtherChannel>) -> Self {
         let mut places = Vec::new();
         let mut columns = Vec::new();
         for (g, group) in groups.iter().enumerate() {
@@ -293,6 +296,7 @@ impl Fixed {
             columns,
             places,
             starts,
+            others,
         }
     }
 
@@ -304,6 +308,10 @@ impl Fixed {
 impl RecordReader for Fixed {
     fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    fn others(&self) -> &[OtherChannel] {
+        &self.others
     }
 
     fn times(&self) -> Times {

@@ -9,7 +9,7 @@ mod field;
 mod fixed;
 
 use super::column::Column;
-use super::reader::{Bytes, RecordReader, Times};
+use super::reader::{Bytes, OtherChannel, RecordReader, Times};
 use super::whole::Whole;
 use crate::series::error::SeriesError;
 use falcon_mdf::io::{ByteSlice, ByteSource};
@@ -73,9 +73,12 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
     let at = |g: &ChannelGroup| groups.iter().position(|o| std::ptr::eq(*o, g));
     let main_at = at(main).unwrap_or(0);
     let Some(clock) = plain.get_mut(main_at).and_then(Option::take) else {
-        return whole(&file, main).map(|w| Box::new(w) as Box<dyn RecordReader>);
+        let mut read = whole(&file, main)?;
+        let rest = groups.iter().filter(|g| !std::ptr::eq(**g, main));
+        read.others = rest.flat_map(|g| others(g)).collect();
+        return Ok(Box::new(read));
     };
-    let mut apart: Vec<String> = Vec::new();
+    let mut apart: Vec<OtherChannel> = Vec::new();
     let mut list = vec![clock];
     for (other, group) in groups.iter().zip(plain) {
         if std::ptr::eq(*other, main) {
@@ -89,17 +92,26 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
             {
                 list.push(group);
             }
-            _ => apart.extend(
-                values(other)
-                    .filter(|c| wanted.contains(&c.name))
-                    .map(|c| c.name.clone()),
-            ),
+            _ => apart.extend(others(other)),
         }
     }
-    if !apart.is_empty() {
-        return Err(SeriesError::Apart { names: apart });
+    let names = apart.iter().map(|c| c.name.clone());
+    let names: Vec<String> = names.filter(|n| wanted.contains(n)).collect();
+    if !names.is_empty() {
+        return Err(SeriesError::Apart { names });
     }
-    Ok(Box::new(Fixed::new(bytes, list)))
+    Ok(Box::new(Fixed::new(bytes, list, apart)))
+}
+
+/// Channels of a group that is not read.
+fn others(group: &ChannelGroup) -> impl Iterator<Item = OtherChannel> {
+    values(group).map(|c| OtherChannel {
+        group: group.acquisition_name.clone(),
+        name: c.name.clone(),
+        unit: c.unit.clone(),
+        samples: usize::try_from(group.sample_count).unwrap_or(usize::MAX),
+        rate_hz: None,
+    })
 }
 
 /// A group decoded whole.
@@ -136,5 +148,6 @@ fn whole(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
         },
         samples,
         stored: stored.unwrap_or_default(),
+        others: Vec::new(),
     })
 }

@@ -10,7 +10,7 @@ mod stamp;
 mod tests;
 
 use super::column::{Column, is_time, seconds_in};
-use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
 use super::time_unit::single_rounding_s;
 use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
@@ -34,6 +34,9 @@ pub(super) struct Tdms {
     time: Option<(Channel, Scale)>,
     times: Times,
     samples: usize,
+    /// Group of each column.
+    groups: Vec<String>,
+    others: Vec<OtherChannel>,
 }
 
 /// What turns stored numbers into values: coefficients of a polynomial.
@@ -45,7 +48,9 @@ impl Tdms {
     /// # Errors
     /// A file that can't be read, channels of a kind that is not read, wanted channels that were sampled at other times.
     pub(super) fn new(bytes: Bytes, wanted: &[String]) -> Result<Self, SeriesError> {
-        let all = channels_of((*bytes).as_ref())?;
+        let (all, texts): (Vec<Channel>, Vec<Channel>) = channels_of((*bytes).as_ref())?
+            .into_iter()
+            .partition(|c| c.kind != Kind::Text);
         let samplings = samplings(&all, (*bytes).as_ref());
         let named = all.iter().zip(&samplings);
         let named: Vec<(&str, Sampling)> = named.map(|(c, s)| (c.name.as_str(), *s)).collect();
@@ -54,9 +59,12 @@ impl Tdms {
         };
         let names: Vec<String> = all.iter().map(|c| c.name.clone()).collect();
         let (mut columns, mut channels, mut time) = (Vec::new(), Vec::new(), None);
-        for (at, (c, together)) in all.into_iter().zip(together).enumerate() {
+        let (mut groups, mut others) = (Vec::new(), Vec::new());
+        let sampled = all.into_iter().zip(together).zip(&samplings);
+        for (at, ((c, together), sampling)) in sampled.enumerate() {
             let is_times = main.times == Some(at);
             if !(together || is_times) || c.kind == Kind::Time && !is_times {
+                others.push(other(&c, Some(sampling.step_s)));
                 continue;
             }
             let scale = scale_of(&c)?;
@@ -73,8 +81,10 @@ impl Tdms {
             };
             let unit = c.unit();
             columns.push(Column::of_channel(&name, unit));
+            groups.push(c.group.clone());
             channels.push((c, scale));
         }
+        others.extend(texts.iter().map(|c| other(c, None)));
         let samples = main.samples;
         let mut file = Self {
             bytes,
@@ -85,6 +95,8 @@ impl Tdms {
                 samples: Some(samples),
             },
             samples,
+            groups,
+            others,
         };
         match time {
             Some((c, scale)) => file.set_time(c, scale)?,
@@ -130,6 +142,17 @@ impl Tdms {
         };
         self.time = Some((c, scale));
         Ok(())
+    }
+}
+
+/// Returns the description of a channel that is not read; `step_s`: time between its samples, s, 0 where it states none.
+fn other(c: &Channel, step_s: Option<f64>) -> OtherChannel {
+    OtherChannel {
+        group: c.group.clone(),
+        name: c.name.clone(),
+        unit: c.unit().to_owned(),
+        samples: c.samples,
+        rate_hz: step_s.filter(|s| *s > 0.0).map(|s| 1.0 / s),
     }
 }
 
@@ -209,6 +232,14 @@ fn scale_of(c: &Channel) -> Result<Scale, SeriesError> {
 impl RecordReader for Tdms {
     fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    fn group(&self, column: usize) -> &str {
+        self.groups.get(column).map_or("", String::as_str)
+    }
+
+    fn others(&self) -> &[OtherChannel] {
+        &self.others
     }
 
     fn times(&self) -> Times {

@@ -225,7 +225,7 @@ struct Object {
     kind: Option<Kind>,
 }
 
-/// The channels of numbers, in the order of the file.
+/// Returns the channels, those of text too, in the order of the file.
 ///
 /// # Errors
 /// Lists that can't be read, samples of a kind that is not read, a channel that changes its kind.
@@ -242,10 +242,11 @@ pub fn channels_of(bytes: &[u8]) -> Result<Vec<Channel>, SeriesError> {
         let Some(o) = objects.remove(&path) else {
             continue;
         };
-        let Some(kind) = o.kind.filter(|k| k.is_number()) else {
+        let parts = names_of(&path);
+        // A channel without samples has no kind; the file and its groups are no channels.
+        let Some(kind) = o.kind.or((parts.len() > 1).then_some(Kind::Text)) else {
             continue;
         };
-        let parts = names_of(&path);
         let mut parts = parts.into_iter().rev();
         let name = parts.next().unwrap_or_default();
         out.push(Channel {
@@ -400,6 +401,8 @@ fn samples(
             if index.kind.is_number() {
                 let stride = if interleaved { row } else { index.kind.size() };
                 push(object, at, index.values, stride, flags & BIG_ENDIAN != 0);
+            } else {
+                object.samples += index.values;
             }
             at += if interleaved {
                 index.kind.size()

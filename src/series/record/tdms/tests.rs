@@ -1,5 +1,5 @@
 use crate::series::error::SeriesError;
-use crate::series::record::{Options, Record, open_record};
+use crate::series::record::{Options, OtherChannel, Record, open_record};
 use std::sync::Arc;
 
 /// Seconds from 1904 to 2026-05-01 12:00:00.
@@ -168,4 +168,34 @@ fn each_group_has_its_own_channel_of_times() {
     assert!(matches!(apart.err(), Some(SeriesError::Apart { .. })));
     let second = open(&groups(3.0), &["P2"]).unwrap();
     assert!((second.clock.start_s - 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn channels_at_other_times_and_channels_without_samples_are_listed_by_group() {
+    let clock = |step| {
+        vec![
+            ("wf_increment", P::Real(step)),
+            ("unit_string", P::Text("V")),
+        ]
+    };
+    let mut slow = channel("/'slow'/'battery'", clock(1.0));
+    slow.samples = Samples::Reals(vec![24.0; 3]);
+    let mut empty = channel("/'notes'/'remark'", Vec::new());
+    empty.samples = Samples::Reals(Vec::new());
+    let list = [channel("/'strain'/'P1'", clock(0.01)), slow, empty];
+    let record = open(&list, &[]).unwrap();
+    let names: Vec<&str> = record.columns().iter().map(|c| c.name.as_str()).collect();
+    assert_eq!((names, record.group(0)), (vec!["P1"], "strain"));
+    let other = |group: &str, name: &str, unit: &str, samples, rate_hz| OtherChannel {
+        group: group.into(),
+        name: name.into(),
+        unit: unit.into(),
+        samples,
+        rate_hz,
+    };
+    let expected = [
+        other("slow", "battery", "V", 3, Some(1.0)),
+        other("notes", "remark", "", 0, None),
+    ];
+    assert_eq!(record.others(), expected);
 }

@@ -4,7 +4,7 @@ mod dataset;
 mod fault;
 
 use super::column::Column;
-use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
+use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
 use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use dataset::{Dataset, Samples, datasets};
@@ -31,6 +31,7 @@ pub(super) struct Uff {
     columns: Vec<Column>,
     sets: Vec<Dataset>,
     times: (f64, f64, usize),
+    others: Vec<OtherChannel>,
 }
 
 impl Uff {
@@ -55,13 +56,25 @@ impl Uff {
             });
         };
         let times = (main.start_s, main.step_s, main.samples);
-        let together = all.into_iter().zip(together);
-        let sets: Vec<Dataset> = together.filter(|(_, t)| *t).map(|(d, _)| d).collect();
+        let (mut sets, mut others) = (Vec::new(), Vec::new());
+        for (set, together) in all.into_iter().zip(together) {
+            match together {
+                true => sets.push(set),
+                false => others.push(OtherChannel {
+                    group: String::new(),
+                    name: set.column.name,
+                    unit: set.column.unit,
+                    samples: set.samples,
+                    rate_hz: Some(1.0 / set.step_s),
+                }),
+            }
+        }
         Ok(Self {
             bytes,
             columns: sets.iter().map(|d| d.column.clone()).collect(),
             sets,
             times,
+            others,
         })
     }
 }
@@ -69,6 +82,10 @@ impl Uff {
 impl RecordReader for Uff {
     fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    fn others(&self) -> &[OtherChannel] {
+        &self.others
     }
 
     fn times(&self) -> Times {

@@ -1,6 +1,8 @@
-//! Tables of runs in Parquet files, as text: what reads a table of text then reads them too.
+//! Tables of runs in Parquet and Feather files, as text: what reads a table of text then reads them too.
 
 use super::column::Column;
+use super::feather::Feather;
+use super::open::{Format, format_of};
 use super::parquet::Parquet;
 use super::reader::{Bytes, Pick, RecordReader};
 use super::source::Source;
@@ -13,16 +15,33 @@ const MOST_NUMBERS: usize = 20_000_000;
 /// The column that names the runs.
 const RUN: &str = "run";
 
-/// Returns the table of a Parquet file that has a column `run`, as CSV with the names of the file; `None` for any other file.
+/// Returns the table of a Parquet or Feather file that has a column `run`, as CSV with the names of the file; `None` for any other file.
 ///
 /// # Errors
 /// A file that is damaged, or larger than tables are.
-pub fn runs_of_parquet(bytes: Bytes) -> Result<Option<String>, SeriesError> {
-    let file = Parquet::new(Source::Memory(bytes))?;
+pub fn runs_as_csv(bytes: Bytes) -> Result<Option<String>, SeriesError> {
+    match format_of((*bytes).as_ref()) {
+        Some(Format::Parquet) => {
+            let file = Parquet::new(Source::Memory(bytes))?;
+            as_csv(&file, || file.texts(RUN))
+        }
+        Some(Format::Feather) => {
+            let file = Feather::new(bytes)?;
+            as_csv(&file, || file.texts(RUN))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Returns the table of a file as CSV; `texts` reads its column `run` where that is text.
+fn as_csv(
+    file: &dyn RecordReader,
+    texts: impl Fn() -> Result<Option<Vec<String>>, SeriesError>,
+) -> Result<Option<String>, SeriesError> {
     let of_numbers = file.columns().iter().position(|c| c.name == RUN);
     let Some(names) = (match of_numbers {
         Some(_) => Some(Vec::new()),
-        None => file.texts(RUN)?,
+        None => texts()?,
     }) else {
         return Ok(None);
     };
@@ -134,7 +153,7 @@ mod tests {
             Compression::LZ4,
             Compression::LZ4_RAW,
         ] {
-            let text = runs_of_parquet(Arc::new(runs(compression))).unwrap();
+            let text = runs_as_csv(Arc::new(runs(compression))).unwrap();
             let expected = "run,P01,P02\nR1,1.5,10\n\"R2, again\",-2,\nR3,0.001,30\n";
             assert_eq!(text.as_deref(), Some(expected), "{compression:?}");
         }
@@ -147,9 +166,11 @@ mod tests {
             for bit in [1, 0x80, 0xff] {
                 let mut other = bytes.clone();
                 other[i] ^= bit;
-                let _ = runs_of_parquet(Arc::new(other));
+                let _ = runs_as_csv(Arc::new(other));
             }
-            assert!(runs_of_parquet(Arc::new(bytes[..i].to_vec())).is_err());
+            // A file that begins with fewer bytes is no Parquet file.
+            let cut = runs_as_csv(Arc::new(bytes[..i].to_vec()));
+            assert!(i < 4 || cut.is_err());
         }
     }
 
@@ -158,6 +179,6 @@ mod tests {
         let names = ["A".to_owned()];
         let fill = |from: usize, to: usize, out: &mut Vec<f64>| out.resize(to - from, 1.0);
         let bytes = crate::series::parquet::parquet_bytes(&names, &[], [0.0, 0.01], 10, fill);
-        assert_eq!(runs_of_parquet(Arc::new(bytes.unwrap())), Ok(None));
+        assert_eq!(runs_as_csv(Arc::new(bytes.unwrap())), Ok(None));
     }
 }

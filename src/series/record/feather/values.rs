@@ -1,0 +1,80 @@
+//! Numbers of a Feather file as they are stored.
+
+use crate::series::record::arrow::Stored;
+use crate::series::record::strip::of_half;
+use std::borrow::Cow;
+
+/// Values of one field in one batch.
+pub(super) struct Values<'a> {
+    pub stored: Stored,
+    /// A bit a row; empty where no value is missing.
+    pub validity: Cow<'a, [u8]>,
+    pub data: Cow<'a, [u8]>,
+    /// Values that the stored ones are the numbers of.
+    pub dictionary: Option<Vec<f64>>,
+}
+
+impl Values<'_> {
+    /// Writes the rows from number `first` on, times `worth` less `off`; NaN for a null.
+    pub(super) fn put(&self, first: usize, worth: f64, off: f64, out: &mut [f64]) {
+        let data = &*self.data;
+        match self.stored {
+            Stored::Bits => {
+                for (slot, i) in out.iter_mut().zip(first..) {
+                    *slot = f64::from(u8::from(bit(data, i)));
+                }
+            }
+            Stored::Integer {
+                bytes, is_signed, ..
+            } => match (bytes, is_signed) {
+                (1, true) => each(data, first, out, |b| f64::from(i8::from_le_bytes(b))),
+                (1, false) => each(data, first, out, |b| f64::from(u8::from_le_bytes(b))),
+                (2, true) => each(data, first, out, |b| f64::from(i16::from_le_bytes(b))),
+                (2, false) => each(data, first, out, |b| f64::from(u16::from_le_bytes(b))),
+                (4, true) => each(data, first, out, |b| f64::from(i32::from_le_bytes(b))),
+                (4, false) => each(data, first, out, |b| f64::from(u32::from_le_bytes(b))),
+                (_, true) => each(data, first, out, |b| i64::from_le_bytes(b) as f64),
+                (_, false) => each(data, first, out, |b| u64::from_le_bytes(b) as f64),
+            },
+            Stored::Real { bytes: 2 } => {
+                each(data, first, out, |b| of_half(u16::from_le_bytes(b)));
+            }
+            Stored::Real { bytes: 4 } => {
+                each(data, first, out, |b| f64::from(f32::from_le_bytes(b)));
+            }
+            Stored::Real { .. } => each(data, first, out, f64::from_le_bytes),
+            Stored::Text { .. } | Stored::TextView | Stored::Other => {}
+        }
+        for (slot, i) in out.iter_mut().zip(first..) {
+            if !is_valid(&self.validity, i) {
+                *slot = f64::NAN;
+                continue;
+            }
+            if let Some(entries) = &self.dictionary {
+                let number = if *slot >= 0.0 {
+                    *slot as usize
+                } else {
+                    usize::MAX
+                };
+                *slot = entries.get(number).copied().unwrap_or(f64::NAN);
+            }
+            *slot = *slot * worth - off;
+        }
+    }
+}
+
+fn each<const N: usize>(data: &[u8], first: usize, out: &mut [f64], of: impl Fn([u8; N]) -> f64) {
+    let stored = data.as_chunks().0.get(first..).unwrap_or_default();
+    for (slot, bytes) in out.iter_mut().zip(stored) {
+        *slot = of(*bytes);
+    }
+}
+
+fn bit(bits: &[u8], i: usize) -> bool {
+    bits.get(i / 8).is_some_and(|b| b >> (i % 8) & 1 == 1)
+}
+
+/// Whether a row has a value: no bits are stored where each row has one.
+pub(super) fn is_valid(validity: &[u8], i: usize) -> bool {
+    validity.is_empty() || bit(validity, i)
+}
