@@ -30,7 +30,7 @@ pub(super) fn with_strain(
     let between: Vec<Between<'_>> = cases
         .iter()
         .zip(&temperatures)
-        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref()))
+        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref(), &solved.report))
         .collect();
     let shells = shell_fields(prepared, &u, &temperatures, options.corners)?;
     let beams = super::beam_strain::beam_fields(prepared, &u, &between)?;
