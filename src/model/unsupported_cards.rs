@@ -20,6 +20,7 @@ const GUST: [u32; 3] = [146, 187, 190];
 /// their set is selected.
 pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let mut structure: Vec<UnsupportedCard> = sequence(deck).into_iter().collect();
+    structure.extend(program_changes(deck));
     structure.extend(large_displacement(deck));
     structure.extend(statements(deck));
     structure.extend(superelements(deck));
@@ -33,6 +34,9 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
         match effect_of_card(&c.name) {
             Some(Effect::Load) => loads.push(card),
             Some(Effect::Acts | Effect::Carried) => structure.push(card),
+            Some(Effect::ActsWith("values of its own")) => {
+                structure.extend(super::model_parameters::acting(deck, c));
+            }
             Some(Effect::ActsWith(what)) if is_present(deck, what) => structure.push(card),
             _ => {}
         }
@@ -44,7 +48,7 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
 fn sequence(deck: &Deck) -> Option<UnsupportedCard> {
     let unsupported = |card: String, at: Place| UnsupportedCard { card, id: None, at };
     if let Some((approach, at)) = &deck.approach
-        && approach.starts_with("HEAT")
+        && ["HEAT", "DMAP"].iter().any(|a| approach.starts_with(a))
     {
         return Some(unsupported(format!("APP {approach}"), *at));
     }
@@ -52,6 +56,15 @@ fn sequence(deck: &Deck) -> Option<UnsupportedCard> {
     let is_linear = |n: &u32| LINEAR.contains(n) || GUST.contains(n);
     (!deck.sol.as_ref().is_some_and(is_linear))
         .then(|| unsupported(format!("SOL {text}"), deck.sol_at))
+}
+
+/// Returns the statements above CEND that change the solution sequence or start from an earlier run.
+fn program_changes(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
+    deck.program_changes.iter().map(|c| UnsupportedCard {
+        card: c.text.clone(),
+        id: None,
+        at: c.at,
+    })
 }
 
 /// PARAM,LGDISP where it asks for large displacements.

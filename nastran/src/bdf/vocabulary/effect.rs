@@ -13,10 +13,12 @@ pub enum Effect {
     Acts,
     /// A load that is not carried; its first field is its set, and it acts where the set is selected.
     Load,
-    /// It acts where this word of case control is stated, or with what is named here, and is not carried.
+    /// It acts where this word of case control is stated, or with what is named here (connectors, values of its own), and is not carried.
     ActsWith(&'static str),
     /// A statement of executive control, above CEND.
     Executive,
+    /// A statement of executive control that changes the solution sequence, or starts from an earlier run.
+    ExecutiveActs,
 }
 
 /// A word of case control as Nastran reads it.
