@@ -4,10 +4,9 @@ use super::UnitLoad;
 use super::element::beam::{Interior, LineLoad, beam_inertia};
 use super::load_case::LoadCase;
 use super::mass::add_acceleration;
-use super::report::SolveReport;
 use super::rigid_motion::rigid;
 use super::temperature::{Temperatures, beam_expansion};
-use crate::model::{Load, Model};
+use crate::model::{Load, Model, Vec3};
 use std::collections::HashMap;
 
 /// Loads along beams, and temperatures, of one case.
@@ -46,12 +45,12 @@ fn along(load: &Load, factor: f64) -> Option<(usize, LineLoad)> {
 }
 
 impl<'a> Between<'a> {
-    /// What acts along the beams in a case, whose inertia relief the report of its solution states.
+    /// What acts along the beams in a case. `relief` is the rigid acceleration of inertia relief and the centre of gravity it counts from.
     pub(crate) fn new(
         model: &Model,
         case: &LoadCase,
         temperatures: Option<&'a Temperatures>,
-        report: &SolveReport,
+        relief: Option<([f64; 6], Vec3)>,
     ) -> Self {
         let mut loads: HashMap<usize, Vec<LineLoad>> = HashMap::new();
         for load in &case.loads {
@@ -67,7 +66,7 @@ impl<'a> Between<'a> {
         Self {
             loads,
             temperatures,
-            acceleration: acceleration(model, case, report),
+            acceleration: acceleration(model, case, relief),
         }
     }
 
@@ -99,7 +98,11 @@ impl<'a> Between<'a> {
 
 /// Returns the acceleration whose forces on coupled mass act in a case: GRAV, ACCEL, ACCEL1, RFORCE, less that of inertia relief.
 /// `None` where mass is lumped, or nothing accelerates it.
-fn acceleration(model: &Model, case: &LoadCase, report: &SolveReport) -> Option<Vec<[f64; 6]>> {
+fn acceleration(
+    model: &Model,
+    case: &LoadCase,
+    relief: Option<([f64; 6], Vec3)>,
+) -> Option<Vec<[f64; 6]>> {
     if !model.params.coupmass || model.beams.is_empty() {
         return None;
     }
@@ -111,11 +114,10 @@ fn acceleration(model: &Model, case: &LoadCase, report: &SolveReport) -> Option<
             add_acceleration(model, *factor, load, &mut field);
         }
     }
-    let balance = report.balance.iter().find(|b| b.subcase == case.subcase);
-    if let (Some(balance), Some(mass)) = (balance, &report.mass) {
+    if let Some((amounts, centre)) = relief {
         for (grid, u) in model.grids.iter().zip(&mut field) {
-            for (mode, amount) in balance.acceleration.iter().enumerate() {
-                let motion = rigid(mode, &grid.x, &mass.cg);
+            for (mode, amount) in amounts.iter().enumerate() {
+                let motion = rigid(mode, &grid.x, &centre);
                 (0..6).for_each(|i| u[i] -= amount * motion[i]);
             }
         }
