@@ -52,7 +52,7 @@ impl Geometry {
 
     /// Adds the entries of a record without a reader that act, and a note on those that act where case control selects them.
     pub(super) fn unread(&mut self, code: Code, record: Record<'_>) {
-        match unread(code, record) {
+        match unread(code, record.table, record.words, record.stated.map(|s| s.0)) {
             Unread::Acting(entries) => {
                 let entries = entries.into_iter().map(Self::place);
                 self.cards.unread.extend(entries);

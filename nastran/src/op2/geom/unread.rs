@@ -1,9 +1,9 @@
 //! Records without a reader: the names of their entries, and which of them act.
 
 use super::fields::LARGEST_ID;
-use super::records::Record;
 use crate::bdf::vocabulary::{Effect, effect_of_card};
 use crate::cards::UnreadEntry;
+use crate::op2::words::Words;
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
@@ -26,12 +26,13 @@ pub(super) enum Unread {
     WithoutInfluence,
 }
 
-/// Returns the entries of a record without a reader. A record whose entries vary in length, or have an unknown length, is one entry.
-pub(super) fn unread(code: Code, record: Record<'_>) -> Unread {
+/// Returns the entries of a record without a reader. `words` are those behind its code, `stated` is the length of an entry where the code
+/// states it. A record whose entries vary in length, or have an unknown length, is one entry.
+pub(super) fn unread(code: Code, table: &str, words: Words<'_>, stated: Option<usize>) -> Unread {
     let Some((name, length)) = names().get(&code).copied() else {
         let (a, b, c) = code;
         return Unread::Acting(vec![UnreadEntry {
-            name: format!("record {a},{b},{c} of {}", record.table),
+            name: format!("record {a},{b},{c} of {table}"),
             id: None,
             is_load: false,
         }]);
@@ -42,8 +43,7 @@ pub(super) fn unread(code: Code, record: Record<'_>) -> Unread {
     if let Some(Effect::None(_) | Effect::ActsWith(_)) = effect_of_card(name) {
         return Unread::WithoutInfluence;
     }
-    let length = record.stated.map_or(length, |s| s.0);
-    let words = record.words;
+    let length = stated.unwrap_or(length);
     let is_whole = length > 0 && words.len().is_multiple_of(length);
     let id = |v: i64| (1..=LARGEST_ID).contains(&v).then_some(v);
     let ids = words.entries(length.max(1)).map(|entry| {
@@ -51,7 +51,7 @@ pub(super) fn unread(code: Code, record: Record<'_>) -> Unread {
         u32::try_from(id).ok()
     });
     let ids: Option<Vec<u32>> = is_whole.then(|| ids.collect()).flatten();
-    let is_load = record.table.starts_with("GEOM3") || name == "SPCD";
+    let is_load = table.starts_with("GEOM3") || name == "SPCD";
     let entry = |id: Option<u32>| UnreadEntry {
         name: name.to_owned(),
         id,
