@@ -2,7 +2,7 @@
 
 use super::fault::{Fault, FaultList};
 use super::files::{Inputs, why_unreadable};
-use super::not_solved::not_solved;
+use super::not_solved::{not_solved, not_solved_of_op2};
 use super::what_is::binary_kind;
 pub use super::what_is::looks_like_op2;
 use crate::finding::{Finding, Severity, few};
@@ -153,6 +153,7 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
         &mut findings,
         given,
     );
+    findings.extend(not_solved_of_op2(&model, given));
     Ok(DeckModel {
         given: given.to_owned(),
         deck: Deck::default(),

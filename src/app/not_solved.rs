@@ -1,9 +1,10 @@
 //! Finding about cards and statements of a deck that the built-in solver does not carry.
 
-use crate::fe::{LoadCase, unsupported_cards};
+use crate::fe::{LoadCase, UnitLoad, unsupported_cards};
 use crate::finding::{Finding, Severity, few};
 use crate::model::Model;
-use nastran::bdf::Deck;
+use nastran::bdf::{Deck, Subcase};
+use nastran::place::Place;
 use std::collections::BTreeMap;
 
 /// Code of the finding.
@@ -14,7 +15,31 @@ pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
     let subcases = deck.case_control.effective_subcases();
     let acting = |s| LoadCase::of_subcase(model, s, String::new());
     let cases: Vec<LoadCase> = subcases.iter().map(acting).collect();
-    let mut refused = unsupported_cards(model, &cases);
+    let place = |at: Place| format!("`{}` line {}", deck.path(at), at.line);
+    refused_in(model, &cases, given, place)
+}
+
+/// Returns the finding on everything that acts in the geometry blocks of an OP2, every load set included, and that the solver would refuse.
+pub fn not_solved_of_op2(model: &Model, given: &str) -> Option<Finding> {
+    let sets = model.load_sets.iter().map(|s| UnitLoad::Set(s.sid));
+    let heated = model.temperatures.iter().map(|t| UnitLoad::Temperature {
+        set: t.sid,
+        initial: None,
+    });
+    let case = LoadCase {
+        loads: sets.chain(heated).collect(),
+        ..LoadCase::of_subcase(model, &Subcase::default(), String::new())
+    };
+    refused_in(model, &[case], given, |_| format!("`{given}`"))
+}
+
+fn refused_in(
+    model: &Model,
+    cases: &[LoadCase],
+    given: &str,
+    place: impl Fn(Place) -> String,
+) -> Option<Finding> {
+    let mut refused = unsupported_cards(model, cases);
     refused.sort_by(|a, b| (a.at, &a.card).cmp(&(b.at, &b.card)));
     refused.dedup();
     let first = refused.first()?;
@@ -28,14 +53,13 @@ pub fn not_solved(deck: &Deck, model: &Model, given: &str) -> Option<Finding> {
     }
     let counted: Vec<String> = names.iter().map(|(n, c)| format!("{n}: {c}")).collect();
     let message = format!(
-        "`{}` line {}: `{}` acts on the solution, and the built-in solver does not carry it. Such entries in the deck: {} ({})",
-        deck.path(first.at),
-        first.at.line,
+        "{}: `{}` acts on the solution, and the built-in solver does not carry it. Such entries: {} ({})",
+        place(first.at),
         first.card,
         refused.len(),
         few(&counted)
     );
-    let remedy = "name results of Nastran in the job; the built-in solver refuses this deck";
+    let remedy = "name results of Nastran in the job; the built-in solver refuses this model";
     let mut finding = Finding::new(Severity::Warning, NOT_SOLVED, given, message, remedy);
     finding.measured = Some(refused.len() as f64);
     Some(finding)

@@ -3,7 +3,7 @@
 use super::UnitLoad;
 use super::error::FeError;
 use super::load::load_vector;
-use super::load_case::LoadCase;
+use super::load_case::{LoadCase, Relief, has_suport1};
 use super::mass::Mass;
 use super::prepared::Prepared;
 use super::temperature::Temperatures;
@@ -53,6 +53,10 @@ pub(super) fn check_sets(model: &Model, cases: &[&LoadCase]) -> Result<(), FeErr
             case.mpc,
             model.mpcs.iter().any(|s| Some(s.sid) == case.mpc),
         )?;
+        if let Relief::Suport(set) = case.relief {
+            let known = set.is_none_or(|s| has_suport1(model, s));
+            missing("SUPORT1", set, known)?;
+        }
         for load in &case.loads {
             if let UnitLoad::Set(sid) = load {
                 missing(

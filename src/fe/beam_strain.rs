@@ -31,7 +31,7 @@ pub(super) fn beam_fields(
                 .map(|i| beam_forces(model, i, u, &between.of(model, i)))
                 .collect();
             let forces = forces.map_err(|r| FeError::Refused(vec![r]))?;
-            let loads = between.loads_by_beam();
+            let loads = between.loads_by_beam(model);
             let (mut stations, mut axial) = (Vec::with_capacity(n), Vec::with_capacity(n));
             for (i, (shape, forces)) in shapes.iter().zip(&forces).enumerate() {
                 let along = (shape.sections.as_slice(), shape.e, shape.length);

@@ -110,7 +110,7 @@ pub enum FeError {
     },
     /// A set that a load case names is not in the deck.
     MissingSet {
-        /// `LOAD`, `SPC`, `MPC`.
+        /// `LOAD`, `SPC`, `MPC`, `SUPORT1`.
         kind: &'static str,
         /// Its id.
         sid: u32,

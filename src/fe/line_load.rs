@@ -1,10 +1,12 @@
-//! What acts along the bars and beams of a load case: PLOAD1 and temperature.
+//! What acts along the bars and beams of a load case: PLOAD1, temperature, inertia of coupled mass.
 
 use super::UnitLoad;
-use super::element::beam::{Interior, LineLoad};
+use super::element::beam::{Interior, LineLoad, beam_inertia};
 use super::load_case::LoadCase;
+use super::mass::add_acceleration;
+use super::rigid_motion::rigid;
 use super::temperature::{Temperatures, beam_expansion};
-use crate::model::{Load, Model};
+use crate::model::{Load, Model, Vec3};
 use std::collections::HashMap;
 
 /// Loads along beams, and temperatures, of one case.
@@ -12,13 +14,15 @@ use std::collections::HashMap;
 pub(crate) struct Between<'a> {
     loads: HashMap<usize, Vec<LineLoad>>,
     temperatures: Option<&'a Temperatures>,
+    /// Acceleration by grid, basic frame, WTMASS applied, where coupled mass acts.
+    acceleration: Option<Vec<[f64; 6]>>,
 }
 
 /// A PLOAD1 without anything else; empty for other loads.
 pub(crate) fn alone(load: &Load) -> Interior {
     Interior {
         loads: along(load, 1.0).into_iter().map(|l| l.1).collect(),
-        thermal: None,
+        ..Interior::default()
     }
 }
 
@@ -41,11 +45,12 @@ fn along(load: &Load, factor: f64) -> Option<(usize, LineLoad)> {
 }
 
 impl<'a> Between<'a> {
-    /// What acts along the beams in a case.
+    /// What acts along the beams in a case. `relief` is the rigid acceleration of inertia relief and the centre of gravity it counts from.
     pub(crate) fn new(
         model: &Model,
         case: &LoadCase,
         temperatures: Option<&'a Temperatures>,
+        relief: Option<([f64; 6], Vec3)>,
     ) -> Self {
         let mut loads: HashMap<usize, Vec<LineLoad>> = HashMap::new();
         for load in &case.loads {
@@ -61,12 +66,24 @@ impl<'a> Between<'a> {
         Self {
             loads,
             temperatures,
+            acceleration: acceleration(model, case, relief),
         }
     }
 
-    /// Returns the loads along beams, by beam.
-    pub(crate) fn loads_by_beam(&self) -> HashMap<usize, Vec<LineLoad>> {
-        self.loads.clone()
+    /// Returns the loads along beams, those of their coupled mass included, by beam.
+    pub(crate) fn loads_by_beam(&self, model: &Model) -> HashMap<usize, Vec<LineLoad>> {
+        let mut loads = self.loads.clone();
+        if let Some(acceleration) = &self.acceleration {
+            for i in 0..model.beams.len() {
+                let inertia = beam_inertia(model, i, acceleration).0;
+                let acts =
+                    |l: &LineLoad| [l.force, l.moment].iter().flatten().any(|v| v.amax() > 0.0);
+                if inertia.iter().any(acts) {
+                    loads.entry(i).or_default().extend(inertia);
+                }
+            }
+        }
+        loads
     }
 
     /// What acts along beam `i`.
@@ -74,6 +91,38 @@ impl<'a> Between<'a> {
         Interior {
             loads: self.loads.get(&i).cloned().unwrap_or_default(),
             thermal: self.temperatures.and_then(|t| beam_expansion(model, i, t)),
+            inertia: (self.acceleration.as_ref()).map(|a| beam_inertia(model, i, a).1),
         }
     }
+}
+
+/// Returns the acceleration whose forces on coupled mass act in a case: GRAV, ACCEL, ACCEL1, RFORCE, less that of inertia relief.
+/// `None` where mass is lumped, or nothing accelerates it.
+fn acceleration(
+    model: &Model,
+    case: &LoadCase,
+    relief: Option<([f64; 6], Vec3)>,
+) -> Option<Vec<[f64; 6]>> {
+    if !model.params.coupmass || model.beams.is_empty() {
+        return None;
+    }
+    let mut field = vec![[0.0; 6]; model.grids.len()];
+    for load in &case.loads {
+        let UnitLoad::Set(sid) = load else { continue };
+        let sets = model.load_sets.iter().filter(|s| s.sid == *sid);
+        for (factor, load) in sets.flat_map(|s| &s.loads) {
+            add_acceleration(model, *factor, load, &mut field);
+        }
+    }
+    if let Some((amounts, centre)) = relief {
+        for (grid, u) in model.grids.iter().zip(&mut field) {
+            for (mode, amount) in amounts.iter().enumerate() {
+                let motion = rigid(mode, &grid.x, &centre);
+                (0..6).for_each(|i| u[i] -= amount * motion[i]);
+            }
+        }
+    }
+    let wtmass = model.params.wtmass;
+    field.iter_mut().flatten().for_each(|v| *v *= wtmass);
+    field.iter().flatten().any(|v| *v != 0.0).then_some(field)
 }

@@ -3,7 +3,7 @@
 use super::element::beam::beam_end_forces;
 use super::element::shell::{linear_part, many_grids, over_face};
 use super::error::Refusal;
-use super::mass::Mass;
+use super::mass::{Mass, add_acceleration};
 use crate::model::{Direction, GridIx, Load, LoadSet, Model, Vec3, solid_edges};
 use std::collections::HashMap;
 
@@ -98,16 +98,13 @@ fn add(
                 pressure_on_curved(model, face, pressure, direction, factor, f);
             }
         }
-        Load::Gravity(a) => {
-            let all = (0..model.grids.len() as u32).map(|g| (GridIx(g), factor));
-            push_all(f, 1.0, &mass.accelerated(a, all));
-        }
-        Load::Acceleration { a, grids } => {
-            push_all(f, factor, &mass.accelerated(a, grids.iter().copied()));
-        }
-        Load::Spin { centre, omega } => {
-            let x: Vec<Vec3> = model.grids.iter().map(|g| g.x).collect();
-            push_all(f, factor, &mass.centrifugal(&x, centre, omega));
+        Load::Gravity(_) | Load::Acceleration { .. } | Load::Spin { .. } => {
+            let mut field = vec![[0.0; 6]; model.grids.len()];
+            add_acceleration(model, factor, load, &mut field);
+            push_all(f, 1.0, &mass.on_grids(&field));
+            if let Load::Spin { omega, .. } = load {
+                mass.add_off_grids(factor, omega, f);
+            }
         }
         Load::Line { beam, .. } => {
             let interior = super::line_load::alone(load);

@@ -46,13 +46,22 @@ impl LoadCase {
 }
 
 /// How a model without case control is balanced: by PARAM,INREL; a model with neither INREL nor `spc` as a free structure.
+///
+/// A SUPORT1 set that the model lacks stays selected without PARAM,INREL too: the solver refuses it.
 fn relief_of(model: &Model, spc: Option<u32>, suport: Option<u32>) -> Relief {
+    let missing = suport.filter(|set| !has_suport1(model, *set));
     match (model.params.inrel, spc) {
+        _ if missing.is_some() => Relief::Suport(missing),
         (-1, _) => Relief::Suport(suport),
         (-2, _) => Relief::Automatic,
         (_, None) if model.grids.iter().all(|g| g.ps.is_empty()) => Relief::Automatic,
         _ => Relief::None,
     }
+}
+
+/// Returns whether the model has this SUPORT1 set.
+pub(super) fn has_suport1(model: &Model, set: u32) -> bool {
+    model.suports.iter().any(|s| s.0 == Some(set))
 }
 
 /// Returns what acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).

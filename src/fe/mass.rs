@@ -7,7 +7,7 @@ use super::element::{ElementMatrix, between_dofs, point_mass, rod_mass, shear_pa
 use super::prepared::Prepared;
 use super::rigid_motion::rigid;
 use crate::linalg::Matrix6;
-use crate::model::{Grid, GridIx, Model, ScalarMass, Vec3, Weight};
+use crate::model::{Grid, GridIx, Load, Mat3, Model, ScalarMass, Vec3, Weight};
 use nastran::cards::ShellShape;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -187,25 +187,11 @@ impl Mass {
     }
 
     /// Returns M u, with zeros at scalar points.
-    fn on_grids(&self, u: &[[f64; 6]]) -> Vec<[f64; 6]> {
+    pub(super) fn on_grids(&self, u: &[[f64; 6]]) -> Vec<[f64; 6]> {
         let mut f = self.times(u);
         let points = f.iter_mut().zip(&self.points).filter(|p| *p.1);
         points.for_each(|(f, _)| *f = [0.0; 6]);
         f
-    }
-
-    /// Returns the forces of the mass in the acceleration `factor * a` of each listed grid.
-    pub(super) fn accelerated(
-        &self,
-        a: &Vec3,
-        grids: impl Iterator<Item = (GridIx, f64)>,
-    ) -> Vec<[f64; 6]> {
-        let mut field = vec![[0.0; 6]; self.point.len()];
-        for (g, factor) in grids.filter(|(g, _)| !self.points[g.us()]) {
-            let v = a * factor;
-            field[g.us()][..3].copy_from_slice(v.as_slice());
-        }
-        self.on_grids(&field)
     }
 
     /// Returns the displacements of rigid motion `mode` about a point: those of [`rigid`], and zeros at scalar points.
@@ -229,24 +215,14 @@ impl Mass {
         masses.find(|m| m.ends.iter().flatten().any(|(g, _)| scalar(g)))
     }
 
-    /// Centrifugal forces -m w x (w x r) of a rotation `omega` about `centre`; masses off their grids count where they are.
-    pub(super) fn centrifugal(&self, x: &[Vec3], centre: &Vec3, omega: &Vec3) -> Vec<[f64; 6]> {
-        let spin = omega.cross_matrix();
-        let gradient = -(spin * spin);
-        let field = x.iter().zip(&self.points).map(|(x, point)| {
-            let a = gradient * (x - centre);
-            if *point {
-                [0.0; 6]
-            } else {
-                [a.x, a.y, a.z, 0.0, 0.0, 0.0]
-            }
-        });
-        let mut f = self.on_grids(&field.collect::<Vec<_>>());
+    /// Adds the centrifugal forces of masses off their grids in a rotation `omega`: those at the grids are [`Mass::on_grids`] of the field.
+    pub(super) fn add_off_grids(&self, factor: f64, omega: &Vec3, f: &mut [[f64; 6]]) {
+        let gradient = centrifugal_gradient(omega) * factor;
         for (g, m) in &self.blocks {
             // First moment m o and second moment J = tr(I)/2 - I of the mass about its grid.
             let first = Vec3::new(m[(1, 5)], m[(2, 3)], m[(0, 4)]);
             let inertia = m.fixed_view::<3, 3>(3, 3).into_owned();
-            let second = crate::model::Mat3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
+            let second = Mat3::from_diagonal_element(0.5 * inertia.trace()) - inertia;
             let force = gradient * first;
             let moments = second * gradient.transpose();
             for i in 0..3 {
@@ -255,7 +231,6 @@ impl Mass {
                 f[g.us()][3 + i] += moments[(j, k)] - moments[(k, j)];
             }
         }
-        f
     }
 
     /// R' M R about a point.
@@ -286,6 +261,36 @@ impl Mass {
         let scalar = self.scalar.iter().flat_map(|m| &m.1);
         let mut all = self.point.iter().chain(blocks).chain(coupled).chain(scalar);
         all.all(|v| *v == 0.0)
+    }
+}
+
+/// Gradient of the centrifugal acceleration -w x (w x r) of a rotation.
+fn centrifugal_gradient(omega: &Vec3) -> Mat3 {
+    let spin = omega.cross_matrix();
+    -(spin * spin)
+}
+
+/// Adds the acceleration of a load on mass (basic frame, by grid) to a field. Scalar points have none. Other loads add nothing.
+pub(super) fn add_acceleration(model: &Model, factor: f64, load: &Load, field: &mut [[f64; 6]]) {
+    let mut add = |g: usize, a: Vec3| {
+        if let (Some(grid), Some(u)) = (model.grids.get(g), field.get_mut(g))
+            && !grid.is_scalar()
+        {
+            (0..3).for_each(|i| u[i] += factor * a[i]);
+        }
+    };
+    match load {
+        Load::Gravity(a) => (0..model.grids.len()).for_each(|g| add(g, *a)),
+        Load::Acceleration { a, grids } => {
+            grids.iter().for_each(|(g, share)| add(g.us(), a * *share));
+        }
+        Load::Spin { centre, omega } => {
+            let gradient = centrifugal_gradient(omega);
+            for (g, grid) in model.grids.iter().enumerate() {
+                add(g, gradient * (grid.x - centre));
+            }
+        }
+        _ => {}
     }
 }
 

@@ -27,10 +27,16 @@ pub(super) fn with_strain(
         HeatedStrain::Mechanical => temperatures_of(prepared.model, cases)?,
         HeatedStrain::Total => vec![None; cases.len()],
     };
+    let report = &solved.report;
+    let relief = |case: &LoadCase| {
+        let mut balance = report.balance.iter();
+        let balance = balance.find(|b| b.subcase == case.subcase)?;
+        Some((balance.acceleration, report.mass.as_ref()?.cg))
+    };
     let between: Vec<Between<'_>> = cases
         .iter()
         .zip(&temperatures)
-        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref()))
+        .map(|(case, t)| Between::new(prepared.model, case, t.as_ref(), relief(case)))
         .collect();
     let shells = shell_fields(prepared, &u, &temperatures, options.corners)?;
     let beams = super::beam_strain::beam_fields(prepared, &u, &between)?;

@@ -31,7 +31,10 @@ impl Model {
     /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
     /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.
     pub fn from_cards(cards: &Cards) -> (Model, Vec<ModelFault>) {
-        Self::build(cards, &[], &[])
+        let (structure, loads) = super::unsupported_cards::of_records(cards);
+        let (mut model, faults) = Self::build(cards, &[], &loads);
+        model.unsupported_cards = structure;
+        (model, faults)
     }
 
     /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.

@@ -40,6 +40,7 @@ impl<'a> Builder<'a> {
         let cards = self.cards;
         let prods = self.by_id(&cards.prods, |p: &Prod| p.id, "PROD");
         let ptubes = self.by_id(&cards.ptubes, |p: &Ptube| p.id, "PTUBE");
+        self.rod_sections();
         let mut out = Vec::new();
         for r in &cards.rods {
             let (card, kind) = if r.is_tube {
@@ -114,6 +115,28 @@ impl<'a> Builder<'a> {
         }
         out.sort_by_key(|r| r.id);
         self.model.rods = out;
+    }
+
+    /// Adds a fault for each rod section without axial and torsional stiffness.
+    fn rod_sections(&mut self) {
+        let cards = self.cards;
+        let rods = cards.prods.iter();
+        let rods = rods.map(|p| (format!("PROD {}", p.id), "A", p.at, [p.area, p.j]));
+        let tubes = cards.ptubes.iter().map(|p| {
+            let (_, area, torsion, ..) = tube(p);
+            (format!("PTUBE {}", p.id), "OD", p.at, [area, torsion])
+        });
+        let conrods = cards.conrods.iter();
+        let conrods = conrods.map(|r| (format!("CONROD {}", r.id), "A", r.at, [r.area, r.torsion]));
+        for (name, field, at, section) in rods.chain(tubes).chain(conrods) {
+            if section == [0.0; 2] {
+                let kind = FaultKind::Unsupported {
+                    what: "a rod whose A and J are both 0".into(),
+                    remedy: "state one of them above 0, or delete the rod",
+                };
+                self.fault(name, field, at, kind);
+            }
+        }
     }
 
     /// Two grids that are apart.

@@ -21,6 +21,7 @@ mod load_sum;
 mod mass;
 mod material;
 mod material_at;
+mod model_parameters;
 mod nonstructural;
 mod normals;
 mod not_carried;

@@ -3,7 +3,8 @@
 use super::types::UnsupportedCard;
 use nastran::bdf::vocabulary::{CaseWord, Effect, case_word, effect_of_card};
 use nastran::bdf::{CaseLine, Deck};
-use nastran::place::Place;
+use nastran::cards::{Cards, UnreadEntry};
+use nastran::place::{Place, Placed};
 
 /// Solution sequences and rigid formats of linear statics, modes, buckling, flutter, and response to frequencies and time: what this
 /// program solves has the same stiffness, mass and static loads in them.
@@ -20,6 +21,7 @@ const GUST: [u32; 3] = [146, 187, 190];
 /// their set is selected.
 pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
     let mut structure: Vec<UnsupportedCard> = sequence(deck).into_iter().collect();
+    structure.extend(program_changes(deck));
     structure.extend(large_displacement(deck));
     structure.extend(statements(deck));
     structure.extend(superelements(deck));
@@ -33,6 +35,9 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
         match effect_of_card(&c.name) {
             Some(Effect::Load) => loads.push(card),
             Some(Effect::Acts | Effect::Carried) => structure.push(card),
+            Some(Effect::ActsWith("values of its own")) => {
+                structure.extend(super::model_parameters::acting(deck, c));
+            }
             Some(Effect::ActsWith(what)) if is_present(deck, what) => structure.push(card),
             _ => {}
         }
@@ -40,11 +45,25 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
     (structure, loads)
 }
 
+/// Returns what [`of_deck`] does, of the geometry blocks of an OP2.
+pub(super) fn of_records(cards: &Cards) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard>) {
+    let (loads, structure): (Vec<_>, Vec<_>) = cards.unread.iter().partition(|e| e.is_load);
+    let unsupported = |entries: Vec<&Placed<UnreadEntry>>| {
+        let all = entries.into_iter().map(|e| UnsupportedCard {
+            card: e.name.clone(),
+            id: e.id,
+            at: e.at,
+        });
+        all.collect()
+    };
+    (unsupported(structure), unsupported(loads))
+}
+
 /// The solution sequence, or the approach, where it is not linear.
 fn sequence(deck: &Deck) -> Option<UnsupportedCard> {
     let unsupported = |card: String, at: Place| UnsupportedCard { card, id: None, at };
     if let Some((approach, at)) = &deck.approach
-        && approach.starts_with("HEAT")
+        && ["HEAT", "DMAP"].iter().any(|a| approach.starts_with(a))
     {
         return Some(unsupported(format!("APP {approach}"), *at));
     }
@@ -52,6 +71,15 @@ fn sequence(deck: &Deck) -> Option<UnsupportedCard> {
     let is_linear = |n: &u32| LINEAR.contains(n) || GUST.contains(n);
     (!deck.sol.as_ref().is_some_and(is_linear))
         .then(|| unsupported(format!("SOL {text}"), deck.sol_at))
+}
+
+/// Returns the statements above CEND that change the solution sequence or start from an earlier run.
+fn program_changes(deck: &Deck) -> impl Iterator<Item = UnsupportedCard> {
+    deck.program_changes.iter().map(|c| UnsupportedCard {
+        card: c.text.clone(),
+        id: None,
+        at: c.at,
+    })
 }
 
 /// PARAM,LGDISP where it asks for large displacements.

@@ -7,6 +7,7 @@ mod frame;
 mod gauges;
 mod misread;
 mod names;
+mod op2_mesh;
 mod placement;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]

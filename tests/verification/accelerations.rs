@@ -1,6 +1,6 @@
 //! ACCEL, ACCEL1 and RFORCE1: forces of mass in a field of acceleration, in closed form.
 
-use crate::small_decks::{at, close, refused, solve};
+use crate::small_decks::{at, close, model, refused, solve};
 
 /// Rounding of a solution of a few unknowns.
 const ROUNDING: f64 = 1e-12;
@@ -110,4 +110,48 @@ fn rotations_that_ask_for_more_are_refused_by_their_name() {
         ["RFORCE1 with GROUPID 5"]
     );
     assert_eq!(of("RFORCE,5,1,,3.,0.,0.,1.\n,,,8"), ["RFORCE with IDRF 5"]);
+}
+
+/// 10 kg that are 1 further out along x and 2 above grid 3, with products of inertia: force m w^2 r, moment h F + w^2 I31 about y.
+const OFF_GRID: &str = "CONM2,70,3,,10.,1.,0.,2.\n,7.,.4,8.,.6,.3,9.\n";
+
+#[test]
+fn mass_at_an_offset_turns_where_it_is() {
+    let w = 3.0 * std::f64::consts::TAU;
+    let (f2, f3) = (25.0 * w * w * 2.0, 15.0 * w * w * 5.0);
+    let force = 10.0 * w * w * 6.0;
+    for card in [
+        "RFORCE,5,1,,3.,0.,0.,1.",
+        "RFORCE,5,1,,3.,0.,0.,1.,1",
+        "RFORCE1,5,1,,3.,0.,0.,1.,1",
+    ] {
+        let cards = format!("{OFF_GRID}{card}");
+        moves("", &cards, [0.0, f2, f3 + force]);
+        let held = solve("SPC = 1\nLOAD = 5", &format!("{ROD}{cards}"));
+        let moment = held.1.report.reactions[0].total[4];
+        close(card, moment, -(2.0 * force + w * w * 0.6), ROUNDING);
+    }
+}
+
+#[test]
+fn method_2_is_refused_with_mass_at_an_offset_and_other_methods_are_faults() {
+    let of = |cards: &str| refused("SPC = 1\nLOAD = 5", &format!("{ROD}{cards}"));
+    let why = "with METHOD 2 and mass at an offset from its grid 5";
+    for mass in [OFF_GRID, "CONM2,70,3,,10.\n,7.\n"] {
+        assert_eq!(
+            of(&format!("{mass}RFORCE,5,1,,3.,0.,0.,1.,2")),
+            [format!("RFORCE {why}")]
+        );
+        // The default of RFORCE1.
+        assert_eq!(
+            of(&format!("{mass}RFORCE1,5,1,,3.,0.,0.,1.")),
+            [format!("RFORCE1 {why}")]
+        );
+    }
+    let w = 3.0 * std::f64::consts::TAU;
+    let forces = [0.0, 25.0 * w * w * 2.0, 25.0 * w * w * 5.0];
+    moves("", "CONM2,70,3,,10.\nRFORCE,5,1,,3.,0.,0.,1.,2", forces);
+    let (_, faults) = model("LOAD = 5", &format!("{ROD}RFORCE,5,1,,3.,0.,0.,1.,3"));
+    assert_eq!(faults.len(), 1, "{faults:?}");
+    assert_eq!((faults[0].field, faults[0].at.line), ("METHOD", 14));
 }

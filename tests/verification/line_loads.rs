@@ -1,7 +1,8 @@
 //! Loads along beams, enforced displacements by SPCD, forces along grids, scalar springs.
 
 use crate::mesh::{Bulk, near};
-use strainbridge::fe::UnitLoad;
+use strainbridge::fe::{CaseResult, UnitLoad};
+use strainbridge::model::Model;
 
 const E: f64 = 210_000.0;
 const I1: f64 = 9000.0;
@@ -243,6 +244,107 @@ fn strain_at_a_station_of_a_tapered_beam_is_that_of_the_section_there() {
         assert!(
             (tip - expected).abs() < 1e-9 * by_moment(30.0 * L).abs(),
             "{tip} for {expected}"
+        );
+    }
+}
+
+/// Mass per length of the cantilever.
+const MU: f64 = 7.85e-9 * 200.0;
+
+/// Strain at C and of the neutral axis of element 1 at some stations, by the moment and the axial force there.
+fn follows(
+    what: &str,
+    s: &(Model, CaseResult),
+    moment: impl Fn(f64) -> f64,
+    force: impl Fn(f64) -> f64,
+) {
+    let stations = [0.0, 0.1, 0.3, 0.5, 0.75, 0.9, 1.0];
+    let size = |of: &dyn Fn(f64) -> f64| {
+        stations
+            .iter()
+            .fold(0.0, |a: f64, x| a.max(of(x * L).abs()))
+    };
+    let largest = by_moment(size(&moment)).abs() + size(&force) / (E * 200.0);
+    assert!(largest > 0.0, "{what}");
+    for x in stations {
+        let beam = s.0.beam_ix(1).unwrap();
+        let (points, axial) = s.1.beams.strain_at(beam, x).unwrap();
+        let along = force(x * L) / (E * 200.0);
+        let at_c = by_moment(moment(x * L)) + along;
+        for (got, expected) in [(points[0], at_c), (axial, along)] {
+            let off = (got - expected).abs();
+            assert!(off < 1e-9 * largest, "{what} at {x}: {got} for {expected}");
+        }
+    }
+}
+
+#[test]
+fn coupled_mass_acts_along_a_bar() {
+    let w = 3.0 * std::f64::consts::TAU;
+    for beam in [false, true] {
+        let solved = |load: &str| {
+            let s = cantilever(beam, "", &format!("PARAM,COUPMASS,1\n{load}")).solve();
+            (s.model, s.case)
+        };
+        let weight = MU * 9810.0;
+        let s = solved("GRAV,1,,9810.,0.,1.,0.");
+        let tip = s.1.displacement[1][1];
+        near("tip", tip, weight * L.powi(4) / (8.0 * E * I1), 1e-9);
+        follows("weight", &s, |x| weight * (L - x).powi(2) / 2.0, |_| 0.0);
+        let s = solved(
+            "PARAM,WTMASS,.5\nLOAD,1,3.,2.,6,1.,7\nGRAV,6,,9810.,0.,1.,0.\nPLOAD1,7,1,FY,FR,0.,2.,1.,2.",
+        );
+        let both = 3.0 * weight + 3.0 * 2.0;
+        follows("scaled", &s, |x| both * (L - x).powi(2) / 2.0, |_| 0.0);
+        let s = solved("ACCEL,1,,9810.,9810.,0.");
+        let bent = |x: f64| weight * (L - x).powi(2) / 2.0;
+        follows("skew", &s, bent, |x| weight * (L - x));
+        let s = solved("RFORCE,1,1,,3.,0.,0.,1.");
+        let pull = |x: f64| MU * w * w * (L * L - x * x) / 2.0;
+        follows("spin", &s, |_| 0.0, pull);
+    }
+    // Held at both ends the bar carries its weight by w L^2 / 12 at the ends and w L^2 / 24 in the middle.
+    let mut b = cantilever(false, "", "PARAM,COUPMASS,1\nGRAV,1,,1.,0.,1.,0.");
+    b.hold("123456", [2]);
+    let s = b.solve();
+    let fixed = |x: f64| MU * (L * L / 12.0 - x * (L - x) / 2.0);
+    follows("fixed", &(s.model, s.case), fixed, |_| 0.0);
+    // With a pin at the wall: the bending moment of a propped cantilever.
+    let mut b = cantilever(false, ",\n,6", "PARAM,COUPMASS,1\nGRAV,1,,1.,0.,1.,0.");
+    b.hold("123456", [2]);
+    let s = b.solve();
+    let propped = |x: f64| MU * x * (x / 2.0 - 3.0 * L / 8.0);
+    follows("propped", &(s.model, s.case), propped, |_| 0.0);
+}
+
+#[test]
+fn inertia_relief_acts_along_a_bar_of_coupled_mass() {
+    // Pushed across at one end, a free bar is bent by F x (1 - x / L)^2; pulled there, it carries F (1 - x / L).
+    for (force, bent, pulled) in [("0.,1.,0.", 30.0, 0.0), ("-1.,0.,0.", 0.0, 30.0)] {
+        let mut b = cantilever(
+            false,
+            "",
+            &format!("PARAM,COUPMASS,1\nFORCE,1,1,0,30.,{force}"),
+        );
+        b.text = b.text.replace("SPC1", "$");
+        let model = b.model();
+        let case = strainbridge::fe::LoadCase {
+            subcase: 1,
+            label: String::new(),
+            loads: vec![UnitLoad::Set(1)],
+            spc: None,
+            mpc: None,
+            relief: strainbridge::fe::Relief::Automatic,
+        };
+        let solved = strainbridge::fe::solve_cases(&model, &[case], &Default::default());
+        let mut solution = solved.unwrap_or_else(|e| panic!("{e}")).0;
+        let s = (model, solution.cases.remove(0));
+        let share = |x: f64| 1.0 - x / L;
+        follows(
+            force,
+            &s,
+            |x| bent * x * share(x).powi(2),
+            |x| pulled * share(x),
         );
     }
 }

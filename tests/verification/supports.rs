@@ -340,6 +340,34 @@ fn a_bar_without_any_stiffness_is_a_fault() {
 }
 
 #[test]
+fn a_rod_without_any_stiffness_is_a_fault_and_one_with_torsion_alone_twists() {
+    for (cards, name) in [
+        (&["PROD,9,1", "CROD,9,9,1,2"][..], "PROD 9"),
+        (&["PTUBE,9,1,0.", "CTUBE,9,9,1,2"], "PTUBE 9"),
+        (&["CONROD,9,1,2,1,0."], "CONROD 9"),
+    ] {
+        let mut b = bar(1);
+        cards.iter().for_each(|c| b.card(c));
+        let found = b.read_model().1;
+        let wrong = format!("{name}: a rod whose A and J are both 0 is not supported");
+        assert!(found.iter().any(|f| f.to_string() == wrong), "{found:?}");
+    }
+    // GJ / L alone: the bar holds all but its twist, which the rod resists.
+    let torsion = 500.0;
+    let mut b = Bulk::default();
+    b.card(&format!("MAT1,1,{E:?},,.3"));
+    let g = [0.0, LENGTH].map(|x| b.grid([x, 0.0, 0.0]));
+    b.card(&format!("CONROD,1,{},{},1,0.,{torsion:?}", g[0], g[1]));
+    b.card(&format!("SPC1,1,123456,{}", g[0]));
+    b.card(&format!("SPC1,1,12356,{}", g[1]));
+    b.card(&format!("MOMENT,1,{},,100.,1.,0.,0.", g[1]));
+    let (solution, _) = solved(&b);
+    let shear = E / 2.6;
+    let twist = 100.0 * LENGTH / (shear * torsion);
+    same("twist", solution.cases[0].displacement[1][3], twist);
+}
+
+#[test]
 fn a_dof_that_is_held_and_dependent_is_found_before_a_solution() {
     // Bar from grid 1 to 2; grid 3 is joined to grid 2 by one dependent dof.
     let deck = |joint: &str, support: &str| {

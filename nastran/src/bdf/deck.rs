@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 
 use super::case::CaseControl;
 use super::fault::Fault;
+use super::line::{is_blank, text_of, without_comment};
 use super::names::{Label, Named};
 use super::source::{Note, SectionBounds, Source};
+use super::split::{Lead, cut};
 use crate::cards::{Cards, Param};
 use crate::place::Place;
 
@@ -44,6 +46,8 @@ pub struct Deck {
     pub sol_at: Place,
     /// The approach that APP states, upper case, such as HEAT.
     pub approach: Option<(String, Place)>,
+    /// Statements above CEND that change the solution sequence or start from an earlier run: their first word in upper case.
+    pub program_changes: Vec<Note>,
     /// Bulk data of superelements and other models that is kept and not read: where it begins, and that line in upper case.
     pub parts: Vec<Note>,
     /// Everything that is wrong.
@@ -68,11 +72,31 @@ impl Deck {
     /// The text of a card that has no struct; bytes that are not UTF-8 as Latin-1.
     pub fn text(&self, card: &OtherCard) -> String {
         let source = self.sources.get(card.at.source.0 as usize);
-        super::line::text_of(
+        text_of(
             source
                 .and_then(|s| s.bytes.get(card.start..card.end))
                 .unwrap_or_default(),
         )
+    }
+
+    /// Returns the fields behind the name of a card that has no struct, trimmed, upper case; blank fields are empty.
+    pub fn fields(&self, card: &OtherCard) -> Vec<String> {
+        let source = self.sources.get(card.at.source.0 as usize);
+        let bytes = source.and_then(|s| s.bytes.get(card.start..card.end));
+        let lines = bytes.unwrap_or_default().split(|&c| c == b'\n');
+        let mut fields = Vec::new();
+        for line in lines
+            .map(without_comment)
+            .filter(|l| !l.iter().all(|&c| is_blank(c)))
+        {
+            let cut = cut(line);
+            match cut.lead {
+                Lead::Data => cut.data(&mut fields),
+                _ => drop(cut.fields(&mut fields)),
+            }
+        }
+        let upper = |f: &&[u8]| text_of(f).to_ascii_uppercase();
+        fields.iter().map(upper).collect()
     }
 
     /// The file's path at a place.

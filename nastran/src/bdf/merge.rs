@@ -47,7 +47,7 @@ fn append_cards(to: &mut Cards, from: Cards) {
         conm1s conm2s scalar_masses pmasses nsms nsmadds rbe1s rbe2s rbe3s rbars rsplines mpcs mpcadds spcs spcds spc1s spcadds suports
         pshells pcomps pshears pbars pbarls pbeams pbeamls prods ptubes pbushes pelas pwelds pfasts pgaps psolids
         mat1s mat2s mat8s mat9s matt1s material_tables forces moments forces_along sloads ploads pload1s pload2s
-        pload4s gravs rforces accels accel1s loads temps tempds tempp1s temprbs params
+        pload4s gravs rforces accels accel1s loads temps tempds tempp1s temprbs params unread
     );
 }
 

@@ -18,6 +18,7 @@ use super::part::Part;
 use super::sections::{Statement, read_sections};
 use super::source::{Chunk, Note, Position, Source};
 use super::unknown_names::check_names;
+use super::vocabulary::changes_program;
 use crate::place::Place;
 
 /// The deck in `bytes` with all files it includes. What cannot be read is in [`Deck::faults`].
@@ -50,6 +51,13 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     }
     read_sol(&sections.executive, &mut deck);
     read_sol(&sections.case, &mut deck);
+    deck.program_changes = program_changes(&sections.executive);
+    if sections.bounds.case_start.is_none() {
+        // Without CEND executive control is part of the first section; RESTART is a word of case control there.
+        let changes = program_changes(&sections.case);
+        let changes = changes.into_iter().filter(|c| c.text != "RESTART");
+        deck.program_changes.extend(changes);
+    }
     deck.case_control = case::read_case_control(&sections.case, &mut deck.faults);
     deck.faults.extend(sections.faults);
     // Of a text that is no deck every line is wrong: said once, and none of it shown.
@@ -82,6 +90,17 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     }
     deck.sources = sections.sources;
     deck
+}
+
+/// Returns the statements that change the solution sequence or start from an earlier run.
+fn program_changes(statements: &[Statement]) -> Vec<Note> {
+    let named = statements.iter().map(|s| {
+        let mut words = s.text.split(|c: char| !c.is_ascii_alphanumeric());
+        let first = words.find(|w| !w.is_empty()).unwrap_or_default();
+        (first.to_ascii_uppercase(), s.at)
+    });
+    let changes = named.filter(|(word, _)| changes_program(word));
+    changes.map(|(text, at)| Note { at, text }).collect()
 }
 
 /// Reads the cards, each with its continuations wherever they are.

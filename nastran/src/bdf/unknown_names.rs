@@ -4,14 +4,17 @@ use super::deck::Deck;
 use super::fault::{Fault, Wrong};
 use super::fields::note_fault;
 use super::source::Note;
-use super::vocabulary::{Effect, case_word, effect_of_card, nearest_card, nearest_word};
+use super::vocabulary::{
+    Effect, case_word, effect_of_card, nearest_card, nearest_parameter, nearest_word,
+};
 use crate::place::SourceIx;
 use std::collections::BTreeSet;
 
-/// Adds a fault for each unknown name of bulk data and each unknown word of case control, and a note for each misspelt word that is
-/// read by its first four letters.
+/// Adds a fault for each unknown name of bulk data and each unknown word of case control. Adds a note for each misspelt word that is
+/// read by its first four letters, and for each misspelt parameter.
 pub(super) fn check_names(deck: &mut Deck) {
     check_words(deck);
+    note_parameters(deck);
     let mut seen = BTreeSet::new();
     for card in &deck.others {
         if effect_of_card(&card.name).is_some() || !seen.insert(card.name.as_str()) {
@@ -31,15 +34,38 @@ pub(super) fn check_names(deck: &mut Deck) {
     }
 }
 
+/// Adds a note for each name of a parameter that one letter separates from a parameter of the program.
+fn note_parameters(deck: &mut Deck) {
+    let bulk = deck.cards.params.iter().map(|p| (p.name.as_str(), p.at));
+    let statements = deck.case_control.lines.iter();
+    let stated = statements.filter(|l| !l.in_packet && l.name == "PARAM");
+    let stated = stated.filter_map(|l| {
+        let mut words = l
+            .text
+            .split([' ', '\t', ',', '='])
+            .filter(|w| !w.is_empty());
+        Some((words.nth(1)?, l.at))
+    });
+    let misspelt = bulk.chain(stated).filter_map(|(name, at)| {
+        let meant = nearest_parameter(&name.to_ascii_uppercase())?;
+        let text = format!("PARAM,{name} is not read: did you mean `{meant}`?");
+        Some(Note { at, text })
+    });
+    let misspelt: Vec<Note> = misspelt.collect();
+    deck.notes.extend(misspelt);
+}
+
+fn is_executive(effect: Effect) -> bool {
+    matches!(effect, Effect::Executive | Effect::ExecutiveActs)
+}
+
 fn check_words(deck: &mut Deck) {
     // Without CEND in the first file executive control is part of the first section, and so is that of an included file.
     let first = SourceIx(0);
     let without_cend = deck.bounds.case_start.is_none();
     for line in deck.case_control.lines.iter().filter(|l| !l.in_packet) {
         let what = match case_word(&line.name) {
-            Some(word)
-                if word.effect == Effect::Executive && !without_cend && line.at.source == first =>
-            {
+            Some(word) if is_executive(word.effect) && !without_cend && line.at.source == first => {
                 Wrong::Statement {
                     found: line.name.clone(),
                     why: "executive control ends at CEND",

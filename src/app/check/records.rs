@@ -129,9 +129,7 @@ impl RecordEntry {
         };
         let line = format!(
             "{kind} `{}`: {}, {n} {what}{plural} ({}){times}",
-            self.path,
-            self.format,
-            listed
+            self.path, self.format, listed
         );
         let others = self.other_channels.iter();
         let others = others.map(|c| (c.channel.group.clone(), c.text()));

@@ -117,6 +117,9 @@ impl Builder<'_> {
     }
 
     /// Returns the load of an RFORCE or RFORCE1. Only steady rotation of the whole structure is carried.
+    ///
+    /// The forces are those of the mass where it is. METHOD 1 gives them for lumped mass, METHOD 2 for mass at grids alone: it leaves out
+    /// the acceleration of mass at an offset from its grid, so that it is refused with such mass. The default of RFORCE1 is METHOD 2.
     fn rforce(&mut self, card: &Placed<Rforce>) -> Option<Load> {
         let word = if card.is_rforce1 { "RFORCE1" } else { "RFORCE" };
         let name = format!("{word} {}", card.sid);
@@ -128,10 +131,23 @@ impl Builder<'_> {
                 self.x(g)
             }
         };
+        let default = if card.is_rforce1 { 2 } else { 1 };
+        let method = card.method.unwrap_or(default);
+        if ![1, 2].contains(&method) {
+            let kind = FaultKind::Word {
+                found: method.to_string(),
+                expected: "1 or 2",
+            };
+            self.fault(name, "METHOD", card.at, kind);
+            return None;
+        }
         let more = match (card.acceleration != 0.0, card.part != 0) {
             (true, _) => Some("with RACC"),
             (false, true) if card.is_rforce1 => Some("with GROUPID"),
             (false, true) => Some("with IDRF"),
+            (false, false) if method == 2 && self.has_mass_off_grids() => {
+                Some("with METHOD 2 and mass at an offset from its grid")
+            }
             (false, false) => None,
         };
         if let Some(more) = more {
@@ -141,6 +157,22 @@ impl Builder<'_> {
             centre,
             omega: self.rectangular(f, card.r) * (card.speed * std::f64::consts::TAU),
         })
+    }
+}
+
+impl Builder<'_> {
+    /// Returns whether a point mass has an offset or an inertia of its own, or a shell, bar or beam has an offset.
+    fn has_mass_off_grids(&self) -> bool {
+        let model = &self.model;
+        let is_off = |m: &PointMass| {
+            let entries = m.matrix.iter().enumerate();
+            let mut rotations = entries.filter(|(k, _)| k % 6 >= 3 || k / 6 >= 3);
+            rotations.any(|(_, v)| *v != 0.0)
+        };
+        let ends = model.beams.iter().flat_map(|b| b.offsets);
+        model.masses.iter().any(is_off)
+            || model.shells.iter().any(|s| s.zoffs != 0.0)
+            || ends.into_iter().any(|o| o != Vec3::zeros())
     }
 }
 

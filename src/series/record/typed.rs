@@ -2,6 +2,7 @@
 
 use super::column::{Column, is_time, name_and_unit, seconds_in};
 use super::reader::Times;
+use super::time_unit::single_rounding_s;
 use crate::series::error::SeriesError;
 
 /// Meaning of the values of a column, with the worth of one stored unit: a plain number, or s.

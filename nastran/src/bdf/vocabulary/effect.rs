@@ -13,10 +13,12 @@ pub enum Effect {
     Acts,
     /// Load that is not carried and acts where its set, the first field, is selected.
     Load,
-    /// Acts together with this word of case control, or with these cards, and is not carried.
+    /// Acts together with this word of case control, or with what is named here (connectors, values of its own), and is not carried.
     ActsWith(&'static str),
     /// Statement of executive control, above CEND.
     Executive,
+    /// Statement of executive control that changes the solution sequence, or starts from an earlier run.
+    ExecutiveActs,
 }
 
 /// A word of case control as Nastran reads it.

@@ -34,6 +34,12 @@ pub fn case_word(word: &str) -> Option<CaseWord> {
     Some(of(e, true))
 }
 
+/// Returns whether a statement above CEND, in upper case, changes the solution sequence or starts from an earlier run.
+pub fn changes_program(word: &str) -> bool {
+    let mut words = words().iter();
+    words.any(|e| e.written == word && e.effect == Effect::ExecutiveActs)
+}
+
 /// Returns the full name of an output request; `None` for another word.
 pub fn request_of(word: &str) -> Option<&'static str> {
     let word = case_word(word)?;
@@ -49,6 +55,20 @@ pub fn nearest_card(name: &str) -> Option<&'static str> {
 pub fn nearest_word(word: &str) -> Option<&'static str> {
     spelling::nearest(word, all_words().map(|w| w.0))
 }
+
+/// Returns the parameter of the program that one letter makes of a misspelt one; `None` for a name of another parameter.
+pub fn nearest_parameter(name: &str) -> Option<&'static str> {
+    let known = PARAMETERS.contains(&name) || SIMILAR_PARAMETERS.contains(&name);
+    (!known).then(|| spelling::nearest(name, PARAMETERS.into_iter()))?
+}
+
+/// Parameters that the program reads.
+const PARAMETERS: [&str; 11] = [
+    "WTMASS", "INREL", "GRDPNT", "K6ROT", "SNORM", "AUTOSPC", "COUPMASS", "POST", "OMID",
+    "UNITSYS", "LGDISP",
+];
+/// Other parameters of Nastran that differ from one of them by one letter.
+const SIMILAR_PARAMETERS: [&str; 4] = ["AUTOMPC", "AUTOSPCR", "INRELM", "POSTU"];
 
 /// Returns every name of bulk data entries with its effect.
 pub fn all_cards() -> impl Iterator<Item = (&'static str, Effect)> {
@@ -76,7 +96,7 @@ fn preference(effect: Effect) -> u8 {
         Effect::Carried | Effect::Request => 0,
         Effect::Acts | Effect::Load | Effect::ActsWith(_) => 1,
         Effect::None(_) => 2,
-        Effect::Executive => 3,
+        Effect::Executive | Effect::ExecutiveActs => 3,
     }
 }
 

@@ -7,5 +7,6 @@ mod table;
 
 pub use effect::{CaseWord, Effect};
 pub use lookup::{
-    all_cards, all_words, case_word, effect_of_card, nearest_card, nearest_word, request_of,
+    all_cards, all_words, case_word, changes_program, effect_of_card, nearest_card,
+    nearest_parameter, nearest_word, request_of,
 };

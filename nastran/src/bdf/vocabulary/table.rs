@@ -40,6 +40,7 @@ fn effect_of_group(group: &'static str) -> Effect {
         "output request" => Effect::Request,
         "load" => Effect::Load,
         "executive" => Effect::Executive,
+        "executive, acts" => Effect::ExecutiveActs,
         _ => {
             let reason = group.strip_prefix("no influence: ").map(Effect::None);
             let with = group.strip_prefix("acts with ").map(Effect::ActsWith);

@@ -37,10 +37,7 @@ pub(in crate::op2) fn read_record(table: &str, words: Words<'_>, out: &mut Geome
         },
     );
     if !(elements(code, record, out) || others(code, record, out)) {
-        out.note(
-            table,
-            format!("records {a},{b},{third} are not read; skipped"),
-        );
+        out.unread(code, record);
     }
 }
 

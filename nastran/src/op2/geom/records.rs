@@ -1,7 +1,8 @@
 //! Records of cards: cards of fixed length in one of several widths, cards of varying length.
 
 use super::fields::Fields;
-use crate::cards::Cards;
+use super::unread::{Code, Unread, unread};
+use crate::cards::{Cards, UnreadEntry};
 use crate::op2::words::Words;
 use crate::place::{Place, Placed};
 use crate::results::Note;
@@ -47,6 +48,33 @@ impl Geometry {
             subject: format!("table {table}"),
             message,
         });
+    }
+
+    /// Adds the entries of a record without a reader that act, and a note on those that act where case control selects them.
+    pub(super) fn unread(&mut self, code: Code, record: Record<'_>) {
+        match unread(code, record.table, record.words, record.stated.map(|s| s.0)) {
+            Unread::Acting(entries) => {
+                let entries = entries.into_iter().map(Self::place);
+                self.cards.unread.extend(entries);
+            }
+            Unread::Selected(name) => {
+                let message = format!(
+                    "{name} is not read: it acts where case control selects it, and the file contains no case control that is read"
+                );
+                self.note(record.table, message);
+            }
+            Unread::WithoutInfluence => {}
+        }
+    }
+
+    /// Adds an entry for cards that are left out of a record.
+    fn left_out(&mut self, card: &str, table: &str, message: String) {
+        self.note(table, message);
+        self.cards.unread.push(Self::place(UnreadEntry {
+            name: card.to_owned(),
+            id: None,
+            is_load: false,
+        }));
     }
 
     pub(super) fn place<T>(card: T) -> Placed<T> {
@@ -101,7 +129,7 @@ impl Geometry {
                 "{card}: {failed} of {} cards do not make sense and were left out",
                 cards.len().saturating_add(failed)
             );
-            self.note(record.table, message);
+            self.left_out(card, record.table, message);
         }
         list(&mut self.cards).append(&mut cards);
     }
@@ -124,7 +152,7 @@ impl Geometry {
                         record.words.len().saturating_sub(fields.left()),
                         record.words.len()
                     );
-                    self.note(record.table, message);
+                    self.left_out(card, record.table, message);
                     return;
                 }
             }

@@ -75,6 +75,9 @@ pub(in crate::op2) fn tidy(g: &mut Geometry) {
     c.pbars.retain(|p| !barls.contains(&p.id));
     let beamls: HashSet<u32> = c.pbeamls.iter().map(|p| p.id).collect();
     c.pbeams.retain(|p| !beamls.contains(&p.id));
+    let mut entries = HashSet::new();
+    c.unread
+        .retain(|e| e.is_load || entries.insert(e.card.clone()));
     if !twice.is_empty() {
         g.note(
             "GEOM",

@@ -34,6 +34,8 @@ pub(crate) struct LineStrain {
 pub(crate) struct Interior {
     pub(crate) loads: Vec<LineLoad>,
     pub(crate) thermal: Option<LineStrain>,
+    /// Forces at the ends that stand for the inertia of the coupled mass, element frame; its forces along the beam are not in `loads`.
+    pub(crate) inertia: Option<[f64; 12]>,
 }
 
 impl LineStrain {

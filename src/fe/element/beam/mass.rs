@@ -1,10 +1,11 @@
 //! Mass of beams.
 
 use super::flexibility::section_at;
+use super::interior::LineLoad;
 use super::of_model::{length, to_element};
 use crate::fe::element::{ElementMatrix, point_mass};
-use crate::linalg::{Matrix6, SMatrix, Vector3};
-use crate::model::{Beam, Model, Section};
+use crate::linalg::{Matrix6, SMatrix, SVector, Vector3, Vector4};
+use crate::model::{Beam, Model, Section, Vec3};
 
 const GAUSS: [(f64, f64); 3] = [
     (0.112_701_665_379_258_31, 5.0 / 18.0),
@@ -72,34 +73,100 @@ pub(crate) fn beam_lumped_mass(model: &Model, i: usize) -> [Matrix6<f64>; 2] {
 /// Coupled mass (PARAM,COUPMASS) with the cubic shape functions of a slender beam, basic frame, before WTMASS.
 pub(crate) fn beam_coupled_mass(model: &Model, i: usize) -> ElementMatrix {
     let beam = &model.beams[i];
-    let (rho, l) = (density(model, beam), length(model, beam));
-    let mut m = SMatrix::<f64, 12, 12>::zeros();
-    // Degree six: the three-point rule on halves is exact enough for uniform beams and keeps rigid motions exact.
-    along(model, beam, |xi, s, dx| {
-        let per_length = rho * s.area + s.nsm;
-        let (x, x2, x3) = (xi, xi * xi, xi * xi * xi);
-        let (h1, h2, h3, h4) = (
-            1.0 - 3.0 * x2 + 2.0 * x3,
-            l * (x - 2.0 * x2 + x3),
-            3.0 * x2 - 2.0 * x3,
-            l * (x3 - x2),
-        );
-        let mut n = SMatrix::<f64, 3, 12>::zeros();
-        (n[(0, 0)], n[(0, 6)]) = (1.0 - x, x);
-        (n[(1, 1)], n[(1, 5)], n[(1, 7)], n[(1, 11)]) = (h1, h2, h3, h4);
-        (n[(2, 2)], n[(2, 4)], n[(2, 8)], n[(2, 10)]) = (h1, -h2, h3, -h4);
-        m += n.transpose() * n * (per_length * dx);
-        let polar = (rho * (s.i1 + s.i2) + s.nsi) * dx;
-        for (a, p) in [(3, 1.0 - x), (9, x)] {
-            for (b, q) in [(3, 1.0 - x), (9, x)] {
-                m[(a, b)] += polar * p * q;
-            }
-        }
-    });
     let t = to_element(beam);
-    let m = t.transpose() * m * t;
+    let m = t.transpose() * local_mass(model, beam) * t;
     ElementMatrix {
         grids: beam.grids.to_vec(),
         values: m.transpose().as_slice().to_vec(),
     }
+}
+
+/// Shape functions of u, v, w at a share `x` of the length `l`: linear along the axis, cubic across it.
+fn shapes(x: f64, l: f64) -> SMatrix<f64, 3, 12> {
+    let (x2, x3) = (x * x, x * x * x);
+    let (h1, h2, h3, h4) = (
+        1.0 - 3.0 * x2 + 2.0 * x3,
+        l * (x - 2.0 * x2 + x3),
+        3.0 * x2 - 2.0 * x3,
+        l * (x3 - x2),
+    );
+    let mut n = SMatrix::<f64, 3, 12>::zeros();
+    (n[(0, 0)], n[(0, 6)]) = (1.0 - x, x);
+    (n[(1, 1)], n[(1, 5)], n[(1, 7)], n[(1, 11)]) = (h1, h2, h3, h4);
+    (n[(2, 2)], n[(2, 4)], n[(2, 8)], n[(2, 10)]) = (h1, -h2, h3, -h4);
+    n
+}
+
+/// Mass per length, and polar inertia per length, of a section.
+fn per_length(rho: f64, s: &Section) -> (f64, f64) {
+    (rho * s.area + s.nsm, rho * (s.i1 + s.i2) + s.nsi)
+}
+
+/// Coupled mass in the element frame, before WTMASS.
+fn local_mass(model: &Model, beam: &Beam) -> SMatrix<f64, 12, 12> {
+    let (rho, l) = (density(model, beam), length(model, beam));
+    let mut m = SMatrix::<f64, 12, 12>::zeros();
+    // Degree six: the three-point rule on halves is exact enough for uniform beams and keeps rigid motions exact.
+    along(model, beam, |xi, s, dx| {
+        let (mass, polar) = per_length(rho, s);
+        let n = shapes(xi, l);
+        m += n.transpose() * n * (mass * dx);
+        for (a, p) in [(3, 1.0 - xi), (9, xi)] {
+            for (b, q) in [(3, 1.0 - xi), (9, xi)] {
+                m[(a, b)] += polar * dx * p * q;
+            }
+        }
+    });
+    m
+}
+
+/// Returns the forces of the coupled mass of beam `i` in a field of acceleration (basic, by grid), as forces along the acceleration, before
+/// WTMASS: forces along the beam, and the twelve at its ends that stand for them. Element frame.
+///
+/// The forces along the beam are linear in four parts of each section interval, with the resultant and the moment of the exact ones.
+pub(crate) fn beam_inertia(
+    model: &Model,
+    i: usize,
+    acceleration: &[[f64; 6]],
+) -> (Vec<LineLoad>, [f64; 12]) {
+    /// Parts of an interval between two sections.
+    const PARTS: u32 = 4;
+    let beam = &model.beams[i];
+    let Some(property) = model.beam_properties.get(beam.property.us()) else {
+        return (Vec::new(), [0.0; 12]);
+    };
+    let (rho, l) = (density(model, beam), length(model, beam));
+    let grids: Vec<f64> = beam
+        .grids
+        .iter()
+        .flat_map(|g| acceleration[g.us()])
+        .collect();
+    let a = to_element(beam) * SVector::<f64, 12>::from_column_slice(&grids);
+    let at = |xi: f64| {
+        let (mass, polar) = per_length(rho, &section_at(&property.sections, xi));
+        let twist = a[3] + (a[9] - a[3]) * xi;
+        (shapes(xi, l) * a * mass, polar * twist)
+    };
+    let mut loads = Vec::new();
+    for w in property.sections.windows(2) {
+        let part = (w[1].0 - w[0].0) / f64::from(PARTS);
+        for k in (0..PARTS).map(f64::from).filter(|_| part > 0.0) {
+            let span = [w[0].0 + part * k, w[0].0 + part * (k + 1.0)];
+            // Means of the force and of its first moment about the middle, three-point rule: exact to degree five.
+            let (mut mean, mut slope) = (Vector4::zeros(), Vector4::zeros());
+            for (s, weight) in GAUSS {
+                let (force, torque) = at(span[0] + part * s);
+                let all = Vector4::new(force[0], force[1], force[2], torque);
+                mean += all * weight;
+                slope += all * (weight * 12.0 * (s - 0.5));
+            }
+            let ends = [mean - slope * 0.5, mean + slope * 0.5];
+            loads.push(LineLoad {
+                span,
+                force: ends.map(|e| Vec3::new(e[0], e[1], e[2])),
+                moment: ends.map(|e| Vec3::new(e[3], 0.0, 0.0)),
+            });
+        }
+    }
+    (loads, (local_mass(model, beam) * a).into())
 }

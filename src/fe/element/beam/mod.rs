@@ -10,7 +10,7 @@ mod warping;
 
 pub(crate) use flexibility::section_at;
 pub(crate) use interior::{Interior, LineLoad, LineStrain};
-pub(crate) use mass::{beam_coupled_mass, beam_lumped_mass};
+pub(crate) use mass::{beam_coupled_mass, beam_inertia, beam_lumped_mass};
 pub(crate) use of_model::{
     BeamForces, StationStrain, beam_end_forces, beam_forces, beam_stiffness, modulus_and_length,
     strain_at,

@@ -120,6 +120,9 @@ fn pinned(
     } else {
         interior.end_forces(&local).ok_or_else(flexible)?
     };
+    if let Some(inertia) = &interior.inertia {
+        f += SVector::<f64, 12>::from_column_slice(inertia);
+    }
     release(
         &mut k,
         &mut f,

@@ -1,0 +1,194 @@
+//! Entries of an OP2's geometry blocks that are not read: named with their count, and refused where the mesh is solved.
+
+use nastran::op2::Op2;
+use std::path::{Path, PathBuf};
+use strainbridge::Context;
+use strainbridge::app::context::InMemory;
+use strainbridge::app::{check::check, solve::solve_deck};
+use strainbridge::fe::{FeError, LoadCase, Relief, SolveOptions, UnitLoad, refuse};
+use strainbridge::finding::Finding;
+use strainbridge::model::Model;
+
+/// The bytes of an OP2 in the making.
+#[derive(Default)]
+struct Bytes(Vec<u8>);
+
+impl Bytes {
+    fn physical(&mut self, bytes: &[u8]) {
+        let n = (bytes.len() as u32).to_le_bytes();
+        self.0.extend(n);
+        self.0.extend(bytes);
+        self.0.extend(n);
+    }
+
+    fn key(&mut self, key: i32) {
+        self.physical(&key.to_le_bytes());
+    }
+
+    fn words(&mut self, bytes: &[u8]) {
+        self.key((bytes.len() / 4) as i32);
+        self.physical(bytes);
+    }
+
+    fn ints(&mut self, values: &[i32]) {
+        let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
+        self.words(&bytes);
+    }
+
+    fn open_record(&mut self, number: i32) {
+        self.key(-number);
+        self.key(1);
+        self.key(0);
+    }
+
+    fn table(&mut self, name: &str, records: &[Vec<i32>]) {
+        let padded = format!("{name:8}");
+        self.words(padded.as_bytes());
+        self.key(-1);
+        self.ints(&[101, 0, 0, 0, 0, 0, 0]);
+        self.open_record(2);
+        self.words(padded.as_bytes());
+        for (number, record) in (3..).zip(records) {
+            self.open_record(number);
+            self.ints(record);
+        }
+        self.open_record(3 + records.len() as i32);
+        self.key(0);
+    }
+}
+
+fn real(v: f32) -> i32 {
+    v.to_bits() as i32
+}
+
+/// A rod from grid 1 to 2 with a force in set 1, and further records of tables.
+fn rod(more: &[(&str, Vec<i32>)]) -> Vec<u8> {
+    let zero = real(0.0);
+    let grid = |id: i32, x: f32| [id, 0, real(x), zero, zero, 0, 0, 0];
+    let grids = [[4501, 45, 1].as_slice(), &grid(1, 0.0), &grid(2, 2.0)].concat();
+    let rods = vec![3001, 30, 48, 1, 7, 1, 2];
+    let force = vec![4201, 42, 18, 1, 2, 0, real(1000.0), real(1.0), zero, zero];
+    let prod = vec![902, 9, 29, 7, 3, real(0.01), zero, zero, zero];
+    let mut mat1 = vec![
+        103,
+        1,
+        77,
+        3,
+        real(1e10),
+        real(4e9),
+        real(0.25),
+        real(100.0),
+    ];
+    mat1.extend([zero; 6]);
+    mat1.push(0);
+    let tables = [
+        ("GEOM1", grids),
+        ("GEOM2", rods),
+        ("GEOM3", force),
+        ("GEOM4", vec![5601, 56, 14, 1, 123456]),
+        ("EPT", prod),
+        ("MPT", mat1),
+    ];
+    let mut out = Bytes::default();
+    out.ints(&[1, 1, 26]);
+    out.words(b"NASTRAN FORT TAPE ID CODE - ");
+    out.words(b"XXXXXXXX");
+    out.key(-1);
+    out.key(0);
+    for (name, record) in tables {
+        let more = more.iter().filter(|m| m.0 == name).map(|m| m.1.clone());
+        let records: Vec<_> = std::iter::once(record).chain(more).collect();
+        out.table(name, &records);
+    }
+    out.key(0);
+    out.0
+}
+
+/// Findings of `check` and what `solve` refuses.
+fn tried(bytes: &[u8]) -> (Vec<Finding>, String) {
+    let files = InMemory::default().with("rod.op2", bytes.to_vec());
+    let cx = Context::new(&files);
+    let looked = check(&[PathBuf::from("rod.op2")], &cx).unwrap();
+    assert!(looked.faults.is_empty(), "{:?}", looked.faults);
+    let solved = solve_deck(Path::new("rod.op2"), SolveOptions::default(), &cx);
+    let refused = solved.err().map_or(String::new(), |f| f.to_string());
+    (looked.findings.0.clone(), refused)
+}
+
+fn warned(findings: &[Finding]) -> Option<(&str, f64)> {
+    let found = findings.iter().find(|f| f.code == "card-not-solved")?;
+    Some((found.message.as_str(), found.measured?))
+}
+
+#[test]
+fn unread_elements_are_named_with_their_count_and_refused() {
+    // Two CGAP of nine words, one RSSCON of no fixed length, and a code that no table has.
+    let gap = |id: i32| [id, 5, 1, 2, 0, 0, 0, 0, 0];
+    let gaps = [[1908, 19, 104].as_slice(), &gap(31), &gap(32)].concat();
+    for (table, record, named, count) in [
+        ("GEOM2", gaps, "CGAP 31", 2.0),
+        ("GEOM4", vec![7201, 72, 398, 9, 1, 2], "RSSCON", 1.0),
+        ("GEOM2", vec![7, 7, 7, 1, 2], "record 7,7,7 of GEOM2", 1.0),
+        (
+            "MPT",
+            [vec![503, 5, 90], vec![3; 11]].concat(),
+            "MATS1 3",
+            1.0,
+        ),
+        ("GEOM4", vec![6901, 69, 295, 0], "RBE2", 1.0),
+    ] {
+        let (findings, refused) = tried(&rod(&[(table, record)]));
+        let (message, measured) = warned(&findings).unwrap_or_else(|| panic!("{named}"));
+        assert!(
+            message.contains(&format!("`rod.op2`: `{named}` acts")),
+            "{message}"
+        );
+        assert_eq!(measured, count, "{named}");
+        assert!(refused.contains(named), "{named}: {refused}");
+    }
+}
+
+#[test]
+fn records_without_influence_are_silent() {
+    let plotel = vec![5201, 52, 11, 9, 1, 2];
+    let damper = vec![201, 2, 69, 8, 5, 1, 2, 1, 1];
+    let heat = [vec![2103, 21, 234], vec![3; 11]].concat();
+    for more in [
+        vec![],
+        vec![("GEOM2", plotel), ("GEOM2", damper), ("MPT", heat)],
+    ] {
+        let (findings, refused) = tried(&rod(&more));
+        assert_eq!(warned(&findings), None);
+        let notes = findings.iter().filter(|f| f.code == "geometry-note");
+        assert_eq!(notes.count(), 0);
+        assert!(!refused.contains("does not carry"), "{refused}");
+    }
+}
+
+#[test]
+fn unread_loads_act_where_their_set_is_selected() {
+    // FORCE2 of set 5; MATT1, which acts where case control selects temperatures.
+    let force2 = vec![4101, 41, 22, 5, 2, real(1.0), 1, 2, 1, 2];
+    let matt1 = [vec![703, 7, 91], vec![3; 12]].concat();
+    let bytes = rod(&[("GEOM3", force2), ("MPT", matt1)]);
+    let (findings, refused) = tried(&bytes);
+    assert!(warned(&findings).is_some_and(|w| w.0.contains("`FORCE2 5` acts")));
+    assert!(!refused.contains("does not carry"), "{refused}");
+    let noted = |f: &&Finding| f.code == "geometry-note" && f.message.contains("MATT1");
+    assert!(findings.iter().any(|f| noted(&f)));
+    let (cards, _) = Op2::read(&bytes).unwrap().cards();
+    let (model, _) = Model::from_cards(&cards);
+    let case = |set: u32| LoadCase {
+        subcase: 1,
+        label: String::new(),
+        loads: vec![UnitLoad::Set(set)],
+        spc: None,
+        mpc: None,
+        relief: Relief::Automatic,
+    };
+    assert!(refuse(&model, &[case(1)]).is_ok());
+    match refuse(&model, &[case(5)]) {
+        Err(FeError::Refused(list)) => assert_eq!(list[0].card, "FORCE2 5"),
+        other => panic!("{other:?}"),
+    }
+}
