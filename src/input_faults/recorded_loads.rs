@@ -165,7 +165,7 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     unit.into_iter().chain(sign).collect()
 }
 
-/// Returns the findings on [`faults_of_recorded_loads`]: one each, an error; `file` holds the records.
+/// Returns the findings on [`faults_of_recorded_loads`]: one each, an error; `file` names the file of the records.
 pub fn findings_of_recorded_loads(runs: &RecordedRuns, file: &str) -> Vec<Finding> {
     let faults = faults_of_recorded_loads(runs);
     faults.iter().map(|f| finding(runs, file, f)).collect()
@@ -310,7 +310,9 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
     match fault {
         RecordFault::Sign(list) => {
             let what = match is_all(list.len()) {
-                true => "all recorded loads, or all readings, have the other sign",
+                true => {
+                    "all recorded loads, or all readings, have the other sign, or all gauges are on the other surface"
+                }
                 false => "these recorded loads have the other sign",
             };
             Finding::new(
@@ -318,7 +320,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                 "input-sign-reversed",
                 subject(list),
                 format!(
-                    "the readings are about minus the strain that the model makes of `{file}` (factor of {}): {what}",
+                    "the readings are about minus the strain that the model makes of {file} (factor of {}): {what}",
                     factors(list)
                 ),
                 "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or of all gauges: [[correction]] sign = -1",
@@ -335,7 +337,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                 "input-unit",
                 subject(list),
                 format!(
-                    "the readings are a multiple of the strain that the model makes of `{file}` (factor of {}){comma}{called}: one of the units is wrong",
+                    "the readings are a multiple of the strain that the model makes of {file} (factor of {}){comma}{called}: one of the units is wrong",
                     factors(list)
                 ),
                 "state the unit of the runs file ([runs] units = { force = \"kN\" }), and check `applied`, the units of the job and of the readings",
@@ -356,7 +358,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                 "inputs-exchanged",
                 few(&names),
                 format!(
-                    "the records of {} are exchanged in `{file}`: exchanged back, they leave {} % of the sum of squares between readings and model",
+                    "the records of {} are exchanged in {file}: exchanged back, they leave {} % of the sum of squares between readings and model",
                     few(&words),
                     number(100.0 * left)
                 ),

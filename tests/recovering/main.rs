@@ -9,6 +9,7 @@ mod dynamic;
 mod files;
 mod kinds;
 mod misled;
+mod mistakes;
 mod payload;
 mod supported;
 mod tables;

@@ -80,7 +80,7 @@ pub(super) fn wrong_records(
         noise: task.errors.noise,
         model_rel: task.errors.model_rel,
     };
-    let mut found = findings_of_recorded_loads(&recorded_runs, &runs.file.given);
+    let mut found = findings_of_recorded_loads(&recorded_runs, &format!("`{}`", runs.file.given));
     for f in &mut found {
         let whose = f.code != "inputs-exchanged" && f.subject == "all";
         f.severity = if whose {
