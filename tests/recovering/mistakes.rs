@@ -4,7 +4,7 @@ use super::{S, loads, strain};
 use std::fmt::Write;
 use strainbridge::app::context::InMemory;
 use strainbridge::finding::Finding;
-use strainbridge::{Context, Disk, Job, Severity, calibrate, reconcile, recover};
+use strainbridge::{Context, Disk, Job, Severity, calibrate, payload, reconcile, recover};
 
 const RUNS: usize = 10;
 
