@@ -8,7 +8,7 @@ use super::sheet::{csv_of_sheet, is_sheet};
 use super::what_is::no_table;
 pub use super::whole_file::{FileBytes, Opened, Stamp};
 use crate::finding::{Finding, Severity};
-use crate::series::record::csv::{Layout, is_cut, unsure_end};
+use crate::series::record::csv::{Layout, eight_bit_text, is_cut, unsure_end};
 #[cfg(feature = "parquet")]
 use crate::series::record::runs_as_csv;
 use crate::series::record::{format_of, is_format};
@@ -171,8 +171,8 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet and Feather with a column `run` the table as
-    /// CSV text.
+    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet and Feather with a column `run`
+    /// the table as CSV text.
     ///
     /// # Errors
     /// A fault at the line of the job that names it.
@@ -190,12 +190,16 @@ impl<'a> Inputs<'a> {
         read.map_err(|f| at_job_line(job, named, f))
     }
 
-    /// Text of a file that a job names.
+    /// Returns the text of a table that a job names: UTF-8, UTF-16, or the eight-bit code of Windows that spreadsheets write.
     ///
     /// # Errors
     /// A fault at the line of the job that names it, or at the line that isn't text.
     pub fn read_named_text(&mut self, job: &Job, named: &NamedFile) -> Result<String, Fault> {
         let text = self.read_text(&job.folder, &named.given);
+        let text = text.or_else(|not_utf8| {
+            let bytes = self.read(&job.folder, &named.given)?;
+            eight_bit_text(&bytes).ok_or(not_utf8)
+        });
         self.note_end(&named.given, text.as_ref().ok());
         text.map_err(|f| at_job_line(job, named, f))
     }

@@ -5,6 +5,7 @@ use crate::linalg::median::weighted_median;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 use crate::units::{Quantity, number};
+use rayon::prelude::*;
 
 /// Ratio of strain to what the model makes of the loads from which a unit is wrong: units of force differ by 4.448 (pounds read as newtons),
 /// 9.81 (kilograms) and 1000, and a model may take a tenth off the first. Below it may be the model, badly scaled (a wall of half the thickness
@@ -18,11 +19,15 @@ const DETERMINED: f64 = 5.0;
 const ANSWERS: f64 = 0.1;
 /// Share of the sum of squares between readings and model that a fault of the records leaves at most, once it is undone.
 const UNDONE: f64 = 0.25;
+/// The same for exchanged records. An effect of the model may look like exchanged wheels: without a payload in the model, two exchanges left 5 %.
+const EXCHANGED: f64 = 0.02;
 /// Share of the largest eigenvalue of the loads' squares from which the runs separate the loads.
 const SEPARATED: f64 = 1e-6;
-/// Sum of squares between readings and model, in units of what noise and the stated error of the model make, up to which nothing is wrong.
+/// Sum of squares between readings and model over that of the noise up to which nothing is wrong.
 const BEYOND: f64 = 4.0;
-/// How close a factor comes to that of a pair of units to be called after it; the least part that one of several exchanged pairs explains.
+/// Loads up to which two exchanged pairs are searched for: some thousand combinations.
+const PAIRED: usize = 12;
+/// How close a factor comes to that of a pair of units to be called after it.
 const NEAR: f64 = 0.15;
 
 /// Factors between what readings show and what the records make of them, with what each stands for.
@@ -45,7 +50,7 @@ pub struct RecordedRuns<'a> {
     /// Readings by run and gauge; NaN where one is missing.
     pub readings: Vec<Vec<f64>>,
     /// Strain of the model: of `gauge` in `run` under the load of the third number, its size taken from the record of the fourth.
-    pub strain_of: Box<dyn Fn(usize, usize, usize, usize) -> f64 + 'a>,
+    pub strain_of: Box<dyn Fn(usize, usize, usize, usize) -> f64 + Sync + 'a>,
     /// What each load measures: records of one quantity may be exchanged. `None`: its record can't be that of another load.
     pub quantities: Vec<Option<Quantity>>,
     /// Whether the record of a load in a run is known well enough to compare.
@@ -96,13 +101,13 @@ impl RecordedRuns<'_> {
         squares.sqrt()
     }
 
-    /// Returns the sum of squares that noise and the stated error of the model make.
-    fn expected_squares(&self) -> f64 {
+    /// Returns the sum of squares that noise makes.
+    fn noise_squares(&self) -> f64 {
         let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
-        let values = readings.filter_map(|(g, r)| self.reading(g, r));
-        values
-            .map(|y| self.noise.powi(2) + (self.model_rel * y).powi(2))
-            .sum()
+        let n = readings
+            .filter(|(g, r)| self.reading(*g, *r).is_some())
+            .count();
+        n as f64 * self.noise.powi(2)
     }
 
     /// Returns the sum of squares between readings and model, with a factor and a record for each load.
@@ -129,13 +134,14 @@ impl RecordedRuns<'_> {
 ///
 /// By gauge `y_r = sum_l c_l e_l(r)` is solved for the factors `c_l` by least squares, `e_l` the strain of load `l` by the model; one common
 /// factor where the runs do not separate the loads. The factor of a load is the median over gauges, weighted by its strain there. Exchanged
-/// records are searched for pair by pair. A fault counts only if undoing it leaves at most a quarter of the sum of squares.
+/// records are searched for pair by pair. A fault counts only if undoing it leaves at most a quarter of the sum of squares, of exchanged records a
+/// fiftieth.
 pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     let k = runs.loads.len();
     let own: Vec<usize> = (0..k).collect();
     let ones = vec![1.0; k];
     let base = runs.squares(&ones, &own);
-    if base <= BEYOND * runs.expected_squares() {
+    if base <= BEYOND * runs.noise_squares() {
         return Vec::new();
     }
     let factors = factors_of_loads(runs);
@@ -154,7 +160,7 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
         false => runs.squares(&undone, &own) / base,
     };
     let (pairs, by_exchange) = exchanges(runs, base);
-    if by_exchange < by_factor && by_exchange < UNDONE {
+    if by_exchange < by_factor && by_exchange < EXCHANGED {
         return vec![RecordFault::Exchanged(pairs, by_exchange)];
     }
     if by_factor > UNDONE {
@@ -262,34 +268,42 @@ fn factors_at(runs: &RecordedRuns, g: usize, groups: &[Vec<usize>]) -> Vec<(usiz
     each.map(|(i, b)| (kept[i], b / norms[kept[i]])).collect()
 }
 
-/// Returns pairs of exchanged records, the one that helps most first, and the share of the sum of squares that is left after all of them.
+/// Returns the pair of exchanged records, or the two pairs, that explain most, and the share of the sum of squares that is left then.
 fn exchanges(runs: &RecordedRuns, base: f64) -> (Vec<[usize; 2]>, f64) {
     let k = runs.loads.len();
     let ones = vec![1.0; k];
-    let mut record: Vec<usize> = (0..k).collect();
-    let (mut pairs, mut left) = (Vec::new(), base);
-    loop {
-        let free = |l: usize| record[l] == l && runs.quantities.get(l).copied().flatten().is_some();
-        let candidates = (0..k).flat_map(|a| (a + 1..k).map(move |b| [a, b]));
-        let alike = candidates
-            .filter(|[a, b]| free(*a) && free(*b) && runs.quantities[*a] == runs.quantities[*b]);
-        let tried = alike.map(|[a, b]| {
-            let mut swapped = record.clone();
-            swapped.swap(a, b);
-            (runs.squares(&ones, &swapped), [a, b])
+    let left = |pairs: &[[usize; 2]]| {
+        let mut record: Vec<usize> = (0..k).collect();
+        pairs.iter().for_each(|[a, b]| record.swap(*a, *b));
+        runs.squares(&ones, &record) / base
+    };
+    let quantity = |l: usize| runs.quantities.get(l).copied().flatten();
+    let all = (0..k).flat_map(|a| (a + 1..k).map(move |b| [a, b]));
+    let alike = all.filter(|[a, b]| quantity(*a).is_some() && quantity(*a) == quantity(*b));
+    let alike: Vec<[usize; 2]> = alike.collect();
+    let least = |tried: Vec<Vec<[usize; 2]>>| {
+        let each = tried.into_par_iter().map(|pairs| {
+            let left = left(&pairs);
+            (pairs, left)
         });
-        let Some((squares, [a, b])) = tried.min_by(|x, y| x.0.total_cmp(&y.0)) else {
-            break;
-        };
-        // Each of several pairs explains a part of what is left.
-        if squares > (1.0 - NEAR) * left {
-            break;
-        }
-        record.swap(a, b);
-        pairs.push([a, b]);
-        left = squares;
+        each.min_by(|x, y| x.1.total_cmp(&y.1))
+    };
+    let Some(one) = least(alike.iter().map(|p| vec![*p]).collect()) else {
+        return (Vec::new(), f64::INFINITY);
+    };
+    if k > PAIRED {
+        return one;
     }
-    (pairs, left / base)
+    let two = alike.iter().enumerate().flat_map(|(i, p)| {
+        let later = alike.iter().skip(i + 1);
+        let apart = later.filter(|q| !q.iter().any(|l| p.contains(l)));
+        apart.map(|q| vec![*p, *q])
+    });
+    match least(two.collect()) {
+        // A second pair has to explain most of what the first one leaves.
+        Some(two) if two.1 < UNDONE * one.1 => two,
+        _ => one,
+    }
 }
 
 fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
@@ -364,7 +378,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                 ),
                 "exchange the names of these columns of the runs file, or state them in [runs] columns",
             )
-            .with_numbers(*left, UNDONE)
+            .with_numbers(*left, EXCHANGED)
         }
     }
 }

@@ -34,7 +34,7 @@ fn files(record: impl Fn([f64; 2]) -> [f64; 2]) -> InMemory {
             "job.toml",
             "units = \"m-kg-s\"\n[sensitivity]\nfile = \"S.csv\"\nper = { force = \"N\" }\n[[load]]\nname = \"A.FZ\"\n[[load]]\nname = \"B.FZ\"\n\
              [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\nmodel_uncertainty_rel = 0.01\nhold_out = [\"R8\", \"R9\"]\n\
-             [runs]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\nnoise = { force = 0.5 }\n[calibration]\nmodel_uncertainty_rel = 0.02\n",
+             [runs]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\nnoise = { force = 1e-4 }\n[calibration]\nmodel_uncertainty_rel = 0.02\n",
         )
 }
 
@@ -248,4 +248,40 @@ fn recorded_masses_that_the_readings_contradict_are_an_error() {
     };
     let found = weighed(|t| t, |t| t, of_sixty_percent);
     assert!(named(&found), "{found:?}");
+}
+
+#[test]
+fn tables_in_the_code_of_windows_are_read_and_names_of_another_case_are_shown_with_the_gauges() {
+    let right = files(|f| f);
+    let units = "um/m,um/m,um/m,um/m\n";
+    let text = |name: &str| {
+        let path = std::path::Path::new(name);
+        String::from_utf8(
+            strainbridge::app::context::Files::load(&right, path)
+                .unwrap()
+                .to_vec(),
+        )
+        .unwrap()
+    };
+    let strain = text("strain.csv");
+    let (header, rows) = strain.split_once('\n').unwrap();
+    let with_units = format!("{header}\n,{units}{rows}").replace("um/m", "µm/m");
+    let windows: Vec<u8> = with_units.chars().map(|c| c as u8).collect();
+    assert!(windows.contains(&0xb5) && std::str::from_utf8(&windows).is_err());
+    let loads = |files: &InMemory| {
+        let job = Job::read("job.toml", files).unwrap();
+        let found = recover(&job, &Context::new(files)).unwrap();
+        serde_json::to_value(&found.answer).unwrap()
+    };
+    assert_eq!(
+        loads(&right.clone().with("strain.csv", windows)),
+        loads(&right)
+    );
+    let lower = right.with("strain.csv", strain.replace('G', "g "));
+    let job = Job::read("job.toml", &lower).unwrap();
+    let faults = recover(&job, &Context::new(&lower))
+        .err()
+        .unwrap()
+        .to_string();
+    assert!(faults.contains("differ by case or separators"), "{faults}");
 }

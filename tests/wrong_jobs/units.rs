@@ -64,7 +64,8 @@ fn judged(folder: &Path, arguments: &[&str]) -> (i32, Vec<String>, String) {
 }
 
 /// What an error says of the unit, or of where it is stated: of one code one of these.
-const SAYS: [(&str, &[&str]); 8] = [
+const SAYS: [(&str, &[&str]); 9] = [
+    ("input-unit", &["[runs] units"]),
     (
         "readings-below-noise",
         &[
@@ -216,7 +217,7 @@ fn wheel_forces_in_another_unit_are_asked_for() {
             .iter()
             .fold(t.to_owned(), |t, c| scaled(&t, Some(c), 1e3))
     });
-    asks(&to, &reconcile, "model-far-above-readings runs ");
+    asks(&to, &reconcile, "input-unit N.FZ, L.FZ, R.FZ ");
 }
 
 #[test]

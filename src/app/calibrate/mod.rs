@@ -304,7 +304,7 @@ fn check_readings(
     }
     match gauges.iter().any(|g| table.gauges.contains(g)) {
         true => Ok(()),
-        false => Err(no_gauge_column(job, &measured.strain.given, &table.gauges).into()),
+        false => Err(no_gauge_column(job, &measured.strain.given, &table.gauges, gauges).into()),
     }
 }
 

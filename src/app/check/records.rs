@@ -226,7 +226,7 @@ mod tests {
             sample_rate_hz: Some(100.0),
             duration_s: Some(1.0),
         };
-        assert!(entry.text().contains("P11 [um/m], ..)"));
+        assert!(entry.text().contains("P7 [um/m] and 12 more)"));
         entry.other_channels = vec![
             other("slow", "battery", 3, Some(1.0)),
             other("notes", "remark", 1, None),

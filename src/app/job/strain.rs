@@ -4,6 +4,7 @@
 use super::correct::{check_channels, columns_wanted};
 use super::gauge_column::strain_columns;
 use super::readings::readings_of;
+use super::same_name::is_same_name;
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
 use super::table::read_table;
@@ -119,7 +120,7 @@ pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
 }
 
 /// Returns the fault of a strain file without a column of a gauge. Where a table of S alone names the gauges, either file may be wrong.
-pub fn no_gauge_column(job: &Job, file: &str, columns: &[String]) -> Fault {
+pub fn no_gauge_column(job: &Job, file: &str, columns: &[String], gauges: &[String]) -> Fault {
     let (wrong, remedy) = match &job.sensitivity {
         Some(s) if job.gauges.is_empty() => (
             format!("no column is named after a gauge of `{}`", s.file.given),
@@ -130,6 +131,24 @@ pub fn no_gauge_column(job: &Job, file: &str, columns: &[String]) -> Fault {
             "name the columns after the gauges",
         ),
     };
+    let alike = gauges.iter().filter_map(|g| {
+        let column = columns.iter().find(|c| is_same_name(c, g))?;
+        Some(format!("`{column}` and `{g}`"))
+    });
+    let alike: Vec<String> = alike.collect();
+    if !alike.is_empty() {
+        let wrong = format!(
+            "{wrong}; columns and gauges differ by case or separators: {}",
+            few(&alike)
+        );
+        return Fault::at(
+            file,
+            1,
+            "gauge",
+            wrong,
+            "write the names alike in both tables",
+        );
+    }
     let wrong = match columns.is_empty() {
         true => format!("{wrong}; the file has no column of numbers"),
         false => format!("{wrong}; its columns are {}", few(columns)),

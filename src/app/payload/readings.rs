@@ -319,7 +319,13 @@ fn strain(
     };
     let all = means(&file, model, noise);
     if all.iter().all(|v| !v.value.is_finite()) {
-        return Err(no_gauge_column(task.job, &measured.strain.given, file.gauges()).into());
+        return Err(no_gauge_column(
+            task.job,
+            &measured.strain.given,
+            file.gauges(),
+            &model.gauges,
+        )
+        .into());
     }
     let runs = if let StrainFile::Table(table) = &file
         && let StrainRows::Runs(names) = &table.rows

@@ -1,13 +1,13 @@
 //! The choice: single gauges through the tensors, or bundles (rosettes, pairs, unlike costs) within a budget.
 
+use super::misfits::fitting;
 use super::pool::Kind;
 use super::task::{Task, know_the_loads, position};
 use super::wanted::on_wanted;
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::{Job, Optimality};
+use crate::app::job::Optimality;
 use crate::app::work::Work;
-use crate::finding::Finding;
-use crate::gauge::{Bridge, CornerRows, Gauge, GaugeError, GaugeSpec, build};
+use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build};
 use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
@@ -207,23 +207,14 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
     };
     let corners = task.fields.corner_rows(job);
     let build = |spec: &GaugeSpec| build(task.fields.model(), spec, corners);
-    let laid = |built: Result<(Vec<Gauge>, Vec<Finding>), GaugeError>| {
-        let (gauges, _) = built.map_err(|e| {
+    let lay = |spec: &GaugeSpec| {
+        let (gauges, _) = build(spec).map_err(|e| {
             let (wrong, remedy) = e.parts();
             refused(wrong, remedy)
         })?;
         gauges.into_iter().next().ok_or_else(no_place)
     };
-    let built = build(&by_angle);
-    let misfit = misfit(job, &built);
-    let by_angle = match built {
-        Err(GaugeError::GridBeyondPart { .. }) => GaugeSpec {
-            grid_length: 0.0,
-            ..by_angle
-        },
-        _ => by_angle,
-    };
-    let lay = |spec: &GaugeSpec| laid(build(spec));
+    let (by_angle, misfit) = fitting(job, by_angle, build);
     let direction = lay(&by_angle)?.direction;
     let by_direction = GaugeSpec {
         direction: Some(direction),
@@ -243,35 +234,6 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
         angle: choice.angle,
         misfit,
     })
-}
-
-/// Returns the fault of a grid that is longer than the part or that reaches past its edge.
-fn misfit(job: &Job, built: &Result<(Vec<Gauge>, Vec<Finding>), GaugeError>) -> Option<Fault> {
-    let (wrong, remedy) = match built {
-        Err(e @ GaugeError::GridBeyondPart { element, part, .. }) => (
-            e.parts().0,
-            format!(
-                "lower [candidates] `grid_length` to {part:.4} or less, or add element {element} to [candidates] `exclude_elements`"
-            ),
-        ),
-        Ok((_, findings)) => {
-            let off = findings.iter().find(|f| f.code == "gauge-off-structure")?;
-            let remedy = format!(
-                "lower [candidates] `grid_length`, or keep gauges away from edges: [candidates] clear_of = {{ edges = {} }}",
-                0.5 * job.candidates.grid_length
-            );
-            (off.message.clone(), remedy)
-        }
-        Err(_) => return None,
-    };
-    let line = job.candidates.line;
-    Some(Fault::at(
-        &*job.file,
-        line,
-        "candidates.grid_length",
-        wrong,
-        remedy,
-    ))
 }
 
 /// What a bundle is: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.

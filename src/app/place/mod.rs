@@ -5,6 +5,7 @@ mod curve;
 mod installed;
 mod judge;
 mod known;
+mod misfits;
 mod outcome;
 mod pool;
 mod region;
@@ -78,7 +79,9 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
             (Err(_), Some(misfit)) => return Err(misfit.into()),
             (Err(refused), None) => return Err(refused),
         };
-        misfit = task.leave_out_misfits(&chosen.channels, rounds < ROUNDS)?;
+        let each = chosen.channels.iter();
+        let each = each.map(|c| (c.site, c.gauge.element, c.misfit.as_ref()));
+        misfit = misfits::leave_out(&mut task, each, rounds < ROUNDS)?;
         if misfit.is_none() {
             break (kinds, chosen);
         }

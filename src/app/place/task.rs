@@ -1,6 +1,5 @@
 //! What is to be placed: the job resolved on its model.
 
-use super::choose::Channel;
 use super::pool::column_order;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Keep, LoadRole, Optimality};
@@ -15,7 +14,6 @@ use crate::placement::sites::{Site, wired};
 use crate::placement::{Criterion, PlaceError, Spec};
 use crate::sensitivity::{LoadCaseOf, Sensitivity};
 use crate::units::MICROSTRAIN;
-use std::collections::BTreeSet;
 
 /// The task.
 pub(super) struct Task<'a> {
@@ -103,34 +101,6 @@ impl<'a> Task<'a> {
         self.sites.retain(|_| flags.next().unwrap_or(false));
         self.kept = laid;
         Ok(())
-    }
-
-    /// Leaves out the sites of channels whose grid does not fit, and returns the refusal of one of them; `None` where every grid fits.
-    ///
-    /// # Errors
-    /// The refusal of such a channel, where no further round is allowed or its element is wanted.
-    pub fn leave_out_misfits(
-        &mut self,
-        channels: &[Channel],
-        is_allowed: bool,
-    ) -> Result<Option<Fault>, Fault> {
-        let wanted = self.job.candidates.wanted_elements.as_ref();
-        let mut out = BTreeSet::new();
-        let mut last = None;
-        for channel in channels {
-            let Some(misfit) = &channel.misfit else {
-                continue;
-            };
-            if !is_allowed || wanted.is_some_and(|w| w.contains(channel.gauge.element)) {
-                return Err(misfit.clone());
-            }
-            out.insert(channel.site);
-            last = Some(misfit.clone());
-        }
-        let mut site = 0..self.sites.len();
-        self.sites
-            .retain(|_| site.next().is_some_and(|i| !out.contains(&i)));
-        Ok(last)
     }
 
     /// Spec with gauges, criterion, and what is known beforehand.

@@ -58,7 +58,7 @@ pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, Known
     };
     let columns = columns_of(work, named, &table.gauges, &s.gauges);
     if columns.iter().all(Option::is_none) {
-        return Err(no_gauge_column(task.job, &named.given, &table.gauges).into());
+        return Err(no_gauge_column(task.job, &named.given, &table.gauges, &s.gauges).into());
     }
     let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
     let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());

@@ -40,7 +40,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
         .filter(|&g| found[g].is_some() && task.zero[g].is_finite() && !channel(g).1.ignore)
         .collect();
     if used.is_empty() {
-        return Err(no_gauge_column(task.job, file, &record.names).into());
+        return Err(no_gauge_column(task.job, file, &record.names, &all.gauges).into());
     }
     let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
     let given = columns_of_record(&record)?;

@@ -295,10 +295,9 @@ pub(super) fn judge(
         evidence: best.log_evidence - null_evidence,
         wins: standing.wins(&named_part(candidates, &best.set)),
         // The coefficients of a curve say nothing by themselves: `smooth` has what they make.
-        covariance: if is_curve {
-            Vec::new()
-        } else {
-            best.fit.covariance.clone()
+        covariance: match is_curve {
+            true => Vec::new(),
+            false => best.fit.covariance.clone(),
         },
         smooth: curve(frame, candidates, best),
         noise_factor: noise,

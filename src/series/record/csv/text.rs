@@ -2,6 +2,22 @@
 
 use std::borrow::Cow;
 
+/// Characters of Windows-1252 from 0x80 on, where it differs from Latin-1; a space where it has none.
+const WINDOWS_1252: &str = "€ ‚ƒ„…†‡ˆ‰Š‹Œ Ž  ‘’“”•–—˜™š›œ žŸ";
+
+/// Returns text in the eight-bit code of Windows (1252); `None` for bytes that no text has.
+pub fn eight_bit_text(bytes: &[u8]) -> Option<String> {
+    let character = |b: &u8| match b {
+        b'\t' | b'\r' | b'\n' | 0x20..=0x7e | 0xa0.. => Some(char::from(*b)),
+        0x80..=0x9f => {
+            let c = WINDOWS_1252.chars().nth(usize::from(b - 0x80));
+            c.filter(|c| *c != ' ')
+        }
+        _ => None,
+    };
+    bytes.iter().map(character).collect()
+}
+
 /// How text is coded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {

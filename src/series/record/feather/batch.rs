@@ -1,6 +1,5 @@
 //! Batches of a Feather file: lists of buffers, and their bytes decompressed.
 
-use super::broken;
 use crate::series::error::SeriesError;
 use crate::series::record::arrow::{Field, Stored, content, fields, message};
 use crate::series::record::flat_buffer::Buffer;
@@ -190,4 +189,11 @@ fn take(field: &Field, rows: Option<usize>, parts: &mut Parts) -> Option<Vec<Ran
         take(child, None, parts)?;
     }
     Some(own)
+}
+
+pub(super) fn broken(what: &str) -> SeriesError {
+    SeriesError::Broken {
+        wrong: format!("it can't be read as Feather ({what})"),
+        remedy: "write it again, columns of numbers and one `time` in seconds",
+    }
 }

@@ -12,7 +12,7 @@ use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use super::tile::Tile;
 use super::typed::{Meaning, Precision, TimeColumn, Typed};
 use crate::series::error::SeriesError;
-use batch::{Batch, MAGIC, parts};
+use batch::{Batch, MAGIC, broken, parts};
 use std::borrow::Cow;
 use std::ops::{ControlFlow, Range};
 use values::{Values, is_valid};
@@ -312,12 +312,5 @@ impl Field {
             Stored::Bits | Stored::Real { .. } => Some(Meaning::Number(1.0)),
             Stored::Text { .. } | Stored::TextView | Stored::Other => None,
         }
-    }
-}
-
-fn broken(what: &str) -> SeriesError {
-    SeriesError::Broken {
-        wrong: format!("it can't be read as Feather ({what})"),
-        remedy: "write it again, columns of numbers and one `time` in seconds",
     }
 }
