@@ -92,7 +92,7 @@ impl RecordedRuns<'_> {
         value.is_finite().then_some(value)
     }
 
-    /// Returns root mean square strain of a load at a gauge.
+    /// Returns the root of the sum of squares of a load's strain at a gauge.
     fn answer(&self, g: usize, l: usize) -> f64 {
         let squares: f64 = self
             .runs()
@@ -110,22 +110,16 @@ impl RecordedRuns<'_> {
         n as f64 * self.noise.powi(2)
     }
 
-    /// Returns the sum of squares between readings and model, with a factor and a record for each load.
-    fn squares(&self, factor: &[f64], record: &[usize]) -> f64 {
-        let mut sum = 0.0;
-        for g in self.gauges() {
-            for r in self.runs() {
-                let Some(y) = self.reading(g, r) else {
-                    continue;
-                };
-                let each = record.iter().zip(factor).enumerate();
-                let model: f64 = each
-                    .map(|(l, (from, c))| c * (self.strain_of)(g, r, l, *from))
-                    .sum();
-                sum += (y - model).powi(2);
-            }
-        }
-        sum
+    /// Returns gauge, run and reading less the model of each reading, with a factor for each load.
+    fn differences(&self, factor: &[f64]) -> Vec<(usize, usize, f64)> {
+        let readings = self.gauges().flat_map(|g| self.runs().map(move |r| (g, r)));
+        let each = readings.filter_map(|(g, r)| Some((g, r, self.reading(g, r)?)));
+        each.map(|(g, r, y)| {
+            let loads = factor.iter().enumerate();
+            let model = loads.map(|(l, c)| c * (self.strain_of)(g, r, l, l));
+            (g, r, y - model.sum::<f64>())
+        })
+        .collect()
     }
 }
 
@@ -138,9 +132,8 @@ impl RecordedRuns<'_> {
 /// fiftieth.
 pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     let k = runs.loads.len();
-    let own: Vec<usize> = (0..k).collect();
-    let ones = vec![1.0; k];
-    let base = runs.squares(&ones, &own);
+    let as_recorded = runs.differences(&vec![1.0; k]);
+    let base = squares(&as_recorded);
     if base <= BEYOND * runs.noise_squares() {
         return Vec::new();
     }
@@ -151,15 +144,15 @@ pub fn faults_of_recorded_loads(runs: &RecordedRuns) -> Vec<RecordFault> {
     };
     let (units, rest): (Vec<_>, Vec<_>) = factors.iter().partition(|(_, c)| beyond(*c));
     let signs: Vec<(usize, f64)> = rest.into_iter().filter(|(_, c)| *c < SIGN).collect();
-    let mut undone = ones.clone();
+    let mut undone = vec![1.0; k];
     for (l, c) in units.iter().chain(&signs) {
         undone[*l] = if beyond(*c) { *c } else { -1.0 };
     }
     let by_factor = match units.is_empty() && signs.is_empty() {
         true => f64::INFINITY,
-        false => runs.squares(&undone, &own) / base,
+        false => squares(&runs.differences(&undone)) / base,
     };
-    let (pairs, by_exchange) = exchanges(runs, base);
+    let (pairs, by_exchange) = exchanges(runs, &as_recorded);
     if by_exchange < by_factor && by_exchange < EXCHANGED {
         return vec![RecordFault::Exchanged(pairs, by_exchange)];
     }
@@ -268,14 +261,24 @@ fn factors_at(runs: &RecordedRuns, g: usize, groups: &[Vec<usize>]) -> Vec<(usiz
     each.map(|(i, b)| (kept[i], b / norms[kept[i]])).collect()
 }
 
+/// Returns the sum of squares of differences.
+fn squares(differences: &[(usize, usize, f64)]) -> f64 {
+    differences.iter().map(|d| d.2 * d.2).sum()
+}
+
 /// Returns the pair of exchanged records, or the two pairs, that explain most, and the share of the sum of squares that is left then.
-fn exchanges(runs: &RecordedRuns, base: f64) -> (Vec<[usize; 2]>, f64) {
+fn exchanges(runs: &RecordedRuns, as_recorded: &[(usize, usize, f64)]) -> (Vec<[usize; 2]>, f64) {
     let k = runs.loads.len();
-    let ones = vec![1.0; k];
+    let base = squares(as_recorded);
     let left = |pairs: &[[usize; 2]]| {
-        let mut record: Vec<usize> = (0..k).collect();
-        pairs.iter().for_each(|[a, b]| record.swap(*a, *b));
-        runs.squares(&ones, &record) / base
+        let exchanged = as_recorded.iter().map(|&(g, r, difference)| {
+            let strain = |l: usize, from: usize| (runs.strain_of)(g, r, l, from);
+            let change = |[a, b]: &[usize; 2]| {
+                strain(*a, *a) - strain(*a, *b) + strain(*b, *b) - strain(*b, *a)
+            };
+            (difference + pairs.iter().map(change).sum::<f64>()).powi(2)
+        });
+        exchanged.sum::<f64>() / base
     };
     let quantity = |l: usize| runs.quantities.get(l).copied().flatten();
     let all = (0..k).flat_map(|a| (a + 1..k).map(move |b| [a, b]));
