@@ -5,10 +5,9 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::column_unit::{
     asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
 };
-use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
-use crate::app::job::{HoldOut, Job, JobLoad, LoadActs, Measured, Runs};
+use crate::app::job::{HoldOut, Job, Measured, Runs};
 use crate::app::work::Work;
 use crate::calibrate::KnownLoads;
 use crate::finding::{Finding, Severity};
@@ -283,14 +282,6 @@ fn column(
     asked_column(job, at, table, headers, name, faults)
 }
 
-fn quantity(load: Option<&JobLoad>, name: &str) -> Option<Quantity> {
-    match load.map(|l| l.acts) {
-        Some(LoadActs::AtGrid { component, .. }) => Some(component.quantity()),
-        Some(LoadActs::Set(_)) => None,
-        Some(LoadActs::Named) | None => Some(quantity_of_name(name)),
-    }
-}
-
 /// Columns of loads and of combinations that the file has.
 fn stated(
     job: &Job,
@@ -320,7 +311,7 @@ fn stated(
             .first()
             .and_then(|t| loads.get(t.0))
             .map_or(name, |l| l.name.as_str());
-        let quantity = quantity(job.loads.iter().find(|l| l.name == first), first);
+        let quantity = job.quantity_of_load(first);
         let Some((value, unit)) =
             known_column(job, runs, table, headers, name, quantity, faults).map(|c| (c.at, c.unit))
         else {

@@ -3,7 +3,6 @@
 use super::model_part::ModelPart;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::Job;
-use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::work::Work;
 use crate::reconcile::Observations;
@@ -120,10 +119,5 @@ fn payload_of(row: &RunRow, gravity: f64, origin: [f64; 2]) -> [f64; 3] {
 
 /// Whether a load of the job is a moment.
 fn is_moment(job: &Job, name: &str) -> bool {
-    let stated = job.loads.iter().find(|l| l.name == name);
-    let quantity = match stated {
-        Some(l) => l.quantity(),
-        None => Some(quantity_of_name(name)),
-    };
-    quantity == Some(Quantity::Moment)
+    job.quantity_of_load(name) == Some(Quantity::Moment)
 }

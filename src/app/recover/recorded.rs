@@ -4,7 +4,6 @@ use super::known_payload::KnownLoads;
 use super::task::Task;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
-use crate::app::job::quantity::quantity_of_name;
 use crate::app::job::runs::read_runs;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
@@ -18,7 +17,7 @@ use crate::sensitivity::Sensitivity;
 /// the recovered ones: a finding is an error only if it may be the readings that are wrong.
 ///
 /// # Errors
-/// Those of the runs file.
+/// The faults of the runs file.
 pub(super) fn wrong_records(
     work: &mut Work,
     task: &Task,
@@ -94,10 +93,5 @@ pub(super) fn wrong_records(
 
 /// Returns SI units of one job unit of a load.
 fn si_of(job: &Job, name: &str) -> f64 {
-    let stated = job.loads.iter().find(|l| l.name == name);
-    let quantity = match stated {
-        Some(l) => l.quantity(),
-        None => Some(quantity_of_name(name)),
-    };
-    quantity.map_or(1.0, |q| job.units.si(q))
+    job.quantity_of_load(name).map_or(1.0, |q| job.units.si(q))
 }

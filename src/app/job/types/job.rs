@@ -21,7 +21,8 @@ use super::sensitivity::GivenSensitivity;
 use super::study::Study;
 use super::vehicle::Vehicle;
 use crate::app::file_read::FileRead;
-use crate::units::{ReportUnits, UnitSystem};
+use crate::app::job::quantity::quantity_of_name;
+use crate::units::{Quantity, ReportUnits, UnitSystem};
 use std::path::PathBuf;
 
 /// A job.
@@ -83,4 +84,14 @@ pub struct Job {
     pub sensitivity: Option<GivenSensitivity>,
     /// `[fleet]`.
     pub fleet: Option<Fleet>,
+}
+
+impl Job {
+    /// Returns what a load measures: by its `[[load]]`, else by its name; `None` for a load set of the deck.
+    pub fn quantity_of_load(&self, name: &str) -> Option<Quantity> {
+        match self.loads.iter().find(|l| l.name == name) {
+            Some(load) => load.quantity(),
+            None => Some(quantity_of_name(name)),
+        }
+    }
 }
