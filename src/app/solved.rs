@@ -56,7 +56,7 @@ fn moved_by(model: &Model, support: Support) -> Option<(u32, u32, f64)> {
 /// Returns a finding on the inertia relief of a job: assumed, or limited by springs to ground.
 ///
 /// # Errors
-/// As [`support_of_job`].
+/// The faults of [`support_of_job`].
 pub fn relief_of_job(job: &Job, model: &Model) -> Result<Option<Finding>, Faults> {
     let wanted = job
         .model

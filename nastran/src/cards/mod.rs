@@ -117,9 +117,9 @@ pub struct Cards {
 /// An entry of the geometry blocks of an OP2 that acts and has no struct.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct UnreadEntry {
-    /// Its name, or the code of its record where the name is not known.
+    /// Name of the entry, or the code of its record where the name is not known.
     pub name: String,
-    /// Its element, property or set; `None` where the entry stands for a record whose entries have no known length.
+    /// Id of the element, property or set; `None` where the entry stands for a record whose entries have no known length.
     pub id: Option<u32>,
     /// Whether it is a load, which acts where its set is selected.
     pub is_load: bool,

@@ -87,7 +87,7 @@ fn sigmas(free: &WeighedRun) -> Option<f64> {
 /// Returns the finding on masses of the runs file that differ from the weighed ones by more than the interval and a tenth, in most runs.
 ///
 /// # Errors
-/// Those of the runs file.
+/// The faults of the runs file.
 pub(super) fn mass_contradicted(
     work: &mut Work,
     task: &Task,

@@ -149,7 +149,7 @@ fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
 /// Names of the column with the run or the time of a row.
 const KEYS: [&str; 4] = ["run", "time", "t", "state"];
 
-/// What the key of a row is.
+/// Kind of the key of a row.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Key {
     Run,
