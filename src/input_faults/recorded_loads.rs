@@ -32,15 +32,18 @@ const NEAR: f64 = 0.15;
 
 /// Factors between what readings show and what the records make of them, with what each stands for.
 const UNITS: [(f64, &str); 9] = [
-    (1e-3, "as of N read in kN, or of readings in mm/m"),
-    (1e3, "as of kN read in N"),
-    (4.448, "as of lbf read in N"),
-    (1.0 / 4.448, "as of N read in lbf"),
-    (4.448e-3, "as of lbf read in kN"),
-    (9.807, "as of kgf read in N"),
-    (1.0 / 9.807, "as of N read in kgf"),
-    (9.807e-3, "as of kgf read in kN"),
-    (1e-6, "as of readings in m/m"),
+    (
+        1e-3,
+        "as if loads in N were read as kN, or readings in mm/m as microstrain",
+    ),
+    (1e3, "as if loads in kN were read as N"),
+    (4.448, "as if loads in lbf were read as N"),
+    (1.0 / 4.448, "as if loads in N were read as lbf"),
+    (4.448e-3, "as if loads in lbf were read as kN"),
+    (9.807, "as if loads in kgf were read as N"),
+    (1.0 / 9.807, "as if loads in N were read as kgf"),
+    (9.807e-3, "as if loads in kgf were read as kN"),
+    (1e-6, "as if readings in m/m were read as microstrain"),
 ];
 
 /// Static runs with recorded loads. Units are the caller's: strain of readings and of [`Self::strain_of`] are in one unit.
@@ -328,16 +331,16 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
         RecordFault::Sign(list) => {
             let what = match is_all(list.len()) {
                 true => {
-                    "all recorded loads, or all readings, have the other sign, or all gauges are on the other surface"
+                    "all recorded loads or all readings have the opposite sign, or all gauges are on the other surface"
                 }
-                false => "these recorded loads have the other sign",
+                false => "these recorded loads have the opposite sign",
             };
             Finding::new(
                 Severity::Error,
                 "input-sign-reversed",
                 subject(list),
                 format!(
-                    "the readings are about minus the strain that the model makes of {file} (factor of {}): {what}",
+                    "the readings are about -1 times the strain that the model predicts from {file} (factors: {}): {what}",
                     factors(list)
                 ),
                 "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or of all gauges: [[correction]] sign = -1",
@@ -354,7 +357,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                 "input-unit",
                 subject(list),
                 format!(
-                    "the readings are a multiple of the strain that the model makes of {file} (factor of {}){comma}{called}: one of the units is wrong",
+                    "the readings are a multiple of the strain that the model predicts from {file} (factors: {}){comma}{called}: a unit is wrong",
                     factors(list)
                 ),
                 "state the unit of the runs file ([runs] units = { force = \"kN\" }), and check `applied`, the units of the job and of the readings",
@@ -375,7 +378,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                 "inputs-exchanged",
                 few(&names),
                 format!(
-                    "the records of {} are exchanged in {file}: exchanged back, they leave {} % of the sum of squares between readings and model",
+                    "the recorded loads {} are exchanged in {file}: with the columns exchanged back, {} % of the squared difference between readings and model remains",
                     few(&words),
                     number(100.0 * left)
                 ),
@@ -416,7 +419,7 @@ pub fn recorded_mass_contradicted(
             "recorded-mass-contradicts",
             runs.loads.get(payload).copied().unwrap_or_default(),
             format!(
-                "the wheel forces carry {} times the recorded payloads, and the strain shows {} times: the recorded masses are wrong",
+                "the wheel forces change by {} times the recorded payload weights, and the strain by {} times: the recorded masses are wrong",
                 number(by_wheels),
                 number(by_strain)
             ),

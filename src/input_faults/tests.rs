@@ -91,9 +91,9 @@ fn reversed_records_are_named_and_no_others() {
 fn records_in_another_unit_are_named_with_the_pair_of_units() {
     for seed in 0..50 {
         for (factor, words) in [
-            (1e3, "N read in kN"),
-            (1e-3, "kN read in N"),
-            (1.0 / 4.448, "lbf read in N"),
+            (1e3, "N were read as kN"),
+            (1e-3, "kN were read as N"),
+            (1.0 / 4.448, "lbf were read as N"),
         ] {
             let planted = Planted::new(seed).scaled([factor; 4]);
             let found = findings_of_recorded_loads(&planted.runs(), "runs.csv");

@@ -64,7 +64,7 @@ pub(super) fn findings(
                 code,
                 subject,
                 format!(
-                    "{whose} {words} would explain the readings: the residual sum of squares falls to {:.1} % of what it is",
+                    "{whose} {words} would explain the readings: the residual sum of squares falls to {:.2} % of its value",
                     100.0 * chi2 / base
                 ),
                 remedy,
