@@ -13,7 +13,7 @@
 //! | 4 | [`gauge`] | strain at a place | what that gauge reads |
 //! | 3 | [`fe`] | [`model::Model`] and load cases, or result files | [`fe::Solution`] |
 //! | 2 | [`model`] | a deck's cards | a checked, immutable [`model::Model`] |
-//! | 1 | [`units`], [`linalg`], [`series`], [`estimate`], [`input_faults`], [`finding`], [`stop`] | no word of finite elements here | |
+//! | 1 | [`series`], [`input_faults`], [`units`], [`estimate`], [`linalg`], [`finding`], [`stop`] | no word of finite elements here | |
 //! | 0 | crate `nastran` | bytes | cards and tables |
 //!
 //! Gauges placed and loads recovered by one job:

@@ -2,7 +2,7 @@
 
 use super::fit::calibrate;
 use super::types::{LeftOut, Task};
-use crate::linalg::tail::student_tail;
+use crate::estimate::student_tail;
 use crate::linalg::{Matrix, dense};
 
 /// Change of the scale with a column.

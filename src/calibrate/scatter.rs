@@ -1,7 +1,7 @@
 //! Scatter of repeats: covariance over gauges of what the fitted runs leave, shrunk because runs are few and gauges many.
 
 use super::overfit;
-use crate::linalg::tail::chi_square_tail;
+use crate::estimate::chi_square_tail;
 use crate::linalg::{Matrix, spd};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::collections::BTreeMap;

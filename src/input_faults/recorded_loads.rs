@@ -1,7 +1,7 @@
 //! Recorded loads of static runs compared with the strain that the model makes of them.
 
+use crate::estimate::weighted_median;
 use crate::finding::{Finding, Severity, few};
-use crate::linalg::median::weighted_median;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 use crate::units::{Quantity, number};

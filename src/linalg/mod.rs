@@ -3,21 +3,17 @@
 //! - [`sparse`]: large symmetric positive definite systems
 //! - [`tall`]: least squares with many rows and few columns
 //! - [`levenberg`]: nonlinear least squares
-//! - [`median`]: the median of values that count unequally
 //! - [`cholesky`]: the factor of a dense covariance
 //! - [`complex`]: complex least squares of small systems
 //! - [`precision`]: the inverse of a dense covariance
-//! - [`tail`]: chances of a value at least as large
 
 pub mod cholesky;
 pub mod complex;
 pub mod dense;
 pub mod levenberg;
-pub mod median;
 pub mod precision;
 pub mod sparse;
 pub mod spd;
-pub mod tail;
 pub mod tall;
 
 pub use dense::{Matrix, Vector};

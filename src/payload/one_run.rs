@@ -1,8 +1,8 @@
 //! One run solved: rows of its gauges, wheel forces, equilibrium and what is known beforehand, each over its standard deviation.
 
 use super::evidence::{PayloadModel, PayloadRun, Place, WeighSpec};
+use crate::estimate::{LinearEstimate, LinearGaussian, ReadingErrors};
 use crate::linalg::Matrix;
-use crate::recovery::{Fit, fit};
 
 /// Equilibrium is exact: its standard deviation as a share of that of a wheel force.
 const EXACT: f64 = 1e-3;
@@ -93,7 +93,13 @@ pub(super) fn solve_run(
     let mut gauges = Vec::new();
     let mut wheels = 0.0;
     for (i, row) in rows.iter().enumerate() {
-        let residual = row.y - row.a.iter().zip(&solved.f).map(|(a, f)| a * f).sum::<f64>();
+        let residual = row.y
+            - row
+                .a
+                .iter()
+                .zip(&solved.value)
+                .map(|(a, f)| a * f)
+                .sum::<f64>();
         match row.gauge {
             Some(g) => {
                 let spread = solved.leverage[i] * variances[i];
@@ -191,10 +197,10 @@ impl Unknowns {
     }
 
     /// The answer in `(F, F dx, F dy)`.
-    fn located(&self, model: &PayloadModel, solved: &Fit) -> Located {
+    fn located(&self, model: &PayloadModel, solved: &LinearEstimate) -> Located {
         let p: [f64; 3] = std::array::from_fn(|k| {
             let (i, c) = self.back(k);
-            c * solved.f[i]
+            c * solved.value[i]
         });
         let mut covariance = [0.0; 9];
         for i in 0..3 {
@@ -204,7 +210,7 @@ impl Unknowns {
             }
         }
         let reactions = if self.n_wheels > 0 {
-            solved.f[..self.n_wheels].to_vec()
+            solved.value[..self.n_wheels].to_vec()
         } else {
             model.floor.as_ref().map_or_else(Vec::new, |floor| {
                 (0..floor.nrows())
@@ -352,7 +358,7 @@ fn within_region(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
 }
 
 /// Least squares over the rows, columns scaled to unit length.
-fn least_squares(rows: &[Row], variances: &[f64], width: usize) -> Option<Fit> {
+fn least_squares(rows: &[Row], variances: &[f64], width: usize) -> Option<LinearEstimate> {
     let a = Matrix::from_fn(rows.len(), width, |i, l| rows[i].a[l]);
     let y: Vec<f64> = rows.iter().map(|r| r.y).collect();
     let scales: Vec<f64> = (0..width)
@@ -364,7 +370,13 @@ fn least_squares(rows: &[Row], variances: &[f64], width: usize) -> Option<Fit> {
             if size > 0.0 { 1.0 / size } else { 1.0 }
         })
         .collect();
-    fit(&a, &y, variances, &vec![None; width], &scales)
+    let model = LinearGaussian {
+        rows: &a,
+        errors: ReadingErrors::Variances(variances),
+        prior_sd: &vec![None; width],
+        scales: &scales,
+    };
+    model.estimate(&y)
 }
 
 /// Patterns of wheel forces of unit length without resultant force and moments: what equilibrium leaves open.

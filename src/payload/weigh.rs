@@ -8,9 +8,9 @@ use super::robust::{
     GaugeEstimates, GaugeVerdict, RobustSpec, SIGN_SIGMAS, cut_at_zero, doubt, robust_payload,
     verdict_words,
 };
+use crate::estimate::NORMAL_95;
+use crate::estimate::weighted_median;
 use crate::finding::Finding;
-use crate::linalg::median::weighted_median;
-use crate::recovery::NORMAL_95;
 
 /// The answer for all runs.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,11 +3,9 @@
 //! `eps = S f + e`, `Cov e = noise + Cov(eps | f)` of [`Uncertainty`], which grows with the loads, so that solution and weights alternate.
 
 use super::errors::ErrorModel;
-use super::interval::student_95;
-use super::solve::{Fit, fit};
 use super::types::{Readings, RunEstimate};
-use crate::estimate::LoadEstimate;
-use crate::linalg::{Matrix, Vector, spd};
+use crate::estimate::{LinearEstimate, LinearGaussian, LoadEstimate, ReadingErrors, student_95};
+use crate::linalg::{Matrix, spd};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Rounds between loads and the covariance that depends on them; they settle in three.
@@ -87,7 +85,7 @@ pub(super) fn estimate_with(
     let Some(solved) = solved else {
         return (out, f64::NAN);
     };
-    let f = solved.fit.f;
+    let f = solved.fit.value;
     for l in 0..k {
         for m in 0..k {
             out.estimate.covariance[l * k + m] =
@@ -103,7 +101,7 @@ pub(super) fn estimate_with(
         out.leverage[g] = solved.fit.leverage[i];
     }
     let stated = f.iter().zip(&priors).filter_map(|(f, p)| Some(f / (*p)?));
-    out.chi2 = solved.chi2 + stated.map(|z| z * z).sum::<f64>();
+    out.chi2 = solved.fit.chi2 + stated.map(|z| z * z).sum::<f64>();
     out.dof = (used.len() + priors.iter().flatten().count()).saturating_sub(solved.fit.rank);
     out.rank = solved.fit.rank;
     out.estimate.values = f;
@@ -113,11 +111,10 @@ pub(super) fn estimate_with(
     (out, likelihood)
 }
 
-/// A run's system solved: variances of the readings, and the sum of squares that is left, whitened.
+/// Estimate of one run with the variances of its readings.
 struct Solved {
-    fit: Fit,
+    fit: LinearEstimate,
     variances: Vec<f64>,
-    chi2: f64,
     /// `ln |V|`.
     log_det: f64,
 }
@@ -131,7 +128,16 @@ fn solve(
     known: &Uncertainty,
 ) -> Option<Solved> {
     let n = y.len();
-    let mut f = fit(a, y, &vec![noise; n], priors, scales)?.f;
+    let estimate = |errors: ReadingErrors<'_>| {
+        let model = LinearGaussian {
+            rows: a,
+            errors,
+            prior_sd: priors,
+            scales,
+        };
+        model.estimate(y)
+    };
+    let mut f = estimate(ReadingErrors::Variances(&vec![noise; n]))?.value;
     let mut out = None;
     for _ in 0..ROUNDS {
         let mut covariance = known.strain_covariance(n, &f);
@@ -139,47 +145,13 @@ fn solve(
         for v in covariance.iter_mut().step_by(n + 1) {
             *v = (*v + noise * (1.0 + excess.all)) * (1.0 + excess.each);
         }
-        let (fit, chi2) = fit_correlated(a, y, &covariance, priors, scales)?;
-        f.clone_from(&fit.f);
+        let fit = estimate(ReadingErrors::Covariance(&covariance))?;
+        f.clone_from(&fit.value);
         out = Some(Solved {
             fit,
             variances: (0..n).map(|g| covariance[g * n + g]).collect(),
-            chi2,
             log_det: spd::log_det(&spd::cholesky(&covariance, n)?, n),
         });
     }
     out
-}
-
-/// As [`fit`] for readings whose errors go together: `covariance` is `n x n` by rows. Beside the fit the sum of squares of what is left,
-/// whitened. `None` where numbers are not finite or the covariance is not positive definite.
-pub fn fit_correlated(
-    s: &Matrix,
-    y: &[f64],
-    covariance: &[f64],
-    prior_sd: &[Option<f64>],
-    scales: &[f64],
-) -> Option<(Fit, f64)> {
-    let (n, k) = s.shape();
-    let root = spd::inverse_lower(&spd::cholesky(covariance, n)?, n);
-    let white = |v: &dyn Fn(usize) -> f64| -> Vec<f64> {
-        (0..n)
-            .map(|i| (0..=i).map(|j| root[i * n + j] * v(j)).sum())
-            .collect()
-    };
-    let columns: Vec<Vec<f64>> = (0..k).map(|l| white(&|g| s[(g, l)])).collect();
-    let a = Matrix::from_fn(n, k, |g, l| columns[l][g]);
-    let y_white = white(&|g| y[g]);
-    let mut out = fit(&a, &y_white, &vec![1.0; n], prior_sd, scales)?;
-    let left = Vector::from_column_slice(&y_white) - &a * Vector::from_column_slice(&out.f);
-    let gain = out.gain.clone();
-    for l in 0..k {
-        for g in 0..n {
-            out.gain[(l, g)] = (g..n).map(|i| gain[(l, i)] * root[i * n + g]).sum();
-        }
-    }
-    for (g, h) in out.leverage.iter_mut().enumerate() {
-        *h = (0..k).map(|l| s[(g, l)] * out.gain[(l, g)]).sum();
-    }
-    Some((out, left.norm_squared()))
 }

@@ -1,9 +1,8 @@
 //! The one linear estimate of loads that runs and records share, with its covariance.
 
-use super::calibrated::fit_correlated;
 use super::errors::ErrorModel;
-use super::solve::{Fit, fit};
 use super::types::{Shift, ShiftKind, Widening};
+use crate::estimate::{LinearEstimate, LinearGaussian, ReadingErrors};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
@@ -51,22 +50,29 @@ impl Gain {
         let variances = errors.variances(&rows, typical, noise_factor);
         let priors = s.priors();
         let known = s.uncertainty.as_ref().map(|u| u.of_gauges(used));
-        let Fit {
+        let correlated = known.as_ref().map(|known| {
+            let mut covariance = known.strain_covariance(n, typical);
+            for (g, v) in variances.iter().enumerate() {
+                covariance[g * n + g] += v;
+            }
+            covariance
+        });
+        let model = LinearGaussian {
+            rows: &rows,
+            errors: match &correlated {
+                None => ReadingErrors::Variances(&variances),
+                Some(covariance) => ReadingErrors::Covariance(covariance),
+            },
+            prior_sd: &priors,
+            scales: &s.scales(),
+        };
+        let LinearEstimate {
             covariance,
             gain,
             leverage,
             rank,
             ..
-        } = match &known {
-            None => fit(&rows, &vec![0.0; n], &variances, &priors, &s.scales())?,
-            Some(known) => {
-                let mut covariance = known.strain_covariance(n, typical);
-                for (g, v) in variances.iter().enumerate() {
-                    covariance[g * n + g] += v;
-                }
-                fit_correlated(&rows, &vec![0.0; n], &covariance, &priors, &s.scales())?.0
-            }
-        };
+        } = model.estimate(&vec![0.0; n])?;
         let mut base = (&gain * gain.transpose()) * errors.noise_variance(noise_factor);
         let passed = &gain * &rows;
         for (m, prior) in priors.iter().enumerate() {

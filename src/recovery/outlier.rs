@@ -3,12 +3,12 @@
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::gain::Gain;
-use super::interval::{NORMAL_95, student_95};
 use super::residuals::{GaugeTest, Judged};
 use super::solved::Solved;
 use super::types::{GAUGE_SUSPECT, Readings, Shift, ShiftKind, Widening};
+use crate::estimate::{NORMAL_95, student_95};
+use crate::estimate::{chi_square_tail, student_tail};
 use crate::finding::{Finding, Severity};
-use crate::linalg::tail::{chi_square_tail, student_tail};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use statrs::distribution::{ContinuousCDF, Normal};

@@ -2,6 +2,7 @@
 
 use super::errors::ErrorModel;
 use super::types::Readings;
+use crate::estimate::median;
 use crate::finding::{Finding, Severity, few};
 use crate::units::{MICROSTRAIN, number};
 
@@ -59,7 +60,7 @@ pub fn check(
     let (names, largest) = named(&impossible_of);
     findings.extend(impossible(&names, largest));
     let (names, largest) = named(&beyond_of);
-    findings.extend(beyond_gauges(&names, largest, median(&readings)));
+    findings.extend(beyond_gauges(&names, largest, median_size(&readings)));
     findings.extend(too_quiet(&readings, errors, UNRESOLVED));
     (readings, findings)
 }
@@ -71,19 +72,14 @@ pub fn check_signal(readings: &[Readings], errors: ErrorModel) -> Vec<Finding> {
 }
 
 /// Half of all readings are smaller, signs dropped; 0 without readings.
-fn median(readings: &[Readings]) -> f64 {
+fn median_size(readings: &[Readings]) -> f64 {
     let all = readings.iter().flat_map(|r| &r.strain);
-    let mut sizes: Vec<f64> = all.map(|v| v.abs()).filter(|v| v.is_finite()).collect();
-    let middle = sizes.len() / 2;
-    match middle < sizes.len() {
-        true => *sizes.select_nth_unstable_by(middle, f64::total_cmp).1,
-        false => 0.0,
-    }
+    median(all.map(|v| v.abs()).filter(|v| v.is_finite()).collect()).unwrap_or(0.0)
 }
 
-/// The finding on readings beyond what gauges follow, of all of which half are below `median`; `None` without gauges.
-fn beyond_gauges(gauges: &[&str], largest: f64, median: f64) -> Option<Finding> {
-    let (severity, what, limit) = if largest > METAL_ENDS || median > MOST_BELOW {
+/// The finding on readings beyond what gauges follow, half of which are below `median_size`; `None` without gauges.
+fn beyond_gauges(gauges: &[&str], largest: f64, median_size: f64) -> Option<Finding> {
+    let (severity, what, limit) = if largest > METAL_ENDS || median_size > MOST_BELOW {
         let what = "are no strain of a metal that S holds for: the unit of the readings is not microstrain, or the channel is overloaded";
         (Severity::Error, what, METAL_ENDS)
     } else {

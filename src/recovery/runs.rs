@@ -2,10 +2,10 @@
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
-use super::interval::student_95;
 use super::solved::{Solved, root_mean_squares, solve_beyond};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
 use super::{by_calibration, determined, faults, plausible, verdict};
+use crate::estimate::student_95;
 use crate::finding::Finding;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 

@@ -3,10 +3,10 @@
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::gain::Gain;
-use super::interval::NORMAL_95;
 use super::residuals::{Out, Pattern, Projection};
 use super::types::{Readings, RunEstimate, Widening};
 use crate::estimate::LoadEstimate;
+use crate::estimate::NORMAL_95;
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 use std::collections::BTreeMap;

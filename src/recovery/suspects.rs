@@ -2,8 +2,8 @@
 
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
-use super::interval::student;
 use super::types::{Readings, RunEstimate};
+use crate::estimate::student;
 use crate::finding::{Finding, Severity};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! What goes in and what comes out.
 
-use super::interval::NORMAL_95;
 use crate::estimate::LoadEstimate;
+use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 
 /// Code of a finding on a gauge whose error stands out.

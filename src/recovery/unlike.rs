@@ -2,11 +2,11 @@
 
 use super::calibrated::{Excess, estimate_with};
 use super::errors::ErrorModel;
-use super::interval::student_95;
 use super::types::{Readings, RunEstimate};
 use super::verdict::{SIGNIFICANT, chance};
+use crate::estimate::f_tail;
+use crate::estimate::student_95;
 use crate::finding::{Finding, Severity};
-use crate::linalg::tail::f_tail;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Code of a run that no combination of the loads explains.

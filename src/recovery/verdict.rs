@@ -2,13 +2,13 @@
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
-use super::interval::{NORMAL_95, student_95};
 use super::outlier;
 use super::residuals::{Joint, Judged, Out, Pattern, Projection};
 use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
+use crate::estimate::chi_square_tail;
+use crate::estimate::{NORMAL_95, student_95};
 use crate::finding::{Finding, Severity, few};
-use crate::linalg::tail::chi_square_tail;
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::{MICROSTRAIN, number};

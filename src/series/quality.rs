@@ -2,6 +2,7 @@
 
 use super::channels::{Channel, Channels};
 use super::detrend::{line, mean};
+use crate::estimate::median;
 use crate::finding::{Finding, Severity};
 
 /// What a channel measures: decides which checks make sense.
@@ -81,14 +82,6 @@ fn spread(x: &[f64]) -> f64 {
     (x.iter().map(|v| (v - m) * (v - m)).sum::<f64>() / x.len().max(1) as f64).sqrt()
 }
 
-fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
-}
-
 /// Missing samples.
 fn check_missing(c: &Channel) -> Option<Finding> {
     let missing = c.samples.iter().filter(|v| !v.is_finite()).count();
@@ -114,7 +107,7 @@ fn check_missing(c: &Channel) -> Option<Finding> {
 
 /// No signal, a frozen value, or a small fraction of what its peers show.
 fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Finding> {
-    let peer = median(&mut peers.to_vec());
+    let peer = median(peers.to_vec()).unwrap_or(0.0);
     let scale = mean(&finite(&c.samples)).abs();
     if own <= 1e-9 * scale || own == 0.0 || own < DEAD_SHARE * peer {
         let message = "The channel carries no signal; nothing that needs it can be trusted.";
@@ -151,13 +144,13 @@ fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Findin
 
 /// Robust standard deviation of what differs between neighbouring samples: noise, and a little of the signal.
 fn unrest(x: &[f64]) -> f64 {
-    let mut bends: Vec<f64> = x
+    let bends: Vec<f64> = x
         .windows(3)
         .map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs())
         .filter(|v| v.is_finite())
         .collect();
     // Of white noise the bend has 1.22 times the standard deviation.
-    1.4826 * median(&mut bends) / 1.22
+    1.4826 * median(bends).unwrap_or(0.0) / 1.22
 }
 
 /// Flat peaks at the largest or smallest value. A wheel force that stops at zero is a tyre off the ground, no fault.
@@ -227,8 +220,8 @@ fn check_spikes(c: &Channel) -> Option<Finding> {
         .map(|w| w[1] - 0.5 * (w[0] + w[2]))
         .filter(|v| v.is_finite())
         .collect();
-    let mut sizes: Vec<f64> = bend.iter().map(|v| v.abs()).collect();
-    let sigma = 1.4826 * median(&mut sizes);
+    let sizes: Vec<f64> = bend.iter().map(|v| v.abs()).collect();
+    let sigma = 1.4826 * median(sizes).unwrap_or(0.0);
     let count = bend
         .windows(3)
         .filter(|w| {

@@ -1,9 +1,9 @@
 //! Recovery repeated.
 
 use super::error::{ErrorKind, StudyError};
+use crate::estimate::{LinearEstimate, LinearGaussian, ReadingErrors, student_95};
 use crate::linalg::spd::dot;
 use crate::linalg::{Matrix, dense};
-use crate::recovery::{Fit, fit, student_95};
 use crate::units::MICROSTRAIN;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -91,7 +91,7 @@ pub fn study_layout(
     spec: &StudySpec,
 ) -> StudyRow {
     let k = spec.truth.len();
-    let solved: Vec<Option<(Matrix, Fit)>> =
+    let solved: Vec<Option<(Matrix, LinearEstimate)>> =
         layouts.par_iter().map(|l| solver(pool, l, spec)).collect();
     let mut conditions: Vec<f64> = layouts
         .iter()
@@ -151,7 +151,11 @@ fn sense(pool: &[PoolGauge], l: usize) -> f64 {
 }
 
 /// S of a layout and its least-squares solution for readings of equal noise.
-fn solver(pool: &[PoolGauge], layout: &[usize], spec: &StudySpec) -> Option<(Matrix, Fit)> {
+fn solver(
+    pool: &[PoolGauge],
+    layout: &[usize],
+    spec: &StudySpec,
+) -> Option<(Matrix, LinearEstimate)> {
     let k = spec.truth.len();
     let s = Matrix::from_fn(layout.len(), k, |g, c| pool[layout[g]].row[c]);
     let scales: Vec<f64> = s
@@ -160,7 +164,13 @@ fn solver(pool: &[PoolGauge], layout: &[usize], spec: &StudySpec) -> Option<(Mat
         .collect();
     let zeros = vec![0.0; layout.len()];
     let variances = vec![spec.noise * spec.noise; layout.len()];
-    let fit = fit(&s, &zeros, &variances, &spec.prior, &scales)?;
+    let model = LinearGaussian {
+        rows: &s,
+        errors: ReadingErrors::Variances(&variances),
+        prior_sd: &spec.prior,
+        scales: &scales,
+    };
+    let fit = model.estimate(&zeros)?;
     (fit.rank == k).then_some((s, fit))
 }
 
@@ -169,7 +179,7 @@ fn trial(
     pool: &[PoolGauge],
     layout: &[usize],
     s: &Matrix,
-    fit: &Fit,
+    fit: &LinearEstimate,
     error: StudyError,
     spec: &StudySpec,
     number: u64,

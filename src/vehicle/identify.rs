@@ -13,6 +13,7 @@ use super::motion::{motion, resolved};
 use super::part_answer::{PartAnswer, collect};
 use super::stretch::slow_stretches;
 use super::treatment::{Treatment, VehicleError};
+use crate::estimate::NORMAL_95;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 
@@ -35,7 +36,7 @@ pub fn identify(
         sigmas: vec![f64::NAN; all.len()],
         covariance: vec![vec![0.0; all.len()]; all.len()],
         scaled: vec![false; all.len()],
-        coverage_factor: 1.96,
+        coverage_factor: NORMAL_95,
         parameters: vec![],
         unidentifiable: vec![],
         fit: vec![],
@@ -232,7 +233,7 @@ fn fit_part(
             })
             .collect(),
         covariance: vec![vec![0.0; n]; n],
-        coverage_factor: 1.96,
+        coverage_factor: NORMAL_95,
         reference,
         fit: None,
         unknown: vec![],

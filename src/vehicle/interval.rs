@@ -2,7 +2,7 @@
 
 use super::equations::Equation;
 use super::fit::Fit;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use crate::estimate::student_95;
 
 /// Covariance of the free parameters.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,7 +77,7 @@ pub fn spread(equations: &[Equation], fit: &Fit, rate_hz: f64, memory_s: f64) ->
     let mut covariance = product(&product(b, &meat), b);
     covariance.iter_mut().flatten().for_each(|v| *v *= factor);
     let freedom = n_blocks.saturating_sub(p).max(1) as f64;
-    let coverage_factor = StudentsT::new(0.0, 1.0, freedom).map_or(1.96, |t| t.inverse_cdf(0.975));
+    let coverage_factor = student_95(freedom);
     Spread {
         covariance,
         coverage_factor,

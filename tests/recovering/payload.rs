@@ -128,7 +128,7 @@ fn intervals_of_payloads_hold_over_calibrations() {
             let found = weigh(&model(&s), &[run(strain)], &spec(&s, place));
             let w = &found.runs[0];
             held += usize::from(w.interval[0] <= weight && weight <= w.interval[1]);
-            let half = strainbridge::recovery::student_95(w.dof) * w.shift_covariance[0].sqrt();
+            let half = strainbridge::estimate::student_95(w.dof) * w.shift_covariance[0].sqrt();
             held_place += usize::from((w.shift[0] - x).abs() <= half);
         }
         // 95 +- 3 %: three times the chance of 600 trials, and what Student's factor leaves of a scatter that few runs show.

@@ -28,7 +28,7 @@ const ROWS: [(&str, f64); 23] = [
     ("model", 2.0),
     ("units", 0.7),
     ("series", 1.0),
-    ("estimate", 1.0),
+    ("estimate", 0.6),
     ("input_faults", 1.0),
     ("linalg", 0.5),
     ("finding", 0.5),

@@ -4,8 +4,8 @@ use super::outcome::*;
 use crate::app::recover::Listed;
 use crate::app::strain::LoadUnits;
 use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, known_of, next_runs};
+use crate::estimate::student_95;
 use crate::finding::{Finding, Severity};
-use crate::recovery::student_95;
 use crate::units::number;
 use std::collections::BTreeMap;
 

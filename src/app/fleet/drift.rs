@@ -2,8 +2,8 @@
 
 use super::gauge_history::GaugeHistory;
 use super::outcome::VehicleAnswer;
+use crate::estimate::student_tail;
 use crate::finding::{Finding, Severity};
-use crate::linalg::tail::student_tail;
 use crate::recovery::{ALARM, ErrorModel};
 use crate::units::MICROSTRAIN;
 

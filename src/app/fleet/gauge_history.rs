@@ -1,8 +1,8 @@
 //! A gauge of a vehicle over its days: where it was dead, and a gain that changed.
 
 use super::day::{DayFinding, GaugeDay};
+use crate::estimate::median;
 use crate::finding::{Finding, Severity};
-use crate::linalg::median::median;
 use serde::Serialize;
 
 /// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.

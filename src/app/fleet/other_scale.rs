@@ -3,8 +3,8 @@
 
 use super::other_unit;
 use super::outcome::VehicleAnswer;
+use crate::estimate::median;
 use crate::finding::{Finding, Severity, few};
-use crate::linalg::median::median;
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 

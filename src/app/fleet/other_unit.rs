@@ -1,8 +1,8 @@
 //! Days whose readings are so many times larger or smaller than those of the fleet's other days, noise and all, that their unit must be another one.
 
 use super::outcome::VehicleAnswer;
+use crate::estimate::median;
 use crate::finding::{Finding, Severity, few};
-use crate::linalg::median::median;
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 use std::collections::BTreeMap;

@@ -6,10 +6,10 @@ use super::task::Task;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::app::zeroed::judged;
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 use crate::recovery::Readings;
-use crate::recovery::interval::NORMAL_95;
 use crate::units::MICROSTRAIN;
 
 /// A share of the weight that an interval leaves open from which the answer says little.

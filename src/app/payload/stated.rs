@@ -6,9 +6,9 @@ use crate::app::fault::Faults;
 use crate::app::job::runs::read_runs;
 use crate::app::words::short;
 use crate::app::work::Work;
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing, weigh};
-use crate::recovery::interval::NORMAL_95;
 
 /// Standard deviations from which readings refute a stated place, as for moments of wheel forces.
 pub(super) const REFUTED: f64 = 4.0;

@@ -2,7 +2,7 @@
 
 use super::deck_frame::DeckFrame;
 use super::region::Region;
-use crate::linalg::median::median;
+use crate::estimate::median;
 use crate::model::{Model, Shell, Vec3};
 use crate::reconcile::strain::StrainFrame;
 

@@ -1,6 +1,7 @@
 //! Findings on a gap of strain.
 
 use crate::app::work::Work;
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::{Outcome, SmoothAt, Verdict};
 use crate::units::number;
@@ -133,7 +134,12 @@ fn smooth(outcome: &Outcome) -> Finding {
                 .load
                 .as_ref()
                 .map_or(String::new(), |l| format!(" under {l}"));
-            format!("{:.3} +- {:.3} at {}{load}", s.factor, 1.96 * s.sd, s.gauge)
+            format!(
+                "{:.3} +- {:.3} at {}{load}",
+                s.factor,
+                NORMAL_95 * s.sd,
+                s.gauge
+            )
         })
     };
     let farthest = (outcome.smooth.iter())

@@ -2,8 +2,9 @@
 
 use super::sink::{RecordHead, Samples};
 use crate::app::outcome::finite;
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
-use crate::recovery::{NORMAL_95, Sums};
+use crate::recovery::Sums;
 use crate::series::rainflow::{Cycle, Damage, Point, Rainflow};
 use rayon::prelude::*;
 use serde::Serialize;

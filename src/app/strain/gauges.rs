@@ -6,10 +6,10 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{Job, JobGauge, StatedPlace};
 use crate::app::words::short;
 use crate::app::work::Work;
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::gauge::{Gauge, GaugeError, beside_beam, beside_shell, build, on_unverified_elements};
 use crate::model::{Model, Vec3};
-use crate::recovery::NORMAL_95;
 use crate::sensitivity::{NoStrain, NoStrainCause, bar_points};
 use crate::units::Quantity;
 

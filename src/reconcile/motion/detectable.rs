@@ -3,11 +3,11 @@
 use super::change::Change;
 use super::effect_units::unit_of_change;
 use super::fitted::MotionFit;
-use super::gls::Basis;
 use super::limits::{late_on_average, tolerance_limit};
 use super::outcome::Smallest;
 use super::part::ColumnOf;
 use super::scorer::MotionScorer;
+use crate::estimate::columns::Basis;
 
 /// Sizes by candidate, in the library's order: those that would raise the log evidence to the level of a name, in the form that shows
 /// best, and beyond what the declared tolerances allow of a channel.

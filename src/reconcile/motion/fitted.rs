@@ -3,9 +3,9 @@
 use super::at_rest::RestRow;
 use super::change::Assembled;
 use super::design::{Bins, Design};
-use super::gls::PriorColumn;
 use super::noise::Whitener;
 use super::part::{ColumnOf, Part};
+use crate::estimate::columns::PriorColumn;
 use rustfft::num_complex::Complex64;
 use std::sync::Arc;
 

@@ -3,10 +3,10 @@
 use super::columns::{nuisance, parameter_column, slices};
 use super::design::{Bins, Design, reference, size};
 use super::frame::MotionFrame;
-use super::gls::{PriorColumn, solved};
 use super::noise::{Background, Whitener, covariance};
 use super::part::Part;
 use super::response::responses;
+use crate::estimate::columns::{PriorColumn, solved};
 use crate::reconcile::rules::MotionRules;
 use rustfft::num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -1,6 +1,7 @@
 //! The gap of an equation over time and over the size of what was measured: an effect that comes and goes, or grows.
 
 use super::design::Bins;
+use crate::estimate::rms;
 use crate::series::plans::inverse;
 use rustfft::num_complex::Complex64;
 
@@ -85,11 +86,6 @@ pub fn gap_profile(
         by_time,
         by_amplitude,
     }
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (n, sum) = values.fold((0, 0.0), |(n, s), v| (n + 1, s + v * v));
-    (sum / f64::from(n.max(1))).sqrt()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The acceleration path: a vehicle's equations of motion against a record.
 //!
 //! - [`frame`]: what is given; [`design`]: the equations as transforms within the band
-//! - [`response`], [`noise`], [`gls`]: how sensor noise enters, and least squares that respects it
+//! - [`response`], [`noise`]: how sensor noise enters the equations
 //! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
 //! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict
 //! - [`sits`]: where, when and at which size a gap is largest; `next`: what to measure next
@@ -27,7 +27,6 @@ mod found;
 pub mod frame;
 pub mod gap;
 pub mod gap_profile;
-pub mod gls;
 mod growing;
 pub mod judge;
 pub mod limits;

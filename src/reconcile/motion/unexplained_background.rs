@@ -2,10 +2,10 @@
 
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
-use super::gls::{Basis, PriorColumn, solved};
 use super::noise::{Background, background, covariance};
 use super::response::responses;
 use super::scorer::MotionScorer;
+use crate::estimate::columns::{Basis, PriorColumn, solved};
 use rustfft::num_complex::Complex64;
 
 /// Forms that a generous model takes up, one after the other.

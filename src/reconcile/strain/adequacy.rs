@@ -3,8 +3,8 @@
 use super::covariance::{Selection, covariance};
 use super::frame::StrainFrame;
 use super::prediction::predict;
+use crate::estimate::f_tail;
 use crate::linalg::cholesky::Cholesky;
-use crate::linalg::tail::f_tail;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::Misfit;
 use statrs::distribution::{ContinuousCDF, Normal};

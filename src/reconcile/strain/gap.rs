@@ -4,6 +4,7 @@ use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
 use super::prediction::predict;
 use super::state::StrainState;
+use crate::estimate::rms;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::spd::dot;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
@@ -133,16 +134,6 @@ impl Judged {
             channels,
         )
     }
-}
-
-/// Root mean square of some numbers; zero of none.
-pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (mut sum, mut n) = (0.0, 0usize);
-    for v in values.filter(|v| v.is_finite()) {
-        sum += v * v;
-        n += 1;
-    }
-    if n == 0 { 0.0 } else { (sum / n as f64).sqrt() }
 }
 
 fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Vec<f64> {

@@ -3,7 +3,7 @@
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::prediction::predict;
-use crate::linalg::tail::f_tail;
+use crate::estimate::f_tail;
 use crate::linalg::{Matrix, dense};
 use crate::reconcile::effect::{Candidate, FaultKind, Member, full_id};
 use crate::reconcile::search::Scored;

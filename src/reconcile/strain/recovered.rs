@@ -7,10 +7,10 @@ use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
 use super::prediction::read_all;
 use super::state::{Part, StrainState};
+use crate::estimate::{LinearGaussian, ReadingErrors};
 use crate::linalg::Matrix;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::LoadShift;
-use crate::recovery::calibrated::fit_correlated;
 
 /// Wheel loads recovered from the strain of each proof run, by generalised least squares, without and with the effects.
 pub fn loads_before_after(
@@ -78,8 +78,14 @@ fn recover(
         if norm > 0.0 { 1.0 / norm } else { 1.0 }
     };
     let scales: Vec<f64> = (0..n_l).map(scale).collect();
-    let (fit, _) = fit_correlated(&s, &r, &covariance, &vec![None; n_l], &scales)?;
+    let model = LinearGaussian {
+        rows: &s,
+        errors: ReadingErrors::Covariance(&covariance),
+        prior_sd: &vec![None; n_l],
+        scales: &scales,
+    };
+    let fit = model.estimate(&r)?;
     let sigma = |l: usize| fit.covariance[(l, l)].max(0.0).sqrt();
-    let loads = fit.f.iter().enumerate().map(|(l, v)| (*v, sigma(l)));
+    let loads = fit.value.iter().enumerate().map(|(l, v)| (*v, sigma(l)));
     (fit.rank == n_l).then(|| loads.collect())
 }

@@ -4,8 +4,8 @@ use super::adequacy::Adequacy;
 use super::bias::model_bias;
 use super::covariance::Selection;
 use super::frame::StrainFrame;
-use super::gap::rms;
 use super::prediction::predict;
+use crate::estimate::rms;
 use crate::reconcile::effect::Member;
 use crate::reconcile::outcome::{ChannelGap, Misfit};
 

@@ -6,6 +6,7 @@ use crate::app::fault::Faults;
 use crate::app::identify::Identified;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
+use crate::estimate::NORMAL_95;
 use crate::report::page::Page;
 use crate::report::vehicle::{
     Curve, Curves, identify_page, restoring_curves, restoring_unit, write_chassis_forces,
@@ -16,9 +17,6 @@ use crate::vehicle::loads::LoadHistory;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::term::UnitNames;
 use std::fmt::Write;
-
-/// Half width of a 95 % interval over its standard deviation.
-const HALF_WIDTH: f64 = 1.96;
 
 impl Report for Outcome<Identified> {
     const FILES: &'static [&'static str] = &[
@@ -79,7 +77,7 @@ impl Report for Outcome<Identified> {
                     text,
                     "{:12} {v:>14.6e} +- {:.2e} {} (95 %)",
                     p.name,
-                    HALF_WIDTH * s,
+                    NORMAL_95 * s,
                     p.unit
                 ),
                 _ => writeln!(text, "{:12} {:>14} {}", p.name, "not told", p.unit),

@@ -5,6 +5,7 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::payload::{Weighed, WeighedPayload};
+use crate::estimate::NORMAL_95;
 use crate::payload::{WeighedRun, Weighing};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
@@ -237,7 +238,7 @@ fn bars(r: &WeighedRun, weighing: &Weighing) -> Vec<IntervalRow> {
     used.filter_map(|(g, v)| {
         let (e, s) = (*r.estimates.get(g)?, *r.estimate_sigma.get(g)?);
         (e.is_finite() && s.is_finite() && s < r.force.abs())
-            .then(|| (v.name.clone(), [e - 1.96 * s, e, e + 1.96 * s]))
+            .then(|| (v.name.clone(), [e - NORMAL_95 * s, e, e + NORMAL_95 * s]))
     })
     .chain(std::iter::once((
         "all".to_owned(),

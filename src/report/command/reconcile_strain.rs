@@ -5,6 +5,7 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::reconcile::{Added, MarkedStiffness, Reconciled, StrainPart};
+use crate::estimate::NORMAL_95;
 use crate::model::{Model, Vec3};
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
@@ -81,14 +82,11 @@ fn smooth_note(found: &StrainPart, gauge: &str) -> String {
             .load
             .as_ref()
             .map_or_else(String::new, |l| format!(" of {l}"));
-        let half = HALF_WIDTH * s.sd;
+        let half = NORMAL_95 * s.sd;
         format!("; strain{load} times {:.3} ± {half:.3}", s.factor)
     })
     .collect()
 }
-
-/// Half width of the 95 % interval, standard deviations.
-const HALF_WIDTH: f64 = 1.96;
 
 /// A joint or small region that is off, where it sits.
 fn mark_of_place(m: &MarkedStiffness) -> Option<Mark> {

@@ -1,7 +1,7 @@
 //! Histories as CSV and the envelope as arrays by element.
 
+use crate::estimate::NORMAL_95;
 use crate::model::Model;
-use crate::recovery::NORMAL_95;
 use crate::respond::{LoadState, Peak, Place, ResponseRow, von_mises_history};
 use std::io::Write;
 

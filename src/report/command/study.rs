@@ -5,13 +5,11 @@ use crate::app::fault::Faults;
 use crate::app::outcome::Outcome;
 use crate::app::output::Output;
 use crate::app::study::{Studied, StudiedLayout, StudiedLoad};
+use crate::estimate::NORMAL_95;
 use crate::report::csv_cell;
 use crate::report::page::{Page, table_section};
 use crate::units::number;
 use std::fmt::Write;
-
-/// Half width of a 95 % interval over its standard deviation.
-const HALF_WIDTH: f64 = 1.96;
 
 impl Report for Outcome<Studied> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "study.csv"];
@@ -115,7 +113,7 @@ fn page(found: &Outcome<Studied>) -> Page {
                 number(100.0 * plain(row.mean_relative_rms)),
             ];
             cells.extend(wanted(row).iter().map(|l| {
-                let width = HALF_WIDTH * plain(l.sigma);
+                let width = NORMAL_95 * plain(l.sigma);
                 format!("{} ± {}", number(plain(l.bias)), number(width))
             }));
             cells

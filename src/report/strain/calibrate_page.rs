@@ -1,6 +1,7 @@
 //! The page of `calibrate`.
 
 use crate::app::calibrate::{Calibrated, CalibratedGauge, GlueSummary};
+use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::units::Quantity;
@@ -105,8 +106,8 @@ fn as_glued(answer: &Calibrated) -> Option<Section> {
     let all = &answer.calibration.gauges;
     all.iter().find(|g| g.as_glued.is_some())?;
     let size = |s: Option<GlueSummary>| match s {
-        Some(s) if s.told => format!("{} +- {}", number(s.value), number(1.96 * s.sigma)),
-        Some(s) => format!("({} +- {})", number(s.value), number(1.96 * s.sigma)),
+        Some(s) if s.told => format!("{} +- {}", number(s.value), number(NORMAL_95 * s.sigma)),
+        Some(s) => format!("({} +- {})", number(s.value), number(NORMAL_95 * s.sigma)),
         None => String::new(),
     };
     let row = |g: &CalibratedGauge| -> Option<Vec<String>> {

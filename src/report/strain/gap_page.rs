@@ -1,5 +1,6 @@
 //! The page of `reconcile` on static strain.
 
+use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::{NamedEffect, Outcome, SmoothAt, Verdict};
@@ -236,8 +237,6 @@ fn scatter_of(points: &[GaugePoints], kind: usize) -> Option<f64> {
 
 /// The smooth error of the model over the gauges, along the structure's longest direction.
 fn smooth_section(outcome: &Outcome) -> Option<Section> {
-    /// Half width of the 95 % interval, standard deviations.
-    const HALF_WIDTH: f64 = 1.96;
     let at = |s: &SmoothAt, axis: usize| s.place_m[axis];
     let extent = |axis: usize| {
         let places = || outcome.smooth.iter().map(|s| at(s, axis));
@@ -249,7 +248,7 @@ fn smooth_section(outcome: &Outcome) -> Option<Section> {
     let mut groups: Vec<(String, Vec<IntervalRow>)> = Vec::new();
     for s in sorted {
         let name = s.load.clone().unwrap_or_else(|| "all loads".into());
-        let half = HALF_WIDTH * s.sd;
+        let half = NORMAL_95 * s.sd;
         let row = (
             format!("{} at {:.2} m", s.gauge, at(s, longest)),
             [s.factor - half, s.factor, s.factor + half],

@@ -1,7 +1,7 @@
 //! Pseudo-damage of counted cycles.
 
 use super::count::Cycle;
-use super::interval::NORMAL_95;
+use crate::estimate::NORMAL_95;
 
 /// Ranges are counted in this many bins.
 const BINS: usize = 64;

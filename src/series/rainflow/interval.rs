@@ -2,10 +2,8 @@
 
 use super::bias::Bias;
 use super::tally::Tally;
+use crate::estimate::NORMAL_95;
 use serde::Serialize;
-
-/// Half width of a 95 % interval over one standard deviation.
-pub(super) const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Damage of one load over a time, and the errors that make its interval, each by its own law: the error of S is one and the same in every
 /// cycle and stays what it is however long one measures; the scatter of noise averages out; its bias (noise widens every range) does

@@ -1,22 +1,22 @@
-//! Generalised least squares with priors on some columns.
+//! The linear Gaussian model with many rows and few columns: whitened columns of unit variance, some with a prior.
 
 use crate::linalg::tall::{solve, triangle};
 
-/// A column of unit-variance rows, with the standard deviation known beforehand of its coefficient (none: free).
+/// Column of whitened rows and the prior of its coefficient (mean 0).
 #[derive(Clone, Debug)]
 pub struct PriorColumn {
-    /// Rows.
+    /// Entries, each over the standard deviation of its reading.
     pub rows: Vec<f64>,
-    /// Prior standard deviation.
+    /// Standard deviation of the coefficient; `None` where nothing is known of it.
     pub prior: Option<f64>,
 }
 
-/// A solution.
+/// Solution of the model for one target.
 #[derive(Clone, Debug)]
 pub struct Solved {
-    /// One value a column.
+    /// Coefficients, one a column.
     pub x: Vec<f64>,
-    /// (A'A)^-1 by rows.
+    /// Covariance of the coefficients `(A'A)^-1`, by rows.
     pub covariance: Vec<Vec<f64>>,
     /// Squared residual of the data rows.
     pub chi2: f64,
@@ -26,7 +26,7 @@ pub struct Solved {
     pub residual: Vec<f64>,
 }
 
-/// x that minimises |A x - target|^2 + sum of (x / prior)^2.
+/// Returns the coefficients that minimise `|A x - target|^2 + sum (x / prior)^2`.
 pub fn solved(columns: &[PriorColumn], target: &[f64]) -> Solved {
     let n = columns.len();
     let priors: Vec<usize> = (0..n).filter(|&i| columns[i].prior.is_some()).collect();
@@ -78,7 +78,7 @@ pub fn solved(columns: &[PriorColumn], target: &[f64]) -> Solved {
     }
 }
 
-/// An orthonormal basis of columns, priors included, to judge what a further column would gain.
+/// Orthonormal basis of columns, priors included, for the gain of further columns.
 #[derive(Clone, Debug)]
 pub struct Basis {
     columns: Vec<Vec<f64>>,
@@ -86,7 +86,7 @@ pub struct Basis {
 }
 
 impl Basis {
-    /// Of the columns of a solved problem.
+    /// Returns the basis of the columns of a solved model.
     pub fn of(columns: &[PriorColumn]) -> Self {
         let priors: Vec<usize> = (0..columns.len())
             .filter(|&i| columns[i].prior.is_some())

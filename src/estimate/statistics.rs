@@ -1,4 +1,4 @@
-//! Medians of values that count alike or unequally.
+//! Statistics of samples.
 
 /// Half of the values are smaller; of an even number the upper one of the middle. `None` of none.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
@@ -19,6 +19,16 @@ pub fn weighted_median(values: &mut [(f64, f64)]) -> Option<f64> {
         sum >= total / 2.0
     });
     found.map(|v| v.0)
+}
+
+/// Root mean square of the finite values; 0 without any.
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (mut sum, mut n) = (0.0, 0usize);
+    for v in values.filter(|v| v.is_finite()) {
+        sum += v * v;
+        n += 1;
+    }
+    if n == 0 { 0.0 } else { (sum / n as f64).sqrt() }
 }
 
 #[cfg(test)]
