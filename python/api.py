@@ -14,7 +14,7 @@ SUBJECTS = {
         "check", "init", "strains", "cases", "solve", "modes", "sensitivity", "place", "recover", "respond", "payload", "ballast", "study", "identify",
         "reconcile", "calibrate", "verify", "clean", "explain", "fleet",
     ],
-    "Outcomes": ["Outcome", "Record", "Finding", "Table", "Mesh", "Fault", "Faults"],
+    "Outcomes": ["Outcome", "Record", "Finding", "UnreliableWarning", "Table", "Mesh", "Fault", "Faults"],
     "Decks, results, models": ["Deck", "Results", "Strain", "write_op2", "Model"],
 }
 

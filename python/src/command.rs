@@ -3,7 +3,7 @@
 use crate::fault::{raise, wrong};
 use crate::files::Desk;
 use crate::job::CheckedJob;
-use crate::outcome::{Told, tell, tell_learnt, tell_loads};
+use crate::outcome::{Told, tell, tell_learnt, tell_loads, tell_sensitivity};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ const ON_JOB: [(&str, OnJob); 11] = [
     ("recover", |j, cx| tell_loads(strainbridge::recover(j, cx)?)),
     ("respond", |j, cx| tell(strainbridge::respond(j, cx)?)),
     ("sensitivity", |j, cx| {
-        tell(strainbridge::sensitivity(j, cx)?)
+        tell_sensitivity(strainbridge::sensitivity(j, cx)?)
     }),
     ("study", |j, cx| tell(strainbridge::study(j, cx)?)),
 ];

@@ -10,8 +10,10 @@ use std::sync::{Mutex, PoisonError};
 use strainbridge::app::calibrate::Calibrated;
 use strainbridge::app::outcome::Answer;
 use strainbridge::app::recover::Recovered;
+use strainbridge::app::sensitivity::Sensed;
 use strainbridge::report::command::{Report, save, unsaved};
 use strainbridge::report::notebook::piece;
+use strainbridge::sensitivity::Sensitivity;
 use strainbridge::{Faults, Outcome};
 
 /// What can be asked of an outcome of any type.
@@ -27,14 +29,31 @@ pub(crate) trait Kept: Send {
         None
     }
 
-    /// S, gauges x loads by rows, with its number of loads, as `sensitivity.csv` has it, where it was learnt.
-    fn learnt(&self) -> Option<(Vec<f64>, usize)> {
+    /// S, strain per job unit of each load, where the command gives one.
+    fn sensitivity(&self) -> Option<&Sensitivity> {
         None
     }
 }
 
-/// S that runs of known load taught.
+/// Calibrated S.
 struct Learnt(Outcome<Calibrated>);
+
+/// S of gauges or candidates.
+struct OfModel(Outcome<Sensed>);
+
+impl Kept for OfModel {
+    fn save(&self, folder: &Path) -> Result<String, Faults> {
+        save(&self.0, folder)
+    }
+
+    fn piece(&self) -> String {
+        piece(&self.0)
+    }
+
+    fn sensitivity(&self) -> Option<&Sensitivity> {
+        Some(&self.0.prepared.sensitivity)
+    }
+}
 
 impl Kept for Learnt {
     fn save(&self, folder: &Path) -> Result<String, Faults> {
@@ -45,11 +64,8 @@ impl Kept for Learnt {
         piece(&self.0)
     }
 
-    fn learnt(&self) -> Option<(Vec<f64>, usize)> {
-        let s = &self.0.sensitivity;
-        let (n, k) = (s.gauges.len(), s.loads.len());
-        let entries = (0..n * k).map(|i| s.values[(i / k, i % k)] * 1e6);
-        Some((entries.collect(), k))
+    fn sensitivity(&self) -> Option<&Sensitivity> {
+        Some(&self.0.sensitivity)
     }
 }
 
@@ -133,6 +149,11 @@ pub(crate) fn tell_learnt(outcome: Outcome<Calibrated>) -> Result<Told, Faults> 
     tell_kept(outcome, |o| Box::new(Learnt(o)))
 }
 
+/// S of gauges or candidates for Python.
+pub(crate) fn tell_sensitivity(outcome: Outcome<Sensed>) -> Result<Told, Faults> {
+    tell_kept(outcome, |o| Box::new(OfModel(o)))
+}
+
 fn tell_kept<A: Answer>(
     outcome: Outcome<A>,
     keep: impl FnOnce(Outcome<A>) -> Box<dyn Kept>,
@@ -147,6 +168,9 @@ where
         kept: Mutex::new(keep(outcome)),
     })
 }
+
+/// A matrix with the names of its rows and columns.
+type NamedMatrix<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<String>);
 
 #[pymethods]
 impl Told {
@@ -167,14 +191,17 @@ impl Told {
         })
     }
 
-    /// S, gauges x loads, microstrain per job unit; `None` where none was learnt.
-    fn learnt<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
-        let found = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some((entries, k)) = found.learnt() else {
+    /// S, gauges x loads, microstrain per job unit of each load, with the names of gauges and loads; `None` where the command gives none.
+    fn sensitivity<'py>(&self, py: Python<'py>) -> PyResult<Option<NamedMatrix<'py>>> {
+        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let Some(s) = kept.sensitivity() else {
             return Ok(None);
         };
-        let n = entries.len().checked_div(k).unwrap_or(0);
-        PyArray1::from_vec(py, entries).reshape([n, k]).map(Some)
+        let (n, k) = (s.gauges.len(), s.loads.len());
+        let entries = (0..n * k).map(|i| s.values[(i / k, i % k)] * 1e6);
+        let matrix = PyArray1::from_vec(py, entries.collect()).reshape([n, k])?;
+        let loads = s.loads.iter().map(|l| l.name.clone()).collect();
+        Ok(Some((matrix, s.gauges.clone(), loads)))
     }
 
     /// Samples of a record by column, `time` first; `None` where no record was measured.

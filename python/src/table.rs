@@ -22,15 +22,21 @@ pub(crate) struct Table(RecordBatch);
 
 #[pymethods]
 impl Table {
-    /// A table of records, as JSON: a list of objects; or of columns (arrays of numbers, lists of texts) by name.
+    /// A table of records, as JSON (a list of objects) with the names of its columns in order; or of columns (arrays of numbers, lists of texts)
+    /// by name.
     #[new]
-    #[pyo3(signature = (records=None, columns=None))]
-    fn new(py: Python, records: Option<&str>, columns: Option<&Bound<PyDict>>) -> PyResult<Self> {
+    #[pyo3(signature = (records=None, names=Vec::new(), columns=None))]
+    fn new(
+        py: Python,
+        records: Option<&str>,
+        names: Vec<String>,
+        columns: Option<&Bound<PyDict>>,
+    ) -> PyResult<Self> {
         let mut of: Vec<(String, ArrayRef)> = Vec::new();
         if let Some(text) = records {
             let rows: Vec<Map<String, Value>> = serde_json::from_str(text)
                 .map_err(|e| fault(py, &e.to_string(), "give a list of objects"))?;
-            of = of_records(&rows);
+            of = of_records(&rows, &names);
         }
         for (name, column) in columns.into_iter().flatten() {
             of.push((name.extract()?, of_column(&column)?));
@@ -98,18 +104,13 @@ fn of_column(column: &Bound<PyAny>) -> PyResult<ArrayRef> {
     )))
 }
 
-/// A column a key, in the order in which keys first stand.
-fn of_records(rows: &[Map<String, Value>]) -> Vec<(String, ArrayRef)> {
-    let mut names: Vec<&String> = Vec::new();
-    for row in rows {
-        let new = row.keys().filter(|k| !names.contains(k));
-        names.extend(new.collect::<Vec<_>>());
-    }
+/// Columns of these names, in order.
+fn of_records(rows: &[Map<String, Value>], names: &[String]) -> Vec<(String, ArrayRef)> {
     let column = |name: &String| {
         let values = rows.iter().map(|r| r.get(name).filter(|v| !v.is_null()));
         (name.clone(), of_values(&values.collect::<Vec<_>>()))
     };
-    names.into_iter().map(column).collect()
+    names.iter().map(column).collect()
 }
 
 /// The values as whole numbers, reals, truths, lists of reals or texts, whichever fits all of them; else as JSON.

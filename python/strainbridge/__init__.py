@@ -14,9 +14,12 @@ Jobs, as the command takes them::
     plan.gauges, plan.log_det, plan.findings
     plan.save("truck.out")
 
-Bad input raises :class:`Faults`, which holds every fault with file and line. An outcome carries findings; one of severity ``error`` says
-that it can't be relied on, and the outcome says so when it is printed.
+Bad input raises :class:`Faults`, which holds every fault with file and line. An outcome carries findings. If one has the severity ``error``, the
+answer is not reliable: the call issues an :class:`UnreliableWarning`, and ``outcome.raise_if_unreliable()`` raises it.
 """
+
+from importlib.metadata import PackageNotFoundError as _NotInstalled
+from importlib.metadata import version as _version
 
 from . import fleet
 from ._arrays import Placement, RecoveredRows, Relaxation, place_rows, rainflow, recover_rows, relax, strain_along
@@ -46,9 +49,14 @@ from ._faults import Fault, Faults
 from ._job import Job
 from ._mesh import Mesh
 from ._model import Model
-from ._outcome import Finding, Outcome, Record
+from ._outcome import Finding, Outcome, Record, UnreliableWarning
 from ._reading import Deck, Results, Strain, write_op2
 from ._table import Table
+
+try:
+    __version__ = _version("strainbridge")
+except _NotInstalled:  # used from its sources
+    __version__ = "unknown"
 
 __all__ = [
     "CalibratedRows",
@@ -67,6 +75,7 @@ __all__ = [
     "Results",
     "Strain",
     "Table",
+    "UnreliableWarning",
     "ballast",
     "calibrate",
     "calibrate_rows",

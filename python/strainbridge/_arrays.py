@@ -1,19 +1,21 @@
 """Placement, recovery and counting on bare numpy arrays.
 
-Arrays are numpy arrays of float64 with their rows one after the other in memory (C order). They are read where they lie, without a copy; what
-is not so raises, with the call that makes it so.
+Arguments are whatever ``numpy.asarray`` takes: lists, slices, float32, Fortran order, tables of pandas, polars and pyarrow. A float64 array in C
+order is read without a copy. Masked values are missing values.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _strainbridge as _engine
-from ._outcome import Finding
+from ._convert import count, floats, number
+from ._convert import threads as _threads
+from ._outcome import Finding, UnreliableWarning, warn_if_unreliable
 from ._table import Table
 
 Floats = NDArray[np.float64]
@@ -41,7 +43,7 @@ class Placement:
 class RecoveredRows:
     """Loads with their intervals."""
 
-    #: runs x loads; NaN where the gauges that read don't tell a load.
+    #: runs x loads, or loads where one run was given; NaN where the gauges with readings do not determine a load.
     loads: Floats
     #: loads x loads: covariance of a run in which every gauge reads.
     covariance: Floats
@@ -50,15 +52,36 @@ class RecoveredRows:
     _half: Floats = field(repr=False)
     _others: NDArray[np.int64] = field(repr=False)
     _other_halves: Floats = field(repr=False)
+    _s: Floats = field(repr=False)
+    _strain: Floats = field(repr=False)
+    _noise: Floats = field(repr=False)
 
     @property
     def half_width(self) -> Floats:
         """runs x loads: half width of the 95 % intervals."""
+        if self.loads.ndim == 1:
+            return self._other_halves[0] if len(self._others) else self._half
         out = np.broadcast_to(self._half, self.loads.shape)
         if len(self._others):
             out = out.copy()
             out[self._others] = self._other_halves
         return out
+
+    @property
+    def sigma(self) -> Floats:
+        """runs x loads: one standard deviation."""
+        factor: Floats = self._half / np.sqrt(np.diag(self.covariance))
+        return self.half_width / factor
+
+    @property
+    def residuals(self) -> Floats:
+        """runs x gauges: reading less prediction, microstrain; NaN where a gauge has no reading."""
+        return self._strain - self.loads @ self._s.T
+
+    @property
+    def chi2(self) -> Floats:
+        """A number a run: sum over gauges of (residual / noise) squared."""
+        return np.asarray(np.nansum((self.residuals / self._noise) ** 2, axis=-1))
 
     @property
     def low(self) -> Floats:
@@ -76,19 +99,31 @@ class RecoveredRows:
         Args:
             names: of the loads; ``f0``, ``f1`` .. where left out.
         """
-        labels = list(names) if names is not None else [f"f{i}" for i in range(self.loads.shape[1])]
-        if len(labels) != self.loads.shape[1]:
-            raise ValueError(f"{len(labels)} names are given and there are {self.loads.shape[1]} loads")
-        ends = (("", self.loads), (".low", self.low), (".high", self.high))
+        n = self.loads.shape[-1]
+        labels = list(names) if names is not None else [f"f{i}" for i in range(n)]
+        if len(labels) != n:
+            raise ValueError(f"{len(labels)} names are given and there are {n} loads")
+        ends = [(end, np.atleast_2d(rows)) for end, rows in (("", self.loads), (".low", self.low), (".high", self.high))]
         return Table.from_columns({f"{name}{end}": values[:, i] for i, name in enumerate(labels) for end, values in ends})
 
     @property
     def is_reliable(self) -> bool:
-        """Whether no finding says that the loads can't be relied on."""
+        """Whether no finding is an error. A finding of severity ``error`` states that the loads are not reliable."""
         return all(f.severity != "error" for f in self.findings)
 
+    def raise_if_unreliable(self) -> RecoveredRows:
+        """Returns the loads themselves.
+
+        Raises:
+            UnreliableWarning: a finding is an error.
+        """
+        bad = [f.message for f in self.findings if f.severity == "error"]
+        if bad:
+            raise UnreliableWarning("; ".join(bad))
+        return self
+
     def __repr__(self) -> str:
-        runs, loads = self.loads.shape
+        runs, loads = np.atleast_2d(self.loads).shape
         bad = [f.message for f in self.findings if f.severity == "error"]
         verdict = f", CAN'T BE RELIED ON: {'; '.join(bad)}" if bad else ""
         return f"RecoveredRows({runs} runs x {loads} loads{verdict})"
@@ -107,53 +142,61 @@ class Relaxation:
 
 
 def place_rows(
-    S: Floats,
+    S: ArrayLike,
     n: int,
     spacing: float | None = None,
     proof: bool = True,
     *,
-    positions: Floats | None = None,
+    positions: ArrayLike | None = None,
     threads: int | None = None,
 ) -> Placement:
     """The n rows of S with the largest det(S'S), with a bound that no other n rows can pass.
 
     Args:
-        S: candidates x loads, float64 in C order; any unit. Rows are weighed alike: divide each by the sd of its reading where these differ.
+        S: candidates x loads; any unit. Rows have equal weight: divide each by the sd of its reading where these differ.
         n: how many rows, at least as many as loads.
         spacing: least distance between two rows chosen, in the unit of `positions`.
         proof: whether to try to prove by branch and bound that no layout is better. The bound stands without.
         positions: candidates x 3, needed for a spacing.
-        threads: how many; all of the machine where None.
+        threads: how many; None or -1: all cores.
 
     Raises:
-        Faults: S is empty, not finite or not in C order, or no n of its rows separate the loads.
-        TypeError: not a numpy array of float64.
+        Faults: S is empty or not finite, or no n of its rows separate the loads.
+        TypeError: an argument of another type.
     """
-    found = _engine.place_rows(S, _count(n), spacing, positions, proof, threads)
+    rows, log_scale = _scaled(floats("S", S))
+    at = None if positions is None else floats("positions", positions)
+    apart = None if spacing is None else number("spacing", spacing)
+    found = _engine.place_rows(rows, count("n", n), apart, at, bool(proof), _threads(threads))
     del found["seconds"]
-    return Placement(**found)
+    plan = Placement(**found)
+    if log_scale:
+        plan = replace(plan, log_det=plan.log_det + log_scale, upper_bound=plan.upper_bound + log_scale)
+    return plan
 
 
-def relax(S: Floats, n: int, tolerance: float = 1e-6, *, threads: int | None = None) -> Relaxation:
+def relax(S: ArrayLike, n: int, tolerance: float = 1e-6, *, threads: int | None = None) -> Relaxation:
     """Weights of the rows of S, 0 to 1 and n in sum, with the largest log det(S' diag(w) S), and the bound that no n rows can pass.
 
     A layout of your own with log det d has at least the share exp((d - upper_bound) / loads) of the best possible efficiency; rows of
     weight 0 are those that a good layout does without.
 
     Args:
-        S: candidates x loads, float64 in C order; any unit. Divide each row by the sd of its reading where these differ.
+        S: candidates x loads; any unit. Divide each row by the sd of its reading where these differ.
         n: how many gauges.
         tolerance: gap per load to which weights and bound are brought together; the bound holds at any.
-        threads: how many; all of the machine where None.
+        threads: how many; None or -1: all cores.
 
     Raises:
-        Faults: S is empty, not finite or not in C order, or no n of its rows separate the loads.
-        TypeError: not a numpy array of float64.
+        Faults: S is empty or not finite, or no n of its rows separate the loads.
+        TypeError: an argument of another type.
 
     Reference:
         Boyd and Vandenberghe, Convex Optimization, 2004, section 7.5.2 (D-optimal design).
     """
-    return Relaxation(*_engine.relax(S, _count(n), float(tolerance), threads))
+    rows, log_scale = _scaled(floats("S", S))
+    weights, log_det, bound = _engine.relax(rows, count("n", n), number("tolerance", tolerance), _threads(threads))
+    return Relaxation(weights, log_det + log_scale, bound + log_scale)
 
 
 def strain_along(
@@ -178,59 +221,83 @@ def strain_along(
     Raises:
         Faults: shapes that don't fit.
     """
-    values = np.ascontiguousarray(strain, dtype=np.float64)
+    values = floats("strain", strain)
     if (direction is None) == (angle_deg is None) or (angle_deg is not None and corners is not None):
         raise ValueError("give a direction, with corners or without, or an angle_deg")
     if angle_deg is not None:
-        angle = np.deg2rad(np.asarray(angle_deg, dtype=np.float64))
+        angle = np.deg2rad(floats("angle_deg", angle_deg).reshape(np.shape(angle_deg)))
         axis = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
     else:
-        axis = np.asarray(direction, dtype=np.float64)
+        axis = floats("direction", direction)
     if axis.ndim == 1 and values.ndim == 2:
         axis = np.broadcast_to(axis, (len(values), len(axis)))
-    where = None if corners is None else np.ascontiguousarray(corners, dtype=np.float64)
+    where = None if corners is None else floats("corners", corners)
     return _engine.strain_along(values, np.ascontiguousarray(axis), where)
 
 
-def recover_rows(S: Floats, strain: Floats, noise: float = 1.0, *, threads: int | None = None) -> RecoveredRows:
+def recover_rows(S: ArrayLike, strain: ArrayLike, noise: float | ArrayLike = 1.0, *, threads: int | None = None) -> RecoveredRows:
     """Loads f of every row of strain by least squares, strain = S f + noise, with 95 % intervals.
 
-    Intervals are those of the noise stated, and wider where the residuals are larger than it explains; a finding says so. A warning
-    says in how many rows a gauge gives nothing, an error which loads no row tells.
+    Intervals follow from the stated noise. They are wider where the residuals exceed it, and a finding states this. A warning gives the number of
+    rows with a missing reading; an error lists the loads that no row determines. If a finding is an error, an :class:`UnreliableWarning` is issued.
 
     Args:
-        S: gauges x loads, float64 in C order, microstrain per unit of load.
-        strain: runs (or samples) x gauges, float64 in C order, microstrain; NaN where a gauge gave nothing: the others are taken.
-        noise: sd of one reading, microstrain.
-        threads: how many; all of the machine where None.
+        S: gauges x loads, microstrain per unit of load.
+        strain: runs (or samples) x gauges, or one run as a vector; microstrain. NaN or masked where a gauge has no reading: the others are used.
+        noise: sd of one reading, microstrain; one number, or one a gauge.
+        threads: how many; None or -1: all cores.
 
     Raises:
-        Faults: the loads can't be told apart, or an array is not as it has to be.
-        TypeError: not a numpy array of float64.
+        Faults: the loads cannot be separated, or shapes do not fit.
+        TypeError: an argument of another type.
     """
-    found = _engine.recover_rows(S, strain, float(noise), threads)
+    s, readings = floats("S", S), floats("strain", strain)
+    rows = readings.reshape(1, -1) if readings.ndim == 1 else readings
+    sd = floats("noise", noise) if np.ndim(noise) else np.float64(number("noise", noise))
+    weights = None
+    common = float(sd) if np.ndim(sd) == 0 else np.nan
+    if np.ndim(sd):
+        if s.ndim != 2 or sd.shape != (len(s),) or not (np.isfinite(sd) & (sd > 0.0)).all():
+            raise ValueError(f"noise has the shape {sd.shape}; give one positive number, or one for each row of S")
+        # Rows over their own noise, in the unit of the median.
+        common = float(np.median(sd))
+        weights = common / sd
+    found = _engine.recover_rows(
+        s if weights is None else s * weights[:, None],
+        rows if weights is None or rows.shape[-1] != len(weights) else rows * weights,
+        common,
+        _threads(threads),
+    )
     findings = tuple(Finding(*f) for f in found["findings"])
-    return RecoveredRows(found["loads"], found["covariance"], findings, found["half"], found["others"], found["other_halves"])
+    loads = found["loads"][0] if readings.ndim == 1 else found["loads"]
+    out = RecoveredRows(
+        loads, found["covariance"], findings, found["half"], found["others"], found["other_halves"], s, readings, np.broadcast_to(sd, len(s))
+    )
+    warn_if_unreliable("recover_rows", findings)
+    return out
 
 
-def rainflow(signal: Floats) -> NDArray[np.void]:
+def rainflow(signal: ArrayLike) -> NDArray[np.void]:
     """Rainflow cycles of a signal, as ASTM E1049 counts them.
 
     Args:
-        signal: samples, float64 in C order; values that are not finite are passed over.
+        signal: samples; values that are not finite are skipped.
 
     Returns:
         A structured array with a row a cycle: ``range``, ``mean``, ``count`` (1, or 0.5 for what is left over at the end), ``first`` and
         ``second`` (the samples of its reversals, from 0).
     """
-    rows = _engine.rainflow(signal)
+    rows = _engine.rainflow(floats("signal", signal))
     out = np.empty(len(rows), dtype=[("range", "f8"), ("mean", "f8"), ("count", "f8"), ("first", "i8"), ("second", "i8")])
     for i, name in enumerate(out.dtype.names or ()):
         out[name] = rows[:, i]
     return out
 
 
-def _count(n: int) -> int:
-    if n < 1:
-        raise ValueError(f"n is {n}: ask for 1 or more")
-    return int(n)
+def _scaled(S: Floats) -> tuple[Floats, float]:
+    """Returns S over a power of two where its determinant would overflow or vanish, with what the scale adds to ``log_det``."""
+    largest = float(np.max(np.abs(S), initial=0.0))
+    if S.ndim != 2 or not np.isfinite(largest) or largest == 0.0 or 1e-50 < largest < 1e50:
+        return S, 0.0
+    exponent = int(np.floor(np.log2(largest)))
+    return np.ldexp(S, -exponent), 2.0 * S.shape[1] * exponent * float(np.log(2.0))

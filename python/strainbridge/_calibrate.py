@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._commands import calibrate
+from ._convert import floats, number
 from ._job import Job
 from ._outcome import Finding, Outcome
 
@@ -63,7 +64,7 @@ def calibrate_rows(
         Faults: runs too few, or tables that make no sense.
         ValueError: shapes that don't fit.
     """
-    readings, known = np.asarray(strain, dtype=float), np.asarray(loads, dtype=float)
+    readings, known = floats("strain", strain), floats("loads", loads)
     if readings.ndim != 2 or known.ndim != 2 or len(readings) != len(known):
         raise ValueError(f"strain is runs x gauges and loads is runs x loads, not {readings.shape} and {known.shape}")
     gauges = [f"G{g}" for g in range(readings.shape[1])]
@@ -77,24 +78,22 @@ def calibrate_rows(
         "units": "m-kg-s",
         "report_units": {"force": "N"},
         "load": [{"name": name} for name in names],
-        "measured": {"strain": "strain.csv", "noise_microstrain": float(noise)},
+        "measured": {"strain": "strain.csv", "noise_microstrain": number("noise", noise)},
         "runs": {"file": "runs.csv", "units": {"force": "N"}},
-        "calibration": {"model_uncertainty_rel": float(prior_rel)} if repeats is None else {"model_uncertainty_rel": float(prior_rel), "repeats": ["set"]},
+        "calibration": {"model_uncertainty_rel": number("prior_rel", prior_rel)} if repeats is None else {"model_uncertainty_rel": number("prior_rel", prior_rel), "repeats": ["set"]},
     }
     files = {
         "strain.csv": _table(["run", *gauges], ([run, *row] for run, row in zip(runs, readings))),
         "runs.csv": _table(["run", "set", *names], ([run, label, *row] for run, label, row in zip(runs, labels, known))),
     }
     if prior is not None:
-        rows = np.asarray(prior, dtype=float)
+        rows = floats("prior", prior)
         if rows.shape != (len(gauges), len(names)):
             raise ValueError(f"prior is gauges x loads, {(len(gauges), len(names))}, not {rows.shape}")
         job["sensitivity"] = {"file": "S.csv", "per": {"force": "N"}}
         files["S.csv"] = _table(["gauge", *names], ([gauge, *row] for gauge, row in zip(gauges, rows)))
     outcome = calibrate(Job.from_dict(job, files=files), threads=threads)
-    learnt = outcome._native.learnt()
-    assert learnt is not None
-    return CalibratedRows(learnt, outcome)
+    return CalibratedRows(outcome.S, outcome)
 
 
 def _table(header: list[str], rows: Iterable[Sequence[Any]]) -> bytes:

@@ -1,10 +1,11 @@
 """The commands, a function each. A job is a :class:`Job`, the path of one, or a dictionary with its keys.
 
-All of them take `threads` (all of the machine where None), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
+All of them take `threads` (None or -1: all cores), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
 the command keeps them) and `progress` (True: a bar of tqdm, where that is installed; or a function, called with stage, parts done and parts in
 all, 0: not known, about twenty times a second). They raise
 :class:`Faults` with every fault of the input, and ``KeyboardInterrupt`` once the work has stopped: between two stages, or between the load
-cases, runs, files or trials of one. Nothing is written before :meth:`Outcome.save`.
+cases, runs, files or trials of one. Nothing is written before :meth:`Outcome.save`. If a finding is an error, the call issues an
+:class:`UnreliableWarning`.
 """
 
 from __future__ import annotations
@@ -17,8 +18,11 @@ from pathlib import Path as _Folder
 from typing import Any, Callable, Mapping, Optional, Union
 
 from . import _strainbridge as _engine
+from ._convert import count
+from ._convert import threads as _threads
+from ._faults import Faults
 from ._job import Job, job_of
-from ._outcome import Outcome, Record
+from ._outcome import Outcome, Record, warn_if_unreliable
 from ._progress import shown
 
 Path = Union[str, "os.PathLike[str]"]
@@ -30,10 +34,12 @@ _log = logging.getLogger("strainbridge")
 
 def _ask(command: str, job: AnyJob | None, **more: Any) -> Outcome:
     checked = None if job is None else job_of(job)._checked()
+    more["threads"] = _threads(more.get("threads"))
     with shown(more.pop("progress", None)) as told:
         out = Outcome(_engine.ask(command, checked, progress=told, **more))
     for note in out.notes:
         _log.info("%s: %s", command, note)
+    warn_if_unreliable(command, out.findings)
     return out
 
 
@@ -44,7 +50,8 @@ def _is_job(what: AnyJob) -> bool:
 def sensitivity(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """S of the job's gauges, or of its candidates.
 
-    The outcome holds ``rank``, ``condition_number``, ``condition_number_scaled``; ``sensitivity.csv`` once saved.
+    The outcome holds ``S`` (gauges x loads, microstrain per job unit of each load), ``gauges`` and ``loads`` (names of rows and columns), ``rank``,
+    ``condition_number``, ``condition_number_scaled``; ``to_arrow()`` and, once saved, ``sensitivity.csv``.
     """
     return _ask("sensitivity", job, threads=threads, cache=cache, progress=progress)
 
@@ -134,7 +141,12 @@ def check(*files: Path, threads: int | None = None, progress: Progress = None) -
 
     The outcome holds ``decks`` (path, cards, grids, elements, mass, cg), ``results`` (path, solver, tables) and ``faults``, which are part of
     the answer here.
+
+    Raises:
+        Faults: no file is given.
     """
+    if not files:
+        raise Faults([("check", None, "files", "no file is given", "name decks, results, records or jobs")])
     return _ask("check", None, files=list(files), threads=threads, progress=progress)
 
 
@@ -176,7 +188,7 @@ def solve(
         total_strain: whether strain of a heated structure includes thermal expansion.
     """
     files, asked = ([], job) if _is_job(job) else ([job], None)
-    more: dict[str, Any] = {"modes": modes, "total_strain": total_strain, "threads": threads, "cache": cache, "progress": progress}
+    more: dict[str, Any] = {"modes": count("modes", modes), "total_strain": total_strain, "threads": threads, "cache": cache, "progress": progress}
     return _ask("solve", asked, files=files, **more)
 
 
@@ -190,7 +202,7 @@ def modes(job: AnyJob, *, modes: int = 10, threads: int | None = None, cache: bo
         modes: how many.
     """
     files, asked = ([], job) if _is_job(job) else ([job], None)
-    return _ask("modes", asked, files=files, modes=modes, threads=threads, cache=cache, progress=progress)
+    return _ask("modes", asked, files=files, modes=count("modes", modes), threads=threads, cache=cache, progress=progress)
 
 
 def verify(folder: Path, *, threads: int | None = None, progress: Progress = None) -> Outcome:

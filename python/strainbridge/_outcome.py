@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import csv
 import json
+import os
+import sys
 import tempfile
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Iterator, Literal, Mapping, Sequence
@@ -12,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _strainbridge as _engine
+from ._faults import Faults
 from ._mesh import Mesh, read_vtu
 from ._table import Table
 
@@ -47,6 +52,20 @@ class Finding:
 
     def __str__(self) -> str:
         return f"{self.severity}: {self.code}: {self.subject}: {self.message}: {self.remedy}"
+
+
+class UnreliableWarning(UserWarning):
+    """The answer has a finding of severity ``error``: it is not reliable."""
+
+
+def warn_if_unreliable(command: str, findings: Sequence[Finding]) -> None:
+    """Issues an :class:`UnreliableWarning` for the user's call if a finding is an error."""
+    bad = [f.message for f in findings if f.severity == "error"]
+    if bad:
+        depth, frame = 2, sys._getframe(1)
+        while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith("strainbridge."):
+            depth, frame = depth + 1, frame.f_back
+        warnings.warn(f"{command}: {'; '.join(bad)}", UnreliableWarning, stacklevel=depth)
 
 
 class Record(Mapping[str, Any]):
@@ -123,11 +142,16 @@ class Outcome(Record):
 
     __slots__ = ("_native", "_json")
 
-    def __init__(self, native: _engine._Outcome) -> None:
+    _native: _engine._Outcome | _Stored
+
+    def __init__(self, native: _engine._Outcome | _Stored) -> None:
         super().__init__(json.loads(native.json))
         self._native = native
         self._json = native.json
         self._seen["findings"] = tuple(Finding(**f) for f in self._keys["findings"])
+        if self._keys["command"] == "sensitivity" and (found := native.sensitivity()) is not None:
+            # `result.json` counts the gauges; in Python the list has a length.
+            self._seen["gauges"], self._seen["loads"] = found[1], found[2]
 
     @property
     def findings(self) -> Sequence[Finding]:
@@ -139,6 +163,34 @@ class Outcome(Record):
     def is_reliable(self) -> bool:
         """Whether no finding says that the answer can't be relied on."""
         return all(f.severity != "error" for f in self.findings)
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "S":
+            raise AttributeError(f"`{self._keys['command']}` gives no S: call `sensitivity` or `calibrate`")
+        return super().__getattr__(name)
+
+    def raise_if_unreliable(self) -> Outcome:
+        """Returns the outcome itself.
+
+        Raises:
+            UnreliableWarning: a finding is an error.
+        """
+        if not self.is_reliable:
+            raise UnreliableWarning(self._verdict())
+        return self
+
+    @property
+    def S(self) -> NDArray[np.float64]:
+        """gauges x loads, microstrain per job unit of each load, of ``sensitivity`` and ``calibrate``; rows and columns in the order of
+        ``sensitivity.csv``.
+
+        Raises:
+            AttributeError: the outcome of another command.
+        """
+        found = self._native.sensitivity()
+        if found is None:
+            raise AttributeError("S")
+        return found[0]
 
     @property
     def words(self) -> str:
@@ -190,8 +242,9 @@ class Outcome(Record):
         return found
 
     def to_arrow(self, table: str | None = None) -> Table:
-        """A table of the answer for any reader of the Arrow PyCapsule interface (pandas, polars, DuckDB, pyarrow): the list of records named,
-        else the first (``loads``, ``gauges``); ``history``: every sample of a record, as :meth:`history`.
+        """A table of the answer for any reader of the Arrow PyCapsule interface (pandas, polars, DuckDB, pyarrow): a list of records of the outcome
+        (``loads``, ``gauges``), or a CSV file of the command by its name (``sensitivity``, ``fleet``); the first where left out. ``history``: every
+        sample of a record, as :meth:`history`. Columns are in the order of ``result.json`` or of the file.
 
         Raises:
             KeyError: there is no such table.
@@ -199,9 +252,19 @@ class Outcome(Record):
         if table == "history":
             return Table.from_columns(self.history())
         name = table or next(iter(self._tables()), None)
-        if name is None or name not in self._keys:
-            raise KeyError(f"no table `{name}`, but {', '.join(self._tables()) or 'none'}")
-        return Table.from_records(self._keys[name])
+        if name is not None and name in self._tables():
+            return Table.from_records(self._keys[name])
+        with tempfile.TemporaryDirectory() as folder:
+            files = {p.stem: p for p in sorted(self._copy(folder).glob("*.csv"))}
+            name = name or next(iter(files), None)
+            if name in files:
+                return _table_of_csv(files[name])
+        raise KeyError(f"no table `{name}`, but {', '.join([*self._tables(), *files]) or 'none'}")
+
+    def _copy(self, folder: str) -> Path:
+        """Writes the files into a folder without a change of the outcome."""
+        self._native.save(folder)
+        return Path(folder)
 
     def __arrow_c_stream__(self, requested_schema: object | None = None) -> object:
         """The first table, by the Arrow PyCapsule interface."""
@@ -242,8 +305,86 @@ class Outcome(Record):
         lines += [f"{f.severity}: {f.message}" for f in self.findings if f.severity != "error"]
         return "\n".join(lines)
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Outcome):
+            return NotImplemented
+        own, others = ({k: v for k, v in o._keys.items() if k not in ("seconds", "tables")} for o in (self, other))
+        return own == others
+
+    __hash__ = None
+
     def __reduce__(self) -> Any:
-        raise TypeError("an outcome can't be pickled: save it, or take `to_dict()`")
+        return (Outcome, (_stored(self._native),))
 
     def _repr_html_(self) -> str:
         return self._native.html()
+
+
+@dataclass(frozen=True)
+class _Stored:
+    """An outcome without its engine: what a copy or a pickle holds."""
+
+    json: str
+    words: str
+    notes: list[str]
+    page: str
+    s: tuple[NDArray[np.float64], list[str], list[str]] | None
+    samples: dict[str, NDArray[np.float64]] | None
+    #: What `save` writes, by name, and the text of ``result.json`` with its tables.
+    files: dict[str, bytes]
+    saved: str
+
+    def html(self) -> str:
+        return self.page
+
+    def sensitivity(self) -> tuple[NDArray[np.float64], list[str], list[str]] | None:
+        return self.s
+
+    def history(self) -> dict[str, NDArray[np.float64]] | None:
+        return self.samples
+
+    def save(self, folder: str | os.PathLike[str]) -> str:
+        where = Path(folder)
+        where.mkdir(parents=True, exist_ok=True)
+        listed = where / _LISTED
+        lines = listed.read_text(encoding="utf-8").splitlines() if listed.exists() else []
+        written = {line.split("\t")[1] for line in lines if "\t" in line}
+        foreign = [n for n in self.files if n != _LISTED and n not in written and (where / n).exists()]
+        if foreign:
+            raise Faults([(str(where / n), None, "save", "the file exists, and no command wrote it", "save into another folder, or remove the file") for n in foreign])
+        for name, content in self.files.items():
+            if name != _LISTED:
+                part = where / f"{name}.part"
+                part.write_bytes(content)
+                part.replace(where / name)
+        kept = [line for line in lines if line.split("\t")[1:2] and line.split("\t")[1] not in self.files]
+        text = "".join(f"{line}\n" for line in kept) + self.files.get(_LISTED, b"").decode()
+        listed.write_text(text, encoding="utf-8")
+        return self.saved
+
+
+#: The file in which a folder lists what commands wrote into it.
+_LISTED = ".strainbridge"
+
+
+def _stored(native: _engine._Outcome | _Stored) -> _Stored:
+    if isinstance(native, _Stored):
+        return native
+    with tempfile.TemporaryDirectory() as folder:
+        saved = native.save(folder)
+        files = {p.relative_to(folder).as_posix(): p.read_bytes() for p in sorted(Path(folder).rglob("*")) if p.is_file()}
+    return _Stored(native.json, native.words, list(native.notes), native.html(), native.sensitivity(), native.history(), files, saved)
+
+
+def _table_of_csv(path: Path) -> Table:
+    """A column a name: numbers where every cell is one or empty (NaN), else texts."""
+    with path.open(encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    columns: dict[str, Any] = {}
+    for i, name in enumerate(header):
+        cells = [row[i] for row in rows]
+        try:
+            columns[name] = np.array([float(c) if c else np.nan for c in cells])
+        except ValueError:
+            columns[name] = cells
+    return Table.from_columns(columns)

@@ -30,8 +30,13 @@ class Deck:
 
     def __init__(self, path: Path, files: Mapping[str, bytes] | None = None) -> None:
         self.path = os.fspath(path)
-        self._native = _engine._Deck(path, dict(files or {}))
+        self._files = dict(files or {})
+        self._native = _engine._Deck(path, self._files)
         self._changed: dict[str, dict[str, NDArray[Any]]] = {}
+
+    def __reduce__(self) -> Any:
+        # A copy reads the file again.
+        return (Deck, (self.path, self._files), {"_changed": self._changed})
 
     @classmethod
     def read(cls, path: Path | Any) -> Deck:

@@ -15,20 +15,25 @@ class Table:
     ``pyarrow.table(table)`` take it by the Arrow PyCapsule interface, without a package of Arrow here. Where pyarrow is installed, a table
     also answers as a ``pyarrow.Table`` does: ``table["name"]``, ``table.to_pandas()``."""
 
-    __slots__ = ("_native",)
+    __slots__ = ("_native", "_source")
 
-    def __init__(self, native: _engine._Table) -> None:
+    def __init__(self, native: _engine._Table, source: tuple[str, Any]) -> None:
         self._native = native
+        # The constructor and its argument, from which a copy is made.
+        self._source = source
 
     @classmethod
     def from_records(cls, records: Sequence[Mapping[str, Any]]) -> Table:
-        """A row a record: numbers, truths, texts, lists of numbers; what else there is stands as JSON."""
-        return cls(_engine._Table(json.dumps(list(records))))
+        """A row a record, columns in the order of their keys: numbers, truths, texts, lists of numbers; other values as JSON."""
+        rows = list(records)
+        names = list(dict.fromkeys(name for row in rows for name in row))
+        return cls(_engine._Table(json.dumps(rows), names), ("from_records", rows))
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Any]) -> Table:
         """A column a name: arrays of numbers of one dimension, or lists of texts."""
-        return cls(_engine._Table(columns={name: _column(c) for name, c in columns.items()}))
+        held = {name: _column(c) for name, c in columns.items()}
+        return cls(_engine._Table(columns=held), ("from_columns", held))
 
     @property
     def num_rows(self) -> int:
@@ -50,6 +55,10 @@ class Table:
 
     def __len__(self) -> int:
         return self.num_rows
+
+    def __reduce__(self) -> Any:
+        constructor, argument = self._source
+        return (getattr(Table, constructor), (argument,))
 
     def _pyarrow(self, what: str) -> Any:
         try:

@@ -21,15 +21,25 @@ import subprocess
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Iterable, Mapping, Sequence, cast
+
+if TYPE_CHECKING:
+    from ._outcome import Outcome as Answer
 
 try:
     from . import _strainbridge as _engine
+    from ._convert import threads as _threads
+    from ._faults import Faults
     from ._job import job_of
     from ._outcome import Outcome
     from ._progress import shown
 except ImportError:  # the file alone
     _engine = None  # type: ignore[assignment]
+
+    def _threads(value: Any) -> int | None:
+        return None if value in (None, -1) else int(value)
+
+__all__ = ["FILES_A_TASK", "FleetError", "merge", "part", "program", "run"]
 
 #: Files of one task of a cluster: enough that starting a task costs little, few enough that a lost task loses little.
 FILES_A_TASK = 8
@@ -65,50 +75,62 @@ def part(job: AnyJob, files: Sequence[str], out: str, threads: int | None = None
     return [{k: f[k] for k in ("path", "status", "message", "sha256")} for f in answer["files"]]
 
 
-def merge(job: AnyJob, out: str | Path) -> Mapping[str, Any]:
+def merge(job: AnyJob, out: str | Path) -> Answer:
     """The result of everything that `out` holds of this job; `fleet.csv`, `fleet.parquet` and the report are written there."""
     return _saved(_Task(job, [], str(out)), str(out))
 
 
 def run(
     job: AnyJob,
-    files: Iterable[str | Path],
+    files: str | Path | Iterable[str | Path],
     out: str | Path = "fleet",
     client: Any = None,
     threads: int | None = None,
     shard: str | None = None,
     progress: Any = None,
-) -> Mapping[str, Any]:
+    digests: Mapping[str, str] | None = None,
+) -> Answer:
     """Does all files, writes what the command writes into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
 
     Args:
         job: a job with ``[fleet]``, or the path of one.
-        files: records, relative to the working folder.
+        files: records, relative to the working folder; a text or path is one file.
         out: where the results of single files are kept, and those of the fleet written.
         client: a `dask.distributed.Client`, whose workers do the files in tasks of eight; None: they are done here.
         threads: how many here, all cores where None; on a worker 1 where None.
         shard: ``"3/64"``: the third of 64 parts of the files alone, for a scheduler of your own. The outcome of the part goes to a folder of its
             own within `out`; :func:`merge` makes the fleet of all parts.
         progress: as of every command; True: a bar of tqdm. Of the files done here.
+        digests: SHA-256 of files, by path as in `files`, for a driver that does not read them again.
 
     Raises:
-        Faults: bad input. A record that can't be read is no fault but a failed file, and a finding.
+        Faults: bad input; a file that is missing. A record that cannot be read is a failed file and a finding.
     """
     job = str(job) if isinstance(job, os.PathLike) else job
     out = str(out)
-    listed = sorted({str(f) for f in files})
+    listed = sorted({str(f) for f in ([files] if isinstance(files, (str, os.PathLike)) else files)})
+    digests = dict(digests or {})
+    missing = [f for f in listed if f not in digests and not os.path.exists(f)]
+    if missing and client is None:
+        raise _missing(missing)
+    threads = _threads(threads)
     if shard is not None:
         number, _, of = shard.partition("/")
         return _saved(_Task(job, listed, out, threads, shard, progress), os.path.join(out, f"shard-{number}-of-{of}"))
-    digests: dict[str, str] = {}
     if client is not None:
         tasks = [listed[i : i + FILES_A_TASK] for i in range(0, len(listed), FILES_A_TASK)]
         n = len(tasks)
         futures = client.map(part, [job] * n, tasks, [out] * n, [threads or 1] * n, pure=False, retries=3)
         # What a task that failed for good leaves undone is done here, or raises here. Files that workers did are not read again.
         done = [f for some in client.gather(futures, errors="skip") for f in some]
-        digests = {f["path"]: f["sha256"] for f in done if f["sha256"]}
+        digests.update({f["path"]: f["sha256"] for f in done if f["sha256"]})
     return _saved(_Task(job, listed, out, threads, progress=progress, digests=digests), out)
+
+
+def _missing(files: Sequence[str]) -> Exception:
+    """The error for files that do not exist."""
+    faults = [(f, None, "files", "the file does not exist", "give a path relative to the working folder") for f in files]
+    return Faults(faults) if _engine is not None else FleetError("\n".join(f"{f[0]}: {f[3]}: {f[4]}" for f in faults))
 
 
 def _in_process() -> bool:
@@ -162,10 +184,14 @@ class _Task:
         return answer
 
 
-def _saved(task: _Task, out: str) -> Mapping[str, Any]:
+def _saved(task: _Task, out: str) -> Answer:
     """The answer, its files written into `out`."""
     if not _in_process():
-        return task.by_command(out)
+        return cast("Answer", task.by_command(out))
     outcome = task.by_engine()
     outcome.save(out)
     return outcome
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -196,10 +196,7 @@ def test_loads_that_cannot_be_told_apart_raise(ask):
 @pytest.mark.parametrize(
     ("array", "error", "said"),
     [
-        ([[1.0, 2.0], [3.0, 4.0]], TypeError, "numpy array"),
-        (np.ones((4, 2), dtype=np.float32), TypeError, "float64"),
-        (np.ones((4, 2), dtype=int), TypeError, "float64"),
-        (np.asfortranarray(np.random.default_rng(0).normal(size=(4, 2))), ValueError, "ascontiguousarray"),
+        ([["a", "b"], ["c", "d"]], TypeError, "numbers are needed"),
         (np.ones(4), ValueError, "dimensions"),
         (np.full((4, 2), np.nan), ValueError, "finite"),
         (np.ones((0, 2)), ValueError, "empty"),

@@ -1,0 +1,90 @@
+"""Arguments of Python as the engine needs them."""
+
+from __future__ import annotations
+
+import operator
+from numbers import Real
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def floats(name: str, value: Any) -> Floats:
+    """Returns `value` as a float64 array in C order, without a copy if it is one already.
+
+    Masked values, ``None`` and missing values of pandas, polars and pyarrow become NaN.
+
+    Raises:
+        TypeError: texts, complex numbers or objects that are not numbers.
+    """
+    if isinstance(value, np.ma.MaskedArray):
+        filled = value.astype(np.float64).filled(np.nan)  # type: ignore[no-untyped-call, attr-defined, unused-ignore]
+        return np.ascontiguousarray(filled)
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        array = _of_objects(name, array)
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"{name} has the type {array.dtype}; numbers are needed: pass {name}.astype(float)")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
+def _of_objects(name: str, array: NDArray[Any]) -> NDArray[np.float64]:
+    """Returns objects as numbers; what pandas and Python use for a missing value becomes NaN."""
+    out = np.full(array.shape, np.nan)
+    for at, value in np.ndenumerate(array):
+        if value is None or type(value).__name__ in ("NAType", "NaTType"):
+            continue
+        if not isinstance(value, (Real, np.number)):
+            raise TypeError(f"{name} contains {value!r} at {at}; numbers are needed")
+        out[at] = float(value)
+    return out
+
+
+def count(name: str, value: Any) -> int:
+    """Returns a whole number of 1 or more.
+
+    Raises:
+        TypeError: a text or a number with a fraction.
+        ValueError: 0 or less.
+    """
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is {value!r}; a whole number is needed") from None
+    if number < 1:
+        raise ValueError(f"{name} is {number}; 1 or more is needed")
+    return number
+
+
+def number(name: str, value: Any) -> float:
+    """Returns a real number.
+
+    Raises:
+        TypeError: a text, an array or another object.
+    """
+    if isinstance(value, (bool, str, bytes)) or not isinstance(value, (Real, np.number, np.ndarray)) or np.asarray(value).ndim:
+        raise TypeError(f"{name} is {value!r}; a number is needed")
+    return float(value)
+
+
+def threads(value: Any) -> int | None:
+    """Returns the number of threads; ``None`` and -1 mean all cores.
+
+    Raises:
+        TypeError: not a whole number.
+        ValueError: 0 or below -1.
+    """
+    if value is None:
+        return None
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"threads is {value!r}; a whole number is needed") from None
+    if number == -1:
+        return None
+    if number < 1:
+        raise ValueError(f"threads is {number}; give 1 or more, or -1 for all cores")
+    return number

@@ -1,0 +1,103 @@
+"""Tables of pandas, polars, pyarrow and other packages as CSV files in memory."""
+
+from __future__ import annotations
+
+import csv
+import datetime
+import io
+import math
+from typing import Any, Iterator
+
+import numpy as np
+
+#: Names under which pandas and its users keep the key of a row.
+_KEYS = ("run", "time", "gauge", "name")
+
+
+def is_table(value: Any) -> bool:
+    """Whether a value is a table: it gives an Arrow stream, or is a DataFrame of pandas."""
+    return hasattr(value, "__arrow_c_stream__") or _is_pandas(value)
+
+
+def _is_pandas(value: Any) -> bool:
+    return type(value).__module__.split(".")[0] == "pandas" and hasattr(value, "columns")
+
+
+def csv_bytes(table: Any) -> bytes:
+    """The table as UTF-8 CSV with full precision; a missing value is an empty cell.
+
+    The index of a DataFrame becomes a column if it has a name, or contains times or texts.
+
+    Raises:
+        TypeError: a column of lists, or a table that none of the installed packages reads.
+    """
+    columns = dict(_columns(table))
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(columns)
+    for row in zip(*columns.values()):
+        out.writerow([_cell(v) for v in row])
+    return text.getvalue().encode()
+
+
+def _columns(table: Any) -> Iterator[tuple[str, list[Any]]]:
+    if _is_pandas(table):
+        index = table.index
+        kind = index.dtype.kind if hasattr(index.dtype, "kind") else "O"
+        if index.name is not None or kind not in "iu":
+            yield str(index.name or ("time" if kind in "fMm" else "run")), _values(index)
+        for name in table.columns:
+            yield str(name), _values(table[name])
+        return
+    arrow = _arrow(table)
+    for name in arrow.column_names:
+        yield name, arrow[name].to_pylist()
+
+
+def _values(column: Any) -> list[Any]:
+    return [None if missing else v for v, missing in zip(column.tolist(), column.isna())]
+
+
+def _arrow(table: Any) -> Any:
+    try:
+        import pyarrow  # type: ignore[import-untyped, import-not-found, unused-ignore]
+
+        return pyarrow.table(table)
+    except ImportError:
+        pass
+    if hasattr(table, "to_dict") and hasattr(table, "get_columns"):
+        return _Polars(table)
+    raise TypeError(f"a table of {type(table).__module__} needs pyarrow: pip install pyarrow, or pass a DataFrame of pandas or polars")
+
+
+class _Polars:
+    """A DataFrame of polars by the names that pyarrow has."""
+
+    def __init__(self, frame: Any) -> None:
+        self._frame = frame
+        self.column_names = list(frame.columns)
+
+    def __getitem__(self, name: str) -> Any:
+        return _Polars._Column(self._frame[name].to_list())
+
+    class _Column(list):  # type: ignore[type-arg]
+        def to_pylist(self) -> list[Any]:
+            return self
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return ""
+    if isinstance(value, (bool, np.bool_)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return "" if math.isnan(value) else repr(float(value))
+    if isinstance(value, (int, np.integer, str)):
+        return str(value)
+    if isinstance(value, datetime.timedelta):
+        return repr(value.total_seconds())
+    if isinstance(value, (datetime.datetime, datetime.date)):
+        return value.isoformat()
+    if isinstance(value, bytes):
+        return value.decode()
+    raise TypeError(f"a cell contains {value!r}; numbers, texts and times are needed")
