@@ -1,0 +1,239 @@
+//! ENGLISH.md's rules that a machine can hold, on the pages that are written in its manner; and the questions of a new user.
+
+use super::root;
+
+/// Pages that follow the rules; a page that is rewritten joins the list.
+const PAGES: [&str; 12] = [
+    "README.md",
+    "docs/1-first-hour.md",
+    "docs/2-own-export.md",
+    "docs/3-placing-gauges.md",
+    "docs/5-reconciling.md",
+    "docs/choosing-uncertainties.md",
+    "docs/concepts.md",
+    "docs/faq.md",
+    "docs/glossary.md",
+    "docs/glue-and-wire.md",
+    "docs/how-many-gauges.md",
+    "docs/reference/limits.md",
+];
+
+/// Words and phrases that no page contains.
+const REFUSED: [&str; 16] = [
+    "told",
+    "tells",
+    "anew",
+    "beside",
+    "judged",
+    "stranger",
+    "strangers",
+    "drawings",
+    "speaks",
+    "aliases",
+    "taught",
+    "upheaval",
+    "is none",
+    "none that",
+    "by itself",
+    "put right",
+];
+
+const LONGEST: usize = 25;
+
+/// Returns the paragraphs, list items and table rows of a page, without boxes, pictures and targets of links.
+fn paragraphs(page: &str) -> Vec<String> {
+    let (mut out, mut fenced) = (vec![String::new()], false);
+    for line in page.lines() {
+        fenced ^= line.starts_with("```");
+        let text = line.trim_start();
+        let skipped = fenced || line.starts_with("    ") || line.starts_with("```");
+        let number = text.trim_start_matches(|c: char| c.is_ascii_digit());
+        let starts = ["- ", "#", "|"].iter().any(|s| text.starts_with(s))
+            || (number.len() < text.len() && number.starts_with(". "));
+        if skipped || text.is_empty() || starts {
+            out.push(String::new());
+        }
+        if !skipped {
+            let last = out.last_mut().expect("starts with one");
+            for (n, part) in text.split("](").enumerate() {
+                *last += match n {
+                    0 => part,
+                    _ => part.split_once(')').map_or("", |p| p.1),
+                };
+            }
+            last.push(' ');
+        }
+    }
+    out
+}
+
+/// Returns the sentences of a paragraph; cells of a table and code spans count as one word or one sentence each.
+fn sentences(paragraph: &str) -> Vec<String> {
+    let mut plain = String::new();
+    for (n, part) in paragraph.split('`').enumerate() {
+        plain += if n % 2 == 0 { part } else { "CODE" };
+    }
+    let ends = [". ", "? ", "! ", ": ", "; ", "|", ".)"];
+    for end in ends {
+        plain = plain.replace(end, "\n");
+    }
+    plain.lines().map(|s| s.trim().to_owned()).collect()
+}
+
+fn length(sentence: &str) -> usize {
+    let words = sentence.split_whitespace();
+    words
+        .filter(|w| w.chars().any(char::is_alphanumeric))
+        .count()
+}
+
+fn contains_word(text: &str, word: &str) -> bool {
+    let letters: String = text
+        .to_lowercase()
+        .chars()
+        .map(|c| if c.is_alphabetic() { c } else { ' ' })
+        .collect();
+    let words: Vec<&str> = letters.split_whitespace().collect();
+    format!(" {} ", words.join(" ")).contains(&format!(" {word} "))
+}
+
+#[test]
+fn pages_have_short_sentences_and_the_words_of_the_field() {
+    let long = vec!["word"; LONGEST + 1].join(" ");
+    assert!(length(&sentences(&format!("{long}. Next one."))[0]) > LONGEST);
+    assert_eq!(
+        sentences("See [a page](x.md) now. `told. so` ends. ")[1],
+        "CODE ends"
+    );
+    assert!(contains_word("What is none, of them", "is none"));
+    assert!(!contains_word("nonetheless", "none that"));
+    let mut wrong = String::new();
+    for page in PAGES {
+        let text = std::fs::read_to_string(root().join(page)).unwrap();
+        for paragraph in paragraphs(&text) {
+            for sentence in sentences(&paragraph) {
+                if length(&sentence) > LONGEST {
+                    wrong += &format!("{page}: {} words: {sentence}\n", length(&sentence));
+                }
+                for word in REFUSED.iter().filter(|w| contains_word(&sentence, w)) {
+                    wrong += &format!("{page}: \"{word}\": {sentence}\n");
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong}");
+}
+
+/// Question of a new user, page that answers it, heading there, and what the answer must name.
+const QUESTIONS: [[&str; 4]; 15] = [
+    [
+        "Which side is Z1?",
+        "docs/reference/conventions.md",
+        "Conventions",
+        "Z1",
+    ],
+    [
+        "Which way does an angle turn?",
+        "docs/faq.md",
+        "In which direction does the angle of a gauge turn?",
+        "element normal",
+    ],
+    [
+        "How many gauges?",
+        "docs/how-many-gauges.md",
+        "How many gauges",
+        "twice",
+    ],
+    [
+        "Which output must Nastran write?",
+        "docs/2-own-export.md",
+        "Your own export",
+        "PARAM,POST,-1",
+    ],
+    [
+        "How is a free vehicle held?",
+        "docs/faq.md",
+        "How do I support a free vehicle?",
+        "support = \"free\"",
+    ],
+    [
+        "What follows +-?",
+        "docs/faq.md",
+        "What does +- mean?",
+        "half width",
+    ],
+    [
+        "How is the zero set?",
+        "docs/faq.md",
+        "How do I set the zero?",
+        "zero_runs",
+    ],
+    [
+        "A gauge was glued elsewhere?",
+        "docs/faq.md",
+        "My gauge is not where the plan says. What now?",
+        "angle_deg",
+    ],
+    [
+        "Which bridge factor?",
+        "docs/glue-and-wire.md",
+        "Wirings",
+        "bridge_factor",
+    ],
+    [
+        "mV/V to microstrain?",
+        "docs/glue-and-wire.md",
+        "From mV/V to microstrain",
+        "4000",
+    ],
+    [
+        "Rosette columns?",
+        "docs/glue-and-wire.md",
+        "Rosettes",
+        ".a",
+    ],
+    [
+        "How well do I trust the model?",
+        "docs/choosing-uncertainties.md",
+        "model_uncertainty_rel",
+        "known loads",
+    ],
+    [
+        "Temperature?",
+        "docs/glue-and-wire.md",
+        "Temperature",
+        "zero_runs",
+    ],
+    [
+        "How fast may loads change?",
+        "docs/faq.md",
+        "How fast may my loads change?",
+        "content-near-first-mode",
+    ],
+    [
+        "Rainflow and RPC?",
+        "docs/faq.md",
+        "How do I get rainflow counts and RPC files?",
+        "rainflow.csv",
+    ],
+];
+
+#[test]
+fn fifteen_questions_of_a_new_user_have_an_answer_under_a_heading() {
+    for [question, page, heading, answer] in QUESTIONS {
+        let text = std::fs::read_to_string(root().join(page)).unwrap();
+        let section = text
+            .split("\n#")
+            .find(|s| {
+                s.lines()
+                    .next()
+                    .unwrap_or("")
+                    .trim_start_matches(['#', ' '])
+                    == heading
+            })
+            .unwrap_or_else(|| panic!("{question} {page}: no heading {heading}"));
+        assert!(section.contains(answer), "{question} {page}, {heading}");
+    }
+    let faq = std::fs::read_to_string(root().join("docs/faq.md")).unwrap();
+    assert_eq!(faq.matches("\n## ").count(), 20);
+}
