@@ -3,12 +3,14 @@
 use super::root;
 
 /// Pages that follow the rules; a page that is rewritten joins the list.
-const PAGES: [&str; 12] = [
+const PAGES: [&str; 14] = [
+    "CONTRIBUTING.md",
     "README.md",
     "docs/1-first-hour.md",
     "docs/2-own-export.md",
     "docs/3-placing-gauges.md",
     "docs/5-reconciling.md",
+    "docs/7-planning-by-pointing.md",
     "docs/choosing-uncertainties.md",
     "docs/concepts.md",
     "docs/faq.md",
@@ -194,6 +196,7 @@ const QUESTIONS: [[&str; 4]; 15] = [
     ],
     [
         "How well do I trust the model?",
+        "docs/7-planning-by-pointing.md",
         "docs/choosing-uncertainties.md",
         "model_uncertainty_rel",
         "known loads",
