@@ -403,7 +403,7 @@ fn free_play_a_quadratic_damper_and_a_spring_that_changes_are_named() {
 
 #[test]
 fn a_spring_that_stiffens_on_both_sides_is_named_with_its_rate() {
-    // `quadratic_stiffness` has a cubic part named beside it (Known faults in CHANGELOG.md).
+    // `quadratic_stiffness` has a cubic part named beside it (docs/reference/limits.md).
     let effect = "progressive_leaf";
     let case = hide(Layout::Front, effect, 2, Background::Clean, 7);
     let o = examine(&frame_of(&case), &[]).unwrap();

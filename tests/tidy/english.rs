@@ -149,7 +149,7 @@ const QUESTIONS: [[&str; 4]; 15] = [
     [
         "Which output must Nastran write?",
         "docs/2-own-export.md",
-        "Your own export",
+        "1. Export from Simcenter or Nastran",
         "PARAM,POST,-1",
     ],
     [
