@@ -196,7 +196,6 @@ const QUESTIONS: [[&str; 4]; 15] = [
     ],
     [
         "How well do I trust the model?",
-        "docs/7-planning-by-pointing.md",
         "docs/choosing-uncertainties.md",
         "model_uncertainty_rel",
         "known loads",
