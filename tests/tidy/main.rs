@@ -2,6 +2,7 @@
 //! library alone builds.
 
 mod dependencies;
+mod english;
 mod imports;
 mod size;
 mod words;
