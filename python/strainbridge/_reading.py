@@ -80,7 +80,7 @@ class Deck:
 
     def write(self, path: Path) -> list[str]:
         """Writes the deck with the cards as :meth:`cards` holds them now; lines of others keep every byte. Cards whose id is gone are left out,
-        those of a new id added. INCLUDE files that change are written to the same folder.
+        those of a new id added. INCLUDE files that change are written next to it.
 
         Returns:
             The files written.
