@@ -22,7 +22,7 @@ class CalibratedRows:
 
     #: gauges x loads, microstrain per unit of load.
     S: NDArray[np.float64]
-    #: What the command `calibrate` says of it: ``outcome.calibration``.
+    #: Answer of the command `calibrate`: ``outcome.calibration``.
     outcome: Outcome
 
     @property
@@ -32,7 +32,7 @@ class CalibratedRows:
 
     @property
     def is_reliable(self) -> bool:
-        """Whether no finding says that it can't be relied on."""
+        """Whether no finding is an error. An error means that the answer is unreliable."""
         return self.outcome.is_reliable
 
     def __repr__(self) -> str:

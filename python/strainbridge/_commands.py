@@ -184,7 +184,7 @@ def solve(
 
     Args:
         job: a job, or the path of a deck.
-        modes: elastic modes beside the static solution.
+        modes: elastic modes in addition to the static solution.
         total_strain: whether strain of a heated structure includes thermal expansion.
     """
     files, asked = ([], job) if _is_job(job) else ([job], None)

@@ -90,7 +90,7 @@ class Model:
         return Job.from_dict(keys, folder, {in_folder(folder, _NAME): self.deck.encode()})
 
     def solve(self, job: Mapping[str, Any], **more: Any) -> Outcome:
-        """The unit loads of :meth:`job`, by the built-in solver; what :func:`strainbridge.solve` takes beside."""
+        """Solves the unit loads of :meth:`job` with the built-in solver; further arguments are those of :func:`strainbridge.solve`."""
         return solve(self.job(job), **more)
 
     def mesh(self) -> Mesh:

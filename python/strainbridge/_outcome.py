@@ -161,7 +161,7 @@ class Outcome(Record):
 
     @property
     def is_reliable(self) -> bool:
-        """Whether no finding says that the answer can't be relied on."""
+        """Whether no finding is an error. An error means that the answer is unreliable."""
         return all(f.severity != "error" for f in self.findings)
 
     def __getattr__(self, name: str) -> Any:
@@ -231,7 +231,7 @@ class Outcome(Record):
 
     def history(self) -> dict[str, NDArray[np.float64]]:
         """Every sample of a record that :func:`strainbridge.recover` was given: ``time`` (s), then of each load its value, ``<load>.low`` and
-        ``<load>.high`` (95 %), as `loads.csv` has them, report units; NaN where the gauges that read don't tell a load.
+        ``<load>.high`` (95 %), as `loads.csv` has them, report units; NaN if the valid gauges do not determine a load.
 
         Raises:
             KeyError: the outcome holds no record.

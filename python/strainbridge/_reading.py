@@ -65,7 +65,7 @@ class Deck:
 
         ``GRID``: ``id``, ``cp``, ``cd``, ``x`` (n x 3, in cp). Elements (``CQUAD4``, ``CQUADR``, ``CQUAD8``, ``CTRIA3``, ``CTRIAR``,
         ``CTRIA6``, ``CHEXA``, ``CPENTA``, ``CTETRA``, ``CPYRAM``, ``CBAR``, ``CBEAM``, ``CROD``, ``CTUBE``): ``id``, ``pid``, ``grids`` (ids; 0: no
-        grid there), shells ``theta`` (degrees; NaN: a coordinate system says it). ``CONM2``: ``id``, ``grid``, ``mass``, ``offset``.
+        grid there), shells ``theta`` (degrees; NaN: a coordinate system states it). ``CONM2``: ``id``, ``grid``, ``mass``, ``offset``.
 
         Raises:
             KeyError: cards of that name have no columns here.
@@ -80,7 +80,7 @@ class Deck:
 
     def write(self, path: Path) -> list[str]:
         """Writes the deck with the cards as :meth:`cards` holds them now; lines of others keep every byte. Cards whose id is gone are left out,
-        those of a new id added. INCLUDE files that change are written beside it.
+        those of a new id added. INCLUDE files that change are written next to it.
 
         Returns:
             The files written.
@@ -159,7 +159,7 @@ class Results:
         file that holds it.
 
         Raises:
-            Faults: the file can't be read, or is none of those.
+            Faults: the file can't be read, or has another format.
         """
         files = {}
         if is_deck(deck):
@@ -193,7 +193,7 @@ class Results:
             subcase: its id.
             surface: ``top`` is Z2 of the element normal, ``bottom`` Z1.
             frame: ``element``: exx, eyy, gxy (engineering shear); ``basic``: Exx, Eyy, Ezz, Exy, Eyz, Ezx (tensor shear).
-            corners: whether corners are listed beside the centre, where the file has them.
+            corners: whether corners are listed in addition to the centre, if the file has them.
 
         Raises:
             Faults: no such subcase; no strain in it; no mesh for the basic frame.

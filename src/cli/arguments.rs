@@ -108,7 +108,7 @@ pub enum Command {
         after_help = "Example:\n  strainbridge respond job.toml    # job.out/envelope.vtu opens in ParaView"
     )]
     Respond(JobArguments),
-    /// Mass and, where it can be told, position of a payload, from strain, wheel forces or both
+    /// Mass and, if the data determine it, position of a payload, from strain, wheel forces or both
     #[command(after_help = "Example:\n  strainbridge payload job.toml")]
     Payload(JobArguments),
     /// Size and place lumped masses that bring the model's reactions to the measured ones; write the completed deck
@@ -294,7 +294,7 @@ pub struct SolveArguments {
     /// without it the mechanical strain, which a gauge compensated for its material reads
     #[arg(long)]
     pub total_strain: bool,
-    /// Elastic modes computed beside the strain; 0: none
+    /// Elastic modes computed in addition to the strain; 0: none
     #[arg(long, value_name = "N", default_value_t = crate::app::solve::MODES)]
     pub modes: usize,
 }

@@ -2,6 +2,7 @@
 //! library alone builds.
 
 mod dependencies;
+mod declared_words;
 mod english;
 mod imports;
 mod size;

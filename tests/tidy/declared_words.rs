@@ -1,0 +1,91 @@
+//! Words that plain technical English replaces, in the texts that declare keys, columns, fields and findings.
+
+use super::root;
+
+/// Declaration texts, with the columns that are prose; of findings, the lines `cause:`, `limit:`, `remedy:`, `example:`.
+const TEXTS: [(&str, std::ops::Range<usize>); 7] = [
+    ("src/app/job/keys.txt", 1..4),
+    ("src/report/reference/columns.txt", 3..5),
+    ("src/report/reference/fields.txt", 2..4),
+    ("src/finding/codes/layout.txt", 0..0),
+    ("src/finding/codes/model.txt", 0..0),
+    ("src/finding/codes/strain.txt", 0..0),
+    ("src/finding/codes/vehicle.txt", 0..0),
+];
+/// Words and phrases that have a plain replacement.
+const REPLACED: [&str; 21] = [
+    "told",
+    "tell",
+    "tells",
+    "anew",
+    "beside",
+    "judged",
+    "stranger",
+    "strangers",
+    "drawings",
+    "upheaval",
+    "is none",
+    "none that",
+    "by itself",
+    "by themselves",
+    "put right",
+    "speak",
+    "speaks",
+    "say",
+    "says",
+    "said",
+    "of its own",
+];
+
+/// Prose of a line of a declaration text; quoted names and values are cut out.
+fn prose(line: &str, columns: &std::ops::Range<usize>) -> String {
+    let parts = ["cause", "limit", "remedy", "example"];
+    let text = if columns.is_empty() {
+        let part = line
+            .trim_start()
+            .split_once(": ")
+            .filter(|(p, _)| parts.contains(p));
+        part.map_or(String::new(), |(_, text)| text.to_owned())
+    } else if line.starts_with('#') {
+        String::new()
+    } else {
+        let cells: Vec<&str> = line.split(" | ").collect();
+        cells.get(columns.clone()).unwrap_or_default().join(" ; ")
+    };
+    let unquoted = text.split('`').step_by(2);
+    unquoted.collect::<Vec<_>>().join("``")
+}
+
+/// Words and phrases of `REPLACED` that a text contains as whole words.
+fn replaced_words(text: &str) -> Vec<&'static str> {
+    let words: Vec<String> = text
+        .split(|c: char| !c.is_alphanumeric() && c != '_')
+        .filter(|w| !w.is_empty())
+        .map(str::to_lowercase)
+        .collect();
+    let text = format!(" {} ", words.join(" "));
+    let found = REPLACED.iter().filter(|w| text.contains(&format!(" {w} ")));
+    found.copied().collect()
+}
+
+#[test]
+fn declarations_of_keys_columns_fields_and_findings_use_plain_words() {
+    let finding = "  cause: The rest tells it, `told`.";
+    assert_eq!(replaced_words(&prose(finding, &(0..0))), ["tells"]);
+    let column = "a | b.csv | told | - | what is said";
+    assert_eq!(replaced_words(&prose(column, &(3..5))), ["said"]);
+    assert!(replaced_words("Untold, saying, besides").is_empty());
+    let (mut wrong, mut read) = (String::new(), 0);
+    for (path, columns) in &TEXTS {
+        let text = std::fs::read_to_string(root().join(path)).unwrap();
+        for (n, line) in text.lines().enumerate() {
+            let prose = prose(line, columns);
+            read += usize::from(!prose.is_empty());
+            for word in replaced_words(&prose) {
+                wrong += &format!("{path}:{}: `{word}` in: {prose}\n", n + 1);
+            }
+        }
+    }
+    assert!(read > 1500, "only {read} lines of prose were read");
+    assert!(wrong.is_empty(), "words to replace:\n{wrong}");
+}
