@@ -46,6 +46,9 @@ fn rod(case_control: &str, bulk: &str) -> String {
 const CARD_LINE: usize = 15;
 const STATEMENT_LINE: usize = 5;
 
+/// Reason of a card that acts only together with what this deck lacks.
+const UNUSED: &str = "acts on nothing in this deck 1";
+
 fn warns_of(t: &Tried, name: &str) -> bool {
     let of = |f: &&Finding| f.code == "card-not-solved" && f.message.contains(name);
     t.findings.iter().any(|f| of(&f))
@@ -79,7 +82,7 @@ fn no_name_of_bulk_data_is_silent() {
                 let elsewhere = tried(&rod(heat, &format!("{name},77\n")));
                 warns_of(&t, name) && refuses(&t, name, line) && elsewhere.solved.is_ok()
             }
-            Effect::ActsWith(_) => t.solved.is_ok(),
+            Effect::ActsWith(_) => t.idle.contains(UNUSED) && t.solved.is_ok(),
             // A card that is read, or whose fields are missed.
             Effect::Carried | Effect::Request => true,
             Effect::Executive | Effect::ExecutiveActs => true,
@@ -89,6 +92,19 @@ fn no_name_of_bulk_data_is_silent() {
         }
     }
     assert!(silent.is_empty(), "{silent:?}");
+}
+
+#[test]
+fn model_parameters_are_counted_unless_they_act() {
+    let idle = tried(&rod("", "MDLPRM,HDF5,1\nMDLPRM,QRSHEAR,1,SHRTOQ4,1\n"));
+    assert!(idle.idle.contains(UNUSED), "{}", idle.idle);
+    let acting = tried(&rod("", "MDLPRM,QRSHEAR,1,SHRTOQ4,1\n"));
+    assert!(!acting.idle.contains("nothing"), "{}", acting.idle);
+    assert!(
+        refuses(&acting, "MDLPRM QRSHEAR", CARD_LINE),
+        "{:?}",
+        acting.solved
+    );
 }
 
 #[test]

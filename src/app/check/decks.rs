@@ -5,7 +5,7 @@ use crate::app::fault::FaultList;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::fe::{check_shapes, contradictions, held_dependents};
-use crate::model::Model;
+use crate::model::{Model, UnsupportedCard};
 use nastran::bdf::vocabulary::{Effect, effect_of_card};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -92,11 +92,25 @@ fn sets(read: &DeckModel) -> BTreeSet<(Option<u32>, Option<u32>)> {
     }
 }
 
-/// Counts the cards without influence by reason.
-fn without_influence(cards: &BTreeMap<String, usize>) -> BTreeMap<&'static str, usize> {
+/// Counts the cards without influence by reason; `model` lists the cards that act and are not carried.
+fn without_influence(
+    cards: &BTreeMap<String, usize>,
+    model: &Model,
+) -> BTreeMap<&'static str, usize> {
     let mut counted = BTreeMap::new();
     for (name, n) in cards {
-        if let Some(Effect::None(reason)) = effect_of_card(name) {
+        let (reason, n) = match effect_of_card(name) {
+            Some(Effect::None(reason)) => (reason, *n),
+            Some(Effect::ActsWith(_)) => {
+                // `MDLPRM OFFDEF`: the name of the card comes first
+                let of_name = |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name);
+                let acting = model.unsupported_cards.iter().filter(of_name);
+                let acting: BTreeSet<_> = acting.map(|u| u.at).collect();
+                ("acts on nothing in this deck", n - acting.len().min(*n))
+            }
+            _ => continue,
+        };
+        if n > 0 {
             *counted.entry(reason).or_default() += n;
         }
     }
@@ -115,7 +129,7 @@ impl DeckEntry {
             grids: m.grids.iter().filter(|g| !g.is_scalar()).count(),
             // Where the mesh came from an OP2 there are no cards to count.
             elements: if cards.is_empty() { in_mesh } else { counted },
-            without_influence: without_influence(&cards),
+            without_influence: without_influence(&cards, &d.model),
             cards,
             mass: weight.mass,
             cg: weight.cg.into(),

@@ -143,9 +143,12 @@ impl SetReader {
             return Ok(());
         }
         match self.items.last_mut() {
-            Some(SetItem::Thru { last, except, .. }) if self.excepting && id <= *last => {
-                except.push(id);
-            }
+            Some(SetItem::Thru {
+                first,
+                last,
+                except,
+                ..
+            }) if self.excepting && (*first..=*last).contains(&id) => except.push(id),
             Some(SetItem::One(_)) | None if self.excepting => return Err("EXCEPT".to_owned()),
             Some(SetItem::One(_) | SetItem::Thru { .. }) | None => {
                 self.excepting = false;
@@ -157,7 +160,7 @@ impl SetReader {
         Ok(())
     }
 
-    /// Reads what is behind THRU; returns the words after it.
+    /// Reads the end and the step of a range; returns the words after them.
     fn range<'w, 's>(&mut self, thru: &str, words: &'w [&'s str]) -> Result<&'w [&'s str], String> {
         let wrong = || thru.to_owned();
         let (last, rest) = words.split_first().ok_or_else(wrong)?;
@@ -173,6 +176,31 @@ impl SetReader {
             return Ok(rest);
         }
         let range = match self.items.pop() {
+            // An id and THRU begin the next range: a list behind EXCEPT contains no THRU.
+            Some(SetItem::Thru {
+                first: start,
+                last: end,
+                by,
+                mut except,
+            }) if self.excepting => {
+                let first = except.pop().ok_or_else(wrong)?;
+                if first > last || except.iter().any(|e| *e >= first) {
+                    return Err(wrong());
+                }
+                self.excepting = false;
+                self.items.push(SetItem::Thru {
+                    first: start,
+                    last: end,
+                    by,
+                    except,
+                });
+                SetItem::Thru {
+                    first,
+                    last,
+                    by: step,
+                    except: Vec::new(),
+                }
+            }
             Some(SetItem::One(first)) if first <= last => SetItem::Thru {
                 first,
                 last,

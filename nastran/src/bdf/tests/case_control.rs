@@ -110,6 +110,60 @@ fn sets_list_ids_ranges_and_exceptions() {
 }
 
 #[test]
+fn an_exception_ends_outside_its_range_or_at_the_next_thru() {
+    let read = |list: &str| {
+        let deck = clean(&format!(
+            "SOL 101\nCEND\nSET 1 = {list}\nBEGIN BULK\nGRID,1\n"
+        ));
+        let set = &deck.case_control.global.sets[&1];
+        (0..400).filter(|&id| set.has(id)).collect::<Vec<u32>>()
+    };
+    let ids = |ranges: &[std::ops::RangeInclusive<u32>]| -> Vec<u32> {
+        ranges.iter().cloned().flatten().collect()
+    };
+    for (list, have) in [
+        ("1 THRU 10 EXCEPT 5, 8 THRU 12", ids(&[1..=4, 6..=12])),
+        ("1 THRU 10 EXCEPT 5,\n   8 THRU 12", ids(&[1..=4, 6..=12])),
+        (
+            "1 THRU 10 EXCEPT 5,7,\n 9 THRU 12 EXCEPT 11,40",
+            ids(&[1..=4, 6..=6, 8..=10, 12..=12, 40..=40]),
+        ),
+        (
+            "1 THRU 10 EXCEPT 5, 20 THRU 22",
+            ids(&[1..=4, 6..=10, 20..=22]),
+        ),
+        (
+            "5, 10 THRU 55 EXCEPT 15,16,77,100 THRU 300",
+            ids(&[5..=5, 10..=14, 17..=55, 77..=77, 100..=300]),
+        ),
+        // below the range is outside the range, too
+        ("10 THRU 12 EXCEPT 11, 3", ids(&[3..=3, 10..=10, 12..=12])),
+        (
+            "1 THRU 9 BY 2 EXCEPT 5, 8 THRU 12 BY 4",
+            vec![1, 3, 7, 8, 9, 12],
+        ),
+    ] {
+        assert_eq!(read(list), have, "{list}");
+    }
+}
+
+#[test]
+fn a_range_that_begins_before_an_excepted_id_is_a_fault() {
+    for list in [
+        "1 THRU 10 EXCEPT 5, 3 THRU 12",
+        "1 THRU 10 EXCEPT 5, 8 THRU 6",
+        "1 THRU 10 EXCEPT THRU 6",
+    ] {
+        let text = format!("SOL 101\nCEND\nSET 1 = {list}\nBEGIN BULK\nGRID,1\n");
+        let faults = shown(&bulk(&text));
+        assert!(
+            faults.len() == 1 && faults[0].contains("SET"),
+            "{list}: {faults:?}"
+        );
+    }
+}
+
+#[test]
 fn a_deck_without_subcases_has_one() {
     let deck = clean("SOL 101\nCEND\nLOAD=5\nBEGIN BULK\nGRID,1\n");
     let all = deck.case_control.effective_subcases();
