@@ -10,7 +10,8 @@ use super::named_results::{Absent, check_named};
 use super::outcome::{Answer, Outcome, StatedUnits};
 pub use super::solved::MODES;
 use super::solved::{
-    cases_of_job, faults_of, is_combination, relief_of_job, solve_kept, static_case, support_of_job,
+    cases_of_job, faults_of, is_combination, refuse_repeated_subcases, relief_of_job, solve_kept,
+    static_case, support_of_job,
 };
 use super::work::Work;
 use crate::fe::{
@@ -223,6 +224,7 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     let read = read_model(&mut work.inputs, &base, &given)?;
     work.findings.extend(read.findings.iter().cloned());
     Faults::check(read.faults.clone())?;
+    refuse_repeated_subcases(&read)?;
     refuse(&read.model, &[]).map_err(|e| faults_of(&e, &read))?;
     work.findings
         .extend(suport_without_inrel(&read.model, read.deck.sol));

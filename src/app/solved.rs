@@ -14,7 +14,7 @@ use crate::fe::{
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
 use nastran::bdf::{Subcase, SubcaseKind};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
 /// Elastic modes that are computed beside the strain where nothing else is asked for.
@@ -109,6 +109,7 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
 /// # Errors
 /// Grids and coordinate systems that the deck lacks.
 pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults> {
+    refuse_repeated_subcases(read)?;
     check_mpc_sets(read)?;
     let support = support_of_job(job, &read.model)?;
     let loads = super::strain::unit_loads(job, &read.model)?;
@@ -148,6 +149,27 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     );
     let remedy = "select the MPC set of the structure above the subcases alone";
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
+}
+
+/// Refuses a deck with two subcases of one number: loads, references and results select a subcase by its number.
+///
+/// # Errors
+/// One fault for each repeated number, at its later line.
+pub fn refuse_repeated_subcases(read: &DeckModel) -> Result<(), Faults> {
+    let mut lines = BTreeMap::new();
+    let mut faults = FaultList::new();
+    for s in &read.deck.case_control.subcases {
+        if let Some(first) = lines.insert(s.id, s.at.line) {
+            faults.push(Fault::at(
+                read.deck.path(s.at),
+                s.at.line,
+                format!("SUBCASE {}", s.id),
+                format!("line {first} begins a subcase with this number"),
+                "give each subcase its own number, in increasing order",
+            ));
+        }
+    }
+    Faults::check(faults)
 }
 
 /// Returns the label of a subcase, or its subtitle.
