@@ -103,7 +103,8 @@ fn without_influence(
             Some(Effect::None(reason)) => (reason, *n),
             Some(Effect::ActsWith(_)) => {
                 // `MDLPRM OFFDEF`: the name of the card comes first
-                let of_name = |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name);
+                let of_name =
+                    |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name.as_str());
                 let acting = model.unsupported_cards.iter().filter(of_name);
                 let acting: BTreeSet<_> = acting.map(|u| u.at).collect();
                 ("acts on nothing in this deck", n - acting.len().min(*n))
