@@ -1,11 +1,12 @@
 //! Entries of an OP2's geometry blocks that are not read: named with their count, and refused where the mesh is solved.
 
+use nastran::bdf::{MemoryLoader, read_deck};
 use nastran::op2::Op2;
 use std::path::{Path, PathBuf};
 use strainbridge::Context;
 use strainbridge::app::context::InMemory;
 use strainbridge::app::{check::check, solve::solve_deck};
-use strainbridge::fe::{FeError, LoadCase, Relief, SolveOptions, UnitLoad, refuse};
+use strainbridge::fe::{FeError, LoadCase, Relief, SolveOptions, UnitLoad, refuse, solve_cases};
 use strainbridge::finding::Finding;
 use strainbridge::model::Model;
 
@@ -190,5 +191,70 @@ fn unread_loads_act_where_their_set_is_selected() {
     match refuse(&model, &[case(5)]) {
         Err(FeError::Refused(list)) => assert_eq!(list[0].card, "FORCE2 5"),
         other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn springs_between_scalar_points_are_read_as_from_a_deck() {
+    // Grid 2 of the rod hangs on three springs in a row: CELAS2 to point 90, CELAS4 to point 91, CELAS3 to ground.
+    let k = [2e7_f32, 5e7, 8e7];
+    let first = vec![
+        701,
+        7,
+        74,
+        50,
+        real(k[0]),
+        2,
+        90,
+        1,
+        0,
+        real(0.0),
+        real(0.0),
+    ];
+    let held = vec![5481, 58, 12, 1, 23456, 0, 1, 2, -1];
+    let op2 = rod(&[
+        ("GEOM2", first),
+        ("GEOM2", vec![901, 9, 76, 51, real(k[1]), 90, 91]),
+        ("GEOM2", vec![801, 8, 75, 52, 9, 91, 0]),
+        ("GEOM2", vec![5551, 49, 105, 90, 91, 92]),
+        ("EPT", vec![302, 3, 46, 9, real(k[2]), real(0.0), real(0.0)]),
+        ("GEOM4", held),
+    ]);
+    let deck = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,7,1,2\nPROD,7,3,.01\n\
+         MAT1,3,1.+10,4.+9,.25,100.\nSUPORT,1,123456\nFORCE,1,2,,1000.,1.,0.,0.\nSPC1,1,23456,1,2\n\
+         CELAS2,50,2.+7,2,1,90\nCELAS4,51,5.+7,90,91\nCELAS3,52,9,91\nPELAS,9,8.+7\nSPOINT,90,91,92\nENDDATA\n";
+    let (cards, notes) = Op2::read(&op2).unwrap().cards();
+    assert!(notes.is_empty(), "{notes:?}");
+    let written = read_deck("rod.bdf", deck.into(), &mut MemoryLoader::default());
+    assert!(written.faults.is_empty(), "{:?}", written.faults);
+    let case = LoadCase {
+        subcase: 1,
+        label: String::new(),
+        loads: vec![UnitLoad::Set(1)],
+        spc: Some(1),
+        mpc: None,
+        relief: Relief::None,
+    };
+    let moved = [&cards, &written.cards].map(|cards| {
+        let (mut model, faults) = Model::from_cards(cards);
+        assert!(faults.is_empty(), "{faults:?}");
+        model.suports.clear();
+        let cases = std::slice::from_ref(&case);
+        let (solution, _) = solve_cases(&model, cases, &SolveOptions::default()).unwrap();
+        let ids = model.grids.iter().map(|g| g.id);
+        let u = solution.cases[0].displacement.iter().map(|u| u[0]);
+        ids.zip(u).collect::<Vec<_>>()
+    });
+    // A force that the rod passes on stretches each spring by F/k; grid 1 is free and moves with grid 2.
+    let stretch = k.map(|k| 1000.0 / f64::from(k));
+    let at_91 = stretch[2];
+    let at_90 = at_91 + stretch[1];
+    let at_2 = at_90 + stretch[0];
+    let expected = [(1, at_2), (2, at_2), (90, at_90), (91, at_91), (92, 0.0)];
+    for moved in &moved {
+        assert_eq!(moved.len(), expected.len());
+        for ((id, u), (of, closed)) in moved.iter().zip(expected) {
+            assert!(*id == of && (u - closed).abs() < 1e-12 * at_2, "{moved:?}");
+        }
     }
 }

@@ -46,6 +46,7 @@ fn elements(code: (i64, i64, i64), r: Record<'_>, g: &mut Geometry) -> bool {
     use SolidShape as So;
     match code {
         (4501, 45, 1) => g.fixed(r, "GRID", &[8], grids::grid, |c| &mut c.grids),
+        (5551, 49, 105) => g.fixed(r, "SPOINT", &[1], grids::spoint, |c| &mut c.spoints),
         (1701, 17, 6) => g.fixed(r, "CORD1C", &[6], grids::cord1, |c| &mut c.coords),
         (1801, 18, 5) => g.fixed(r, "CORD1R", &[6], grids::cord1, |c| &mut c.coords),
         (1901, 19, 7) => g.fixed(r, "CORD1S", &[6], grids::cord1, |c| &mut c.coords),
@@ -83,6 +84,8 @@ fn elements(code: (i64, i64, i64), r: Record<'_>, g: &mut Geometry) -> bool {
         (2608, 26, 60) => g.fixed(r, "CBUSH", &[14], lines::bush, |c| &mut c.bushes),
         (601, 6, 73) => g.fixed(r, "CELAS1", &[6], lines::celas1, |c| &mut c.springs),
         (701, 7, 74) => g.fixed(r, "CELAS2", &[8], lines::celas2, |c| &mut c.springs),
+        (801, 8, 75) => g.fixed(r, "CELAS3", &[4], lines::celas3, |c| &mut c.springs),
+        (901, 9, 76) => g.fixed(r, "CELAS4", &[4], lines::celas4, |c| &mut c.springs),
 
         (5508, 55, 217) => g.fixed(r, "CTETRA", &[12], solids::solid(So::Tetra), |c| {
             &mut c.solids

@@ -1,7 +1,7 @@
-//! GRID and coordinate systems.
+//! GRID, SPOINT and coordinate systems.
 
 use super::fields::Fields;
-use crate::cards::{Coord, CoordDefinition, CoordKind, Grid};
+use crate::cards::{Coord, CoordDefinition, CoordKind, Grid, IdList};
 
 /// GRID: `id cp x1 x2 x3 cd ps seid`, 8 words, or 11 where the coordinates are double.
 pub(super) fn grid(f: &mut Fields<'_>) -> Option<Grid> {
@@ -13,6 +13,11 @@ pub(super) fn grid(f: &mut Fields<'_>) -> Option<Grid> {
         ps: f.blank_or_dofs()?,
         seid: f.blank_or_id()?,
     })
+}
+
+/// SPOINT: `id`.
+pub(super) fn spoint(f: &mut Fields<'_>) -> Option<IdList> {
+    Some(IdList::Each(vec![f.id()?]))
 }
 
 /// CORD1R, CORD1C, CORD1S: `cid kind 1 g1 g2 g3`.

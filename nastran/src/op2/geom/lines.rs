@@ -153,6 +153,34 @@ pub(super) fn celas2(f: &mut Fields<'_>) -> Option<Spring> {
     })
 }
 
+/// CELAS3: `eid pid s1 s2`.
+pub(super) fn celas3(f: &mut Fields<'_>) -> Option<Spring> {
+    Some(Spring {
+        id: f.id()?,
+        stiffness: SpringStiffness::Property(Some(f.id()?)),
+        ends: points(f)?,
+    })
+}
+
+/// CELAS4: `eid k s1 s2`.
+pub(super) fn celas4(f: &mut Fields<'_>) -> Option<Spring> {
+    Some(Spring {
+        id: f.id()?,
+        stiffness: SpringStiffness::Direct {
+            k: f.real()?,
+            damping: 0.0,
+            stress_coefficient: 0.0,
+        },
+        ends: points(f)?,
+    })
+}
+
+/// Reads two scalar points; 0 is ground.
+pub(super) fn points(f: &mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]> {
+    let points = [f.blank_or_id()?, f.blank_or_id()?];
+    Some(points.map(|p| p.map(|p| (p, 0))))
+}
+
 /// Reads two grids, then a component of each.
 pub(super) fn ends(f: &mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]> {
     let grids = [f.blank_or_id()?, f.blank_or_id()?];

@@ -1,7 +1,7 @@
 //! CONM1, CONM2, CMASS1 to CMASS4, PMASS.
 
 use super::fields::Fields;
-use super::lines::ends;
+use super::lines::{ends, points};
 use crate::cards::{Conm1, Conm2, Pmass, ScalarMass, ScalarMassValue};
 
 /// CONM1: `eid g cid m1..m21`.
@@ -65,12 +65,6 @@ fn property(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
 
 fn value(f: &mut Fields<'_>) -> Option<ScalarMassValue> {
     Some(ScalarMassValue::Direct(f.real()?))
-}
-
-/// Reads two scalar points; 0 is ground.
-fn points(f: &mut Fields<'_>) -> Option<[Option<(u32, u8)>; 2]> {
-    let points = [f.blank_or_id()?, f.blank_or_id()?];
-    Some(points.map(|p| p.map(|p| (p, 0))))
 }
 
 /// PMASS: `pid m`.
