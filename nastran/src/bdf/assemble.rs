@@ -155,12 +155,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 
     fn continuation(&mut self, cut: &Cut<'a>, line: &Line) {
-        let (wanted, have) = (bare(cut.head), bare(self.label));
-        let named = matches!(self.label.first(), Some(b'+' | b'*'));
+        let wanted = bare(cut.head);
         let asked = wanted.is_empty() || asks(self.label, wanted);
-        let elsewhere = !asked && self.claimed.contains(wanted);
         match self.open {
-            Open::Card | Open::Replica if asked || (!elsewhere && (have.is_empty() || !named)) => {
+            Open::Card | Open::Replica if asked || self.takes(wanted) => {
                 if !asked {
                     self.part.loose.push(self.span(line));
                 }
@@ -169,6 +167,12 @@ impl<'a, 'b> Assembler<'a, 'b> {
             Open::Orphan if asked => self.extend_orphan(cut, line),
             _ => self.orphan(cut, line),
         }
+    }
+
+    /// Whether the open card takes a continuation of another name: neither it nor the name asks for others.
+    fn takes(&self, wanted: &[u8]) -> bool {
+        let is_free = !matches!(self.label, [b'+' | b'*', ..]) || bare(self.label).is_empty();
+        is_free && !self.claimed.contains(wanted)
     }
 
     /// Appends a continuation to the card that is open.

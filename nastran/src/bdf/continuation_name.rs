@@ -33,7 +33,11 @@ pub(super) fn asks(label: &[u8], wanted: &[u8]) -> bool {
 }
 
 /// Returns the name of the continuation that a finished card still asks for: one after `+` or `*`, or any that is claimed.
+#[inline]
 pub(super) fn claim<'a>(label: &'a [u8], claimed: &Claimed) -> Option<&'a [u8]> {
+    if let [] | [b'+' | b'*'] = label {
+        return None;
+    }
     let name = bare(label);
     if name.is_empty() || name.len() < label.len() {
         return Some(name).filter(|n| !n.is_empty());

@@ -17,7 +17,7 @@ pub(super) fn check_names(deck: &mut Deck) {
     note_parameters(deck);
     let mut seen = BTreeSet::new();
     for card in &deck.others {
-        if effect_of_card(&card.name).is_some() || !seen.insert(card.name.as_str()) {
+        if !seen.insert(card.name.as_str()) || effect_of_card(&card.name).is_some() {
             continue;
         }
         let what = Wrong::UnknownName {

@@ -3,7 +3,7 @@
 use super::effect::{CaseWord, Effect};
 use super::spelling;
 use super::table::{Entry, read_table};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::OnceLock;
 
 /// Returns the effect of a bulk data entry; `None` for a name that no dialect has.
@@ -21,7 +21,7 @@ pub fn case_word(word: &str) -> Option<CaseWord> {
         misspelt,
     };
     let words = words();
-    if let Some(e) = words.iter().find(|e| e.written == word) {
+    if let Some(e) = word_in_full(word) {
         return Some(of(e, false));
     }
     let head = word.get(..ABBREVIATION)?;
@@ -111,4 +111,11 @@ fn cards() -> &'static BTreeMap<&'static str, Effect> {
 fn words() -> &'static [Entry] {
     static WORDS: OnceLock<Vec<Entry>> = OnceLock::new();
     WORDS.get_or_init(|| read_table(include_str!("case_control.txt")))
+}
+
+/// Returns the first entry that is written like this.
+fn word_in_full(word: &str) -> Option<&'static Entry> {
+    static BY_WORD: OnceLock<HashMap<&'static str, &'static Entry>> = OnceLock::new();
+    let by_word = BY_WORD.get_or_init(|| words().iter().rev().map(|e| (e.written, e)).collect());
+    by_word.get(word).copied()
 }

@@ -6,13 +6,26 @@ pub(super) fn nearest(
     word: &str,
     known: impl Iterator<Item = &'static str>,
 ) -> Option<&'static str> {
-    let near = known.filter(|k| distance(k, word) == 1);
+    let near = known.filter(|k| differs_by_one(k, word));
     near.min_by_key(|k| (std::cmp::Reverse(common(k, word)), k.len()))
 }
 
 /// Returns the number of letters that two words share at their beginning.
 fn common(a: &str, b: &str) -> usize {
     a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count()
+}
+
+/// Whether the distance of two words is 1.
+fn differs_by_one(a: &str, b: &str) -> bool {
+    let same = common(a, b);
+    let (a, b) = (a.as_bytes().get(same..), b.as_bytes().get(same..));
+    let (a, b) = (a.unwrap_or_default(), b.unwrap_or_default());
+    match (a, b) {
+        ([_, x @ ..], [_, y @ ..]) if x == b || a == y || x == y => true,
+        ([p, q, x @ ..], [r, s, y @ ..]) => (p, q, x) == (s, r, y),
+        ([], [_]) | ([_], []) => true,
+        _ => false,
+    }
 }
 
 /// Number of letters that are to be added, left out, replaced or exchanged with their neighbour to make one word of the other.
@@ -41,4 +54,27 @@ pub(super) fn distance(a: &str, b: &str) -> usize {
         rows.push(row);
     }
     rows.last().and_then(|r| r.last()).copied().unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_that_differ_by_one_are_those_at_distance_one() {
+        // every word of up to four letters of an alphabet of three
+        let mut words = vec![String::new()];
+        for first in 0.. {
+            let Some(word) = words.get(first).filter(|w| w.len() < 4).cloned() else {
+                break;
+            };
+            words.extend(["A", "B", "C"].map(|letter| format!("{word}{letter}")));
+        }
+        assert_eq!(words.len(), 121);
+        for a in &words {
+            for b in &words {
+                assert_eq!(differs_by_one(a, b), distance(a, b) == 1, "{a} {b}");
+            }
+        }
+    }
 }
