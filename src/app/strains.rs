@@ -5,6 +5,7 @@ use super::deck::{looks_like_op2, read_model};
 use super::fault::{Fault, FaultList, Faults};
 use super::files::FileBytes;
 use super::outcome::{Answer, Outcome, StatedUnits};
+use super::solved::find_repeated_subcases;
 use super::work::Work;
 use crate::fe::Solution;
 use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
@@ -49,6 +50,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     let deck = work.stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given))?;
     Faults::check(deck.incomplete())?;
     work.findings.extend(deck.findings.iter().cloned());
+    work.findings.extend(find_repeated_subcases(&deck));
     // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
     if deck.model.shells.is_empty() && deck.model.beams.is_empty() {
         Faults::check(deck.faults.clone())?;

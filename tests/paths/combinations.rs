@@ -1,22 +1,27 @@
 //! SUBCOM, SYMCOM and REPCASE against closed forms of rods.
 
 use std::path::Path;
+use strainbridge::app::check::check;
 use strainbridge::app::context::InMemory;
 use strainbridge::app::outcome::Outcome;
 use strainbridge::app::solve::{SolvedCases, solve_deck};
 use strainbridge::fe::{Corners, SolveOptions};
-use strainbridge::{Context, Faults};
+use strainbridge::finding::Finding;
+use strainbridge::{Context, Faults, strains};
 
 /// Axial stiffness of the bars.
 const EA: f64 = 1e8;
 /// Rounding of a solution of a few unknowns.
 const ROUNDING: f64 = 1e-12;
 
-fn solved(case_control: &str, bulk: &str) -> Result<Outcome<SolvedCases>, Faults> {
-    let deck = format!(
+fn deck(case_control: &str, bulk: &str) -> String {
+    format!(
         "SOL 101\nCEND\n{case_control}BEGIN BULK\nPBAR,1,1,.01,1.-5,1.-5,1.-5\nMAT1,1,1.+10,,.3\n{bulk}ENDDATA\n"
-    );
-    let files = InMemory::default().with("bars.bdf", deck);
+    )
+}
+
+fn solved(case_control: &str, bulk: &str) -> Result<Outcome<SolvedCases>, Faults> {
+    let files = InMemory::default().with("bars.bdf", deck(case_control, bulk));
     let options = SolveOptions {
         corners: Corners::Compute,
         ..SolveOptions::default()
@@ -127,4 +132,26 @@ fn a_repeated_subcase_number_is_refused_at_its_line() {
         );
     }
     assert!(solved("SPC = 1\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nLOAD = 2\n", BAR).is_ok());
+}
+
+#[test]
+fn check_and_strains_warn_of_a_repeated_subcase_number() {
+    let results = "$TITLE   =\n$SUBTITLE=\n$LABEL   =\n$DISPLACEMENTS\n$REAL OUTPUT\n$SUBCASE ID =           1\n\
+         \x20        1       G      0.000000E+00      0.000000E+00      0.000000E+00\n\
+         -CONT-                  0.000000E+00      0.000000E+00      0.000000E+00\n";
+    for (second, times) in [("SUBCASE 2", None), ("SUBCASE 1", Some(2.0))] {
+        let cases = format!("SPC = 1\nSUBCASE 1\nLOAD = 1\n{second}\nLOAD = 2\n");
+        let files = InMemory::default()
+            .with("bars.bdf", deck(&cases, BAR))
+            .with("bars.pch", results);
+        let cx = Context::new(&files);
+        let checked = check(&["bars.bdf".into()], &cx).unwrap();
+        let read = strains(Path::new("bars.bdf"), &["bars.pch".into()], &cx).unwrap();
+        for findings in [&checked.findings.0, &read.findings.0] {
+            let found = findings.iter().find(|f| f.code == "subcase-ambiguous");
+            assert_eq!(found.and_then(|f| f.measured), times, "{findings:?}");
+            let named = |f: &Finding| f.message.contains("`bars.bdf`:6");
+            assert!(found.is_none_or(named), "{found:?}");
+        }
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::app::deck::{DeckModel, model_of_deck};
 use crate::app::fault::FaultList;
+use crate::app::solved::find_repeated_subcases;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::fe::{check_shapes, contradictions, held_dependents};
@@ -51,6 +52,7 @@ pub(super) fn look(
 ) -> (DeckEntry, FaultList) {
     let read = model_of_deck(&mut work.inputs, base, given, bytes);
     work.findings.extend(read.findings.iter().cloned());
+    work.findings.extend(find_repeated_subcases(&read));
     work.findings.extend(check_shapes(&read.model));
     let held = supports(&read);
     work.findings.extend(
