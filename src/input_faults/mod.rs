@@ -1,5 +1,5 @@
-//! Wrong inputs: readings, recorded loads and vehicle records with another sign, in another unit, or under each other's name. They are searched for before any
-//! effect of a model is.
+//! Wrong inputs: readings, recorded loads and vehicle records with another sign, in another unit, or under each other's name. They are searched for
+//! before any effect of a model is.
 
 mod motion;
 mod recorded_loads;

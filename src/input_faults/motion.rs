@@ -7,6 +7,14 @@ use crate::finding::{Finding, Severity, few};
 use crate::units::{Quantity, STANDARD_GRAVITY_M_S2, find_unit, number};
 use rayon::prelude::*;
 
+mod gravity;
+mod scale;
+#[cfg(test)]
+mod tests;
+
+pub use gravity::{channels_by_gravity, faults_by_gravity, findings_by_gravity};
+pub use scale::{MotionScale, finding_of_scale};
+
 /// Thresholds of the search.
 struct MotionRules {
     /// Relative distance between the mean of an accelerometer and gravity up to which it shows gravity: offsets of sensors are up to a tenth.
@@ -250,85 +258,6 @@ fn other_units(c: &MotionChannel) -> Vec<(&'static str, f64)> {
         .collect()
 }
 
-fn shows(mean: f64, gravity: f64) -> bool {
-    (mean / gravity - 1.0).abs() < RULES.gravity
-}
-
-/// Returns the faults that the means of accelerometers show: minus gravity, or gravity in another unit.
-///
-/// A unit counts only if every accelerometer shows gravity in it or in the unit that it is read in: the offset of a sensor that does not measure
-/// gravity may have that size as well.
-pub fn faults_by_gravity(channels: &[MotionChannel], gravity: f64) -> Vec<MotionFault> {
-    let mut signs = Vec::new();
-    let mut units: Vec<MotionFault> = Vec::new();
-    let accelerations = of_kind(channels, ChannelKind::Acceleration);
-    for &i in &accelerations {
-        let mean = channels[i].mean;
-        if shows(mean.abs(), gravity) {
-            if mean < 0.0 {
-                signs.push(i);
-            }
-            continue;
-        }
-        let agreed = |factor: f64| {
-            let mut all = accelerations.iter().map(|a| channels[*a].mean.abs());
-            all.all(|m| shows(m, gravity) || shows(m * factor, gravity))
-        };
-        let unit = other_units(&channels[i])
-            .into_iter()
-            .find(|(_, f)| shows(mean.abs() * f, gravity) && agreed(*f));
-        let Some((name, factor)) = unit else { continue };
-        if mean < 0.0 {
-            signs.push(i);
-        }
-        let same = units.iter_mut().find_map(|u| match u {
-            MotionFault::Unit(list, n, f) if *n == name && *f == factor => Some(list),
-            _ => None,
-        });
-        match same {
-            Some(list) => list.push(i),
-            None => units.push(MotionFault::Unit(vec![i], name, factor)),
-        }
-    }
-    let sign = (!signs.is_empty()).then_some(MotionFault::Sign(signs));
-    sign.into_iter().chain(units).collect()
-}
-
-/// Returns the names of the channels of [`faults_by_gravity`].
-pub fn channels_by_gravity<'a>(channels: &[MotionChannel<'a>], gravity: f64) -> Vec<&'a str> {
-    let faults = faults_by_gravity(channels, gravity);
-    let each = faults.iter().flat_map(|f| names(f.channels(), channels));
-    each.collect()
-}
-
-/// Returns the findings on [`faults_by_gravity`] in a record of `file`, errors.
-pub fn findings_by_gravity(channels: &[MotionChannel], gravity: f64, file: &str) -> Vec<Finding> {
-    let faults = faults_by_gravity(channels, gravity);
-    let each = faults.iter().map(|fault| {
-        let own = fault.channels();
-        let means = own.iter().map(|c| {
-            let c = &channels[*c];
-            format!("{} {}", c.name, number(c.mean))
-        });
-        let first = own.first().map_or(f64::NAN, |c| channels[*c].mean);
-        let message = format!(
-            "{} in `{file}`: the mean shows gravity, which is {} in the unit of the job (means: {})",
-            fault.describe(channels),
-            number(gravity),
-            few(&means.collect::<Vec<_>>())
-        );
-        Finding::new(
-            Severity::Error,
-            fault.code(),
-            fault.subject(channels),
-            message,
-            fault.remedy(channels),
-        )
-        .with_numbers(first, gravity)
-    });
-    each.collect()
-}
-
 /// Returns the fault that explains the motion, with the faults that fit as well; `None` where the vehicle explains the motion as recorded, or
 /// no single fault explains it. Faults that gravity shows are corrected first.
 pub fn fault_of_motion(record: &MotionRecord) -> Option<ExplainedFault> {
@@ -428,6 +357,10 @@ fn units_of_one(channels: &[MotionChannel]) -> Vec<MotionFault> {
     out
 }
 
+fn shows(mean: f64, gravity: f64) -> bool {
+    (mean / gravity - 1.0).abs() < RULES.gravity
+}
+
 /// Returns how many means agree with gravity and with wheels that press on the road, less those that contradict.
 fn agreement(record: &MotionRecord, sources: &[ChannelSource]) -> i32 {
     let each = record.channels.iter().zip(sources).map(|(c, s)| {
@@ -472,139 +405,5 @@ pub fn finding_of_motion(record: &MotionRecord) -> Option<Finding> {
     Some(
         Finding::new(Severity::Error, code, subject, message, remedy)
             .with_numbers(found.before, RULES.unexplained),
-    )
-}
-
-/// Masses that the equations give, and what else fixes the scale of accelerations and forces.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MotionScale {
-    /// Identified mass over mean wheel force by gravity, where wheels carry all of it.
-    pub closure: Option<f64>,
-    /// Identified mass over the number of wheels, kg, of a vehicle on wheels.
-    pub mass_kg: Option<f64>,
-    /// Whether a parameter is stated, which the record would contradict.
-    pub is_stated: bool,
-}
-
-/// Returns the finding on the unit of all accelerations or all wheel forces, which scales all parameters alike: an error where the masses
-/// refute it, a warning where the file states no unit of acceleration and nothing confirms the one of the job.
-pub fn finding_of_scale(
-    channels: &[MotionChannel],
-    gravity: f64,
-    scale: MotionScale,
-) -> Option<Finding> {
-    let accelerations = of_kind(channels, ChannelKind::Acceleration);
-    let first = &channels[*accelerations.first()?];
-    let as_if = |kind: ChannelKind, unit: &str, read: &str| {
-        format!(
-            "all {} may be in {unit} and are read as {read}",
-            kind.plural()
-        )
-    };
-    let finding = |severity, message: String, remedy: String, number: f64, limit: f64| {
-        let finding = Finding::new(severity, "input-unit", "all", message, remedy);
-        Some(finding.with_numbers(number, limit))
-    };
-    let state = |unit: &str| {
-        format!(
-            "State the unit beside the name of each channel: `{} [{unit}]`.",
-            first.name
-        )
-    };
-    if let Some(ratio) = scale.closure
-        && let Some((unit, factor)) = other_units(first)
-            .into_iter()
-            .find(|(_, f)| shows(ratio, *f))
-    {
-        let message = format!(
-            "the identified mass is {} times the mean wheel force over gravity: {}",
-            number(ratio),
-            as_if(ChannelKind::Acceleration, unit, &first.unit)
-        );
-        return finding(Severity::Error, message, state(unit), ratio, factor);
-    }
-    let [least, most] = RULES.mass_kg;
-    let possible = |kg: f64| (least..=most).contains(&kg);
-    if let Some(kg) = scale.mass_kg.filter(|kg| !possible(*kg)) {
-        // Static forces that agree with the mass leave the unit of forces alone in question.
-        let closed = scale.closure.is_some_and(|r| shows(r, 1.0));
-        let force = of_kind(channels, ChannelKind::Force);
-        let force = force.first().map(|c| &channels[*c]);
-        let mut list: Vec<(String, bool)> = Vec::new();
-        if let Some(force) = force {
-            let units = other_units(force)
-                .into_iter()
-                .filter(|(_, f)| possible(kg * f));
-            list.extend(units.map(|(unit, _)| {
-                (
-                    as_if(ChannelKind::Force, unit, &force.unit),
-                    force.is_unit_stated,
-                )
-            }));
-        }
-        if !closed {
-            let units = other_units(first)
-                .into_iter()
-                .filter(|(_, f)| possible(kg / f));
-            list.extend(units.map(|(unit, _)| {
-                (
-                    as_if(ChannelKind::Acceleration, unit, &first.unit),
-                    first.is_unit_stated,
-                )
-            }));
-        }
-        if !list.is_empty() {
-            let words: Vec<&str> = list.iter().map(|l| l.0.as_str()).collect();
-            let severity = match list.iter().all(|l| l.1) {
-                true => Severity::Warning,
-                false => Severity::Error,
-            };
-            let message = format!(
-                "the identified mass is {} kg per wheel, and that of a vehicle is {} to {} kg: {}",
-                number(kg),
-                number(least),
-                number(most),
-                words.join(", or ")
-            );
-            let remedy = "State the units of accelerations and forces beside the names of the channels: `a_body [g]`, `f_wheel [kN]`.";
-            let limit = if kg < least { least } else { most };
-            return finding(severity, message, remedy.to_owned(), kg, limit);
-        }
-    }
-    let open: Vec<&str> = accelerations
-        .iter()
-        .map(|c| &channels[*c])
-        .filter(|c| !c.is_unit_stated)
-        .map(|c| c.name)
-        .collect();
-    let is_confirmed = scale.is_stated
-        || scale.closure.is_some_and(|r| shows(r, 1.0))
-        || accelerations
-            .iter()
-            .any(|c| shows(channels[*c].mean, gravity));
-    if open.is_empty() || is_confirmed {
-        return None;
-    }
-    let in_g = other_units(first)
-        .into_iter()
-        .find(|u| u.0 == "g")
-        .map(|(_, factor)| {
-            format!(
-                " In g, masses and stiffness would be {} times smaller.",
-                number(factor)
-            )
-        });
-    let message = format!(
-        "the file states no unit of {}, and nothing in the record confirms one: {} is assumed.{}",
-        few(&open),
-        first.unit,
-        in_g.unwrap_or_default()
-    );
-    finding(
-        Severity::Warning,
-        message,
-        state(&first.unit),
-        open.len() as f64,
-        0.0,
     )
 }

@@ -107,8 +107,8 @@ pub(super) fn wrong_input(
     })
 }
 
-/// Returns the share of the motion that the vehicle leaves unexplained: root mean square over its equations, weight included, of the residual over the measured
-/// force, or over the largest term where no force is measured. Parameters keep their limits. `None` without equations.
+/// Returns the share of the motion that the vehicle leaves unexplained: root mean square over its equations, weight included, of the residual over
+/// the measured force, or over the largest term where no force is measured. Parameters keep their limits. `None` without equations.
 ///
 /// # Errors
 /// As [`super::identify::identify`].

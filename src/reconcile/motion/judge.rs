@@ -40,7 +40,8 @@ impl Gaps {
     }
 
     /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges;
-    /// and the gap on what judges is within a few limits in either case. `excess` is the squared size of what named effects took, over that of what was measured.
+    /// and the gap on what judges is within a few limits in either case. `excess` is the squared size of what named effects took, over that of what
+    /// was measured.
     fn at_floor(&self, rules: &MotionRules, excess: f64) -> bool {
         let within = |g: &RecordGap, limits: f64| {
             g.gap.powi(2) <= (limits * g.floor.limit(rules)).powi(2) + rules.form * excess

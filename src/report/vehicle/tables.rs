@@ -116,7 +116,8 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
 }
 
 /// `chassis_forces.csv`: time, then of each sprung body the force by mass and by springs, of each spring its force on the chassis, and of a
-/// leaf spring those at hanger and shackle (vertical) and along the frame; in the band, about their means, upwards. Then the ends of the 95 % interval of the force on each body by mass, and of each spring.
+/// leaf spring those at hanger and shackle (vertical) and along the frame; in the band, about their means, upwards. Then the ends of the 95 %
+/// interval of the force on each body by mass, and of each spring.
 pub fn write_chassis_forces(
     forces: &[ChassisForce],
     leaves: &BTreeMap<String, LeafSeat>,
