@@ -123,8 +123,12 @@ impl Identification {
     pub fn verdict(&self) -> Option<Finding> {
         let mut parameters = self.parameters.iter();
         let told = parameters.any(|p| p.identifiable && !p.known);
-        // Without links, the forces of stated masses are what was asked.
-        (!told && !self.vehicle.links.is_empty()).then(|| {
+        // A wrong input is the reason. Without links, the forces of stated masses are what was asked.
+        let is_explained = self.vehicle.links.is_empty()
+            || self
+                .wrong_input()
+                .is_some_and(|f| f.severity == Severity::Error);
+        (!told && !is_explained).then(|| {
             let message = "No parameter can be told from this record.";
             Finding::new(
                 Severity::Error,

@@ -132,7 +132,8 @@ fn units_of_channels_that_are_not_used_do_not_matter_and_those_of_used_ones_do()
     let head = "t [s],a_body [m/s2],a_wheel [m/s2],f_wheel [N]";
     let text = table(head, &times, &si, [",", "."]);
     let with = |name: &str| -> String {
-        let rows = text.lines().skip(1).map(|l| format!("{l},21.5\n"));
+        let rows = text.lines().skip(1).enumerate();
+        let rows = rows.map(|(i, l)| format!("{l},{:.4}\n", 21.5 + (0.01 * i as f64).sin()));
         format!("{head},{name}\n{}", rows.collect::<String>())
     };
     let (code, _, said) = identify(&dir, "other.csv", with("temperature [degC]").as_bytes());
