@@ -259,6 +259,52 @@ fn a_frame_brings_its_thresholds() {
     assert_eq!(plain.gap.before, strict.gap.before);
 }
 
+/// A second-order band-pass between two frequencies, Hz, about the first sample (bilinear transform with prewarping).
+fn band_passed(x: &mut [f64], [low, high]: [f64; 2], rate_hz: f64) {
+    let warped = |f: f64| (std::f64::consts::PI * f / rate_hz).tan();
+    let (w, bandwidth) = (
+        (warped(low) * warped(high)).sqrt(),
+        warped(high) - warped(low),
+    );
+    let norm = 1.0 + bandwidth + w * w;
+    let [b, a1, a2] = [bandwidth, 2.0 * (w * w - 1.0), 1.0 - bandwidth + w * w].map(|c| c / norm);
+    let level = x[0];
+    let (mut xs, mut ys) = ([0.0; 2], [0.0; 2]);
+    for v in x.iter_mut() {
+        let u = *v - level;
+        let y = b * (u - xs[1]) - a1 * ys[0] - a2 * ys[1];
+        (xs, ys) = ([u, xs[0]], [y, ys[0]]);
+        *v = y;
+    }
+}
+
+/// The thesis filters its channels apart (table B.1: wheel 9 to 13 Hz, body 1 to 12 Hz): no effect of the library makes such channels agree.
+#[test]
+fn channels_of_different_bands_are_unknown_and_no_cause_is_named_while_the_signal_is_left() {
+    let mut case = hide(Layout::Front, "none", 0, Background::Clean, 7);
+    let rate_hz = case.rate_hz;
+    for (name, x) in case.data.iter_mut().chain(&mut case.hold_out) {
+        match name.as_str() {
+            "a_wheel" => band_passed(x, [9.0, 13.0], rate_hz),
+            "a_body" => band_passed(x, [1.0, 12.0], rate_hz),
+            _ => {}
+        }
+    }
+    let outcome = examine(&frame_of(&case), &[]).unwrap();
+    let gap = outcome.gap;
+    assert_eq!(
+        outcome.verdict,
+        Verdict::Unknown,
+        "{gap:?} {}",
+        outcome.remains
+    );
+    assert!(
+        outcome.effects.is_empty() && gap.before > 10.0 * gap.floor,
+        "{gap:?}"
+    );
+    assert!(!outcome.best_attempt.is_empty());
+}
+
 #[test]
 fn without_a_second_record_gaps_are_cross_validated_and_called_that() {
     use strainbridge::reconcile::motion::gap::Proof;

@@ -99,10 +99,10 @@ pub struct ChassisForceOf {
     pub body: String,
     /// By its inertia.
     pub rms_by_mass: f64,
-    /// By its springs and dampers.
-    pub rms_by_springs: f64,
-    /// What either may be wrong by.
-    pub rms_difference: f64,
+    /// By its springs and dampers, where they were identified.
+    pub rms_by_springs: Option<f64>,
+    /// Error of either, where both were identified.
+    pub rms_difference: Option<f64>,
     /// Unit in words.
     pub unit: String,
 }
@@ -167,7 +167,7 @@ pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> 
         }
         _ => None,
     };
-    let forces = chassis_forces(&found, &fitted.motion);
+    let forces = chassis_forces(task, &found, &fitted.motion);
     let answer = Identified {
         model: found.vehicle.name.clone(),
         band_hz: [task.band.low_hz, task.band.high_hz],
@@ -193,7 +193,7 @@ fn force_row(f: &ChassisForce, unit: &str) -> ChassisForceOf {
     ChassisForceOf {
         body: f.body.clone(),
         rms_by_mass: rms(&f.by_mass),
-        rms_by_springs: rms(&f.by_springs),
+        rms_by_springs: f.difference().map(|_| rms(&f.by_springs)),
         rms_difference: f.difference(),
         unit: unit.to_owned(),
     }

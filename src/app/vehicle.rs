@@ -1,24 +1,26 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
 use super::fault::{Fault, FaultList, Faults};
+use super::job::strain::record_fault;
 use super::job::suggest::closest;
 use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use super::words::short;
 use super::work::Work;
 use crate::finding::{Finding, Severity};
+use crate::input_faults::{ChannelKind, channels_by_gravity, findings_by_gravity};
 use crate::recovery::clock;
 use crate::series::Channels;
-use crate::series::even_record::open_even;
 use crate::series::quality::{Kind, check_channels};
-use crate::series::record::{Options, read_channels};
+use crate::series::record::{Options, open_record, read_channels};
 use crate::series::spectrum::Band;
 use crate::units::{Quantity, find_unit};
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::identify::IdentifyTask;
-use crate::vehicle::layout::{MassStep, Vehicle};
+use crate::vehicle::layout::{MassStep, Measures, Vehicle};
 use crate::vehicle::motion::VehicleError;
 use crate::vehicle::preset::{PresetError, PresetRequest, vehicle};
 use crate::vehicle::term::UnitNames;
+use crate::vehicle::wrong_inputs::motion_channels;
 use std::sync::Arc;
 
 /// Band where the job names none, Hz: rigid-body and axle motion of a truck.
@@ -40,27 +42,6 @@ pub struct VehicleRecords {
 /// Every fault of section, files and model.
 pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults> {
     let section = section_of(job)?;
-    let data = read_record(work, job, section, &section.data)?;
-    let hold_out = section
-        .hold_out
-        .as_ref()
-        .map(|h| read_record(work, job, section, h))
-        .transpose()?;
-    let mut band = section.band_hz.unwrap_or(DEFAULT_BAND_HZ);
-    if section.band_hz.is_none() {
-        band[1] = band[1].min(0.4 * data.rate_hz);
-        let message = format!(
-            "The job names no band; {} to {} Hz is used for every channel.",
-            band[0], band[1]
-        );
-        work.findings.push(Finding::new(
-            Severity::Info,
-            "default-band",
-            "vehicle.band_hz",
-            message,
-            "State `band_hz` in [vehicle].",
-        ));
-    }
     let request = preset_request(section);
     let mut model = vehicle(&request).map_err(|e| Faults::from(preset_fault(job, section, &e)))?;
     if let Some(link) = section
@@ -99,28 +80,55 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
             gravity: if change.weight { gravity } else { 0.0 },
         });
     }
+    let data = read_record(work, job, section, &model, &section.data)?;
+    let hold_out = section
+        .hold_out
+        .as_ref()
+        .map(|h| read_record(work, job, section, &model, h))
+        .transpose()?;
+    let mut band = section.band_hz.unwrap_or(DEFAULT_BAND_HZ);
+    if section.band_hz.is_none() {
+        band[1] = band[1].min(0.4 * data.rate_hz);
+        let message = format!(
+            "The job names no band; {} to {} Hz is used for every channel.",
+            band[0], band[1]
+        );
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "default-band",
+            "vehicle.band_hz",
+            message,
+            "State `band_hz` in [vehicle].",
+        ));
+    }
     for (named, record) in [
         (Some(&section.data), Some(&data)),
         (section.hold_out.as_ref(), hold_out.as_ref()),
     ] {
         if let (Some(named), Some(record)) = (named, record) {
-            let used = |name: &str| {
-                if model.wheels.iter().any(|w| w.channel == name) {
-                    Kind::Force
-                } else if model.sensors.iter().any(|s| s.channel == name) || name.starts_with("a_")
-                {
-                    Kind::Acceleration
-                } else {
-                    Kind::Other
-                }
+            let used = |name: &str| match kind_in(&model, name) {
+                Some(Quantity::Force) => Kind::Force,
+                Some(_) => Kind::Acceleration,
+                None if name.starts_with("a_") => Kind::Acceleration,
+                None => Kind::Other,
             };
             possible(&named.given, record, |name| used(name) != Kind::Other)?;
             work.findings.extend(misspelt(&named.given, record, &model));
-            let findings = check_channels(record, gravity, used);
+            let unit_of = |kind| match kind {
+                ChannelKind::Acceleration => job.units.unit(Quantity::Acceleration).name.to_owned(),
+                ChannelKind::Force => job.units.unit(Quantity::Force).name.to_owned(),
+            };
+            let channels = motion_channels(&model, record, unit_of);
+            let wrong = channels_by_gravity(&channels, gravity);
+            let mut findings = check_channels(record, gravity, used);
+            // A mean that shows another sign or unit is no offset.
+            findings.retain(|f| f.code != "offset" || !wrong.contains(&f.subject.as_str()));
             work.findings.extend(findings.into_iter().map(|f| Finding {
                 subject: format!("{}: {}", named.given, f.subject),
                 ..f
             }));
+            work.findings
+                .extend(findings_by_gravity(&channels, gravity, &named.given));
         }
     }
     let task = IdentifyTask {
@@ -266,74 +274,83 @@ fn preset_fault(job: &Job, section: &VehicleJob, e: &PresetError) -> Fault {
     Fault::at(&*job.file, section.line, key, wrong, remedy)
 }
 
+/// Reads a record of any format that a record of strain may have, in the job's units.
 fn read_record(
     work: &mut Work,
     job: &Job,
     section: &VehicleJob,
+    model: &Vehicle,
     named: &NamedFile,
 ) -> Result<Channels, Faults> {
     let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
+    let used = |name: &str| kind_in(model, name);
+    let sensors = model.sensors.iter().map(|s| s.channel.clone());
     let options = Options {
         declared_hz: section.sample_rate,
+        wanted: sensors
+            .chain(model.wheels.iter().map(|w| w.channel.clone()))
+            .collect(),
         ..Options::default()
     };
-    let read = open_even(Arc::new(bytes), &options).and_then(|record| {
-        let rate_hz = record.clock.rate_hz;
-        let unit = record.clock.unit;
-        let recognised = unit.map(|unit| clock::recognised(&named.given, unit, rate_hz));
+    let read = open_record(Arc::new(bytes), &options).and_then(|record| {
         // A rate that the job states confirms the unit.
         let is_open = !record.is_time_unit_stated() && section.sample_rate.is_none();
+        let rate_hz = record.clock.rate_hz;
         let doubtful = is_open.then(|| clock::check_rate(rate_hz)).flatten();
-        work.findings.extend(recognised.into_iter().chain(doubtful));
+        let of_clock = clock::irregular(&named.given, &record.clock);
+        work.findings.extend(of_clock.into_iter().chain(doubtful));
         read_channels(&record)
     });
-    let mut record = read.map_err(|e| {
-        let (wrong, remedy) = e.parts();
-        match &e {
-            crate::series::SeriesError::Line { line, what, remedy } => Faults::from(Fault::at(
-                &*named.given,
-                *line as u32,
-                "table",
-                what,
-                *remedy,
-            )),
-            crate::series::SeriesError::UnevenTime { line, .. } => Faults::from(Fault::at(
-                &*named.given,
-                *line as u32,
-                "time",
-                wrong,
-                remedy,
-            )),
-            _ => Faults::from(Fault::of(&*named.given, "table", wrong, remedy)),
-        }
-    })?;
+    let mut record = read.map_err(|e| record_fault(&named.given, &e))?;
     let mut faults = FaultList::new();
     for channel in record.list.iter_mut().filter(|c| !c.unit.is_empty()) {
-        match factor(job, &channel.unit) {
+        let kind = used(&channel.name);
+        match factor(job, kind, &channel.unit) {
             Some(f) => channel.samples.iter_mut().for_each(|v| *v *= f),
-            None => faults.push(Fault::at(
-                &*named.given,
-                1,
-                channel.name.clone(),
-                format!("`{}` is no unit of acceleration or force", channel.unit),
-                "write m/s2, mm/s2, g, N, kN or another unit that the job may use",
-            )),
+            None => faults.extend(kind.map(|kind| {
+                Fault::at(
+                    &*named.given,
+                    1,
+                    channel.name.clone(),
+                    format!("`{}` is no unit of {}", channel.unit, kind.word()),
+                    "write m/s2, mm/s2, g, N, kN or another unit that the job may use",
+                )
+            })),
         }
     }
     Faults::check(faults)?;
     Ok(record)
 }
 
-/// What a number in that unit is multiplied by to be in the job's units.
-fn factor(job: &Job, unit: &str) -> Option<f64> {
-    if matches!(unit, "g" | "G" | "g0") {
-        return Some(job.units.standard_gravity());
-    }
+/// Returns the quantity of a channel that the model uses.
+fn kind_in(model: &Vehicle, name: &str) -> Option<Quantity> {
+    let sensor = model.sensors.iter().find(|s| s.channel == name);
+    let force = model.wheels.iter().find(|w| w.channel == name);
+    let of_sensor = sensor.map(|s| match s.measures {
+        Measures::Acceleration => Quantity::Acceleration,
+        Measures::Displacement => Quantity::Length,
+    });
+    of_sensor.or(force.map(|_| Quantity::Force))
+}
+
+/// Returns the factor that converts a number in that unit into the job's units; of a channel that the model does not use, by the quantity of its
+/// unit.
+fn factor(job: &Job, kind: Option<Quantity>, unit: &str) -> Option<f64> {
     // A voltage, say, is taken as it is.
     if matches!(unit, "-" | "1" | "V") {
         return Some(1.0);
     }
-    [Quantity::Acceleration, Quantity::Force]
-        .into_iter()
-        .find_map(|q| Some(find_unit(q, unit)?.si / job.units.si(q)))
+    let of = |q: Quantity| {
+        let si = match q {
+            Quantity::Acceleration => ChannelKind::Acceleration.unit_si(unit),
+            _ => find_unit(q, unit).map(|u| u.si),
+        };
+        Some(si? / job.units.si(q))
+    };
+    match kind {
+        Some(q) => of(q),
+        None => [Quantity::Acceleration, Quantity::Force]
+            .into_iter()
+            .find_map(of),
+    }
 }

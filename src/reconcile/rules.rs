@@ -97,6 +97,9 @@ pub struct MotionRules {
     pub zero_g: f64,
     /// Stiffness within a gap, as a share of that beyond it, that parts free play from a stop: both are the same law, two slopes.
     pub play: f64,
+    /// Gap on the data that judge, over the most that a complete model leaves there, beyond which no verdict but `unknown` is possible: three
+    /// tolerances that are stated too small by half add up to as much.
+    pub limits: f64,
     /// Share of the measured quantity left at which a fit has lost its way: its parameters are those of no vehicle, and no start for others.
     pub lost: f64,
 }
@@ -116,6 +119,7 @@ impl Default for MotionRules {
             delay_s: 0.01,
             zero_g: 0.05,
             play: 0.2,
+            limits: 3.0,
             lost: 0.3,
         }
     }
@@ -123,7 +127,7 @@ impl Default for MotionRules {
 
 impl MotionRules {
     /// Every one of them.
-    pub const ALL: [Rule<Self>; 13] = [
+    pub const ALL: [Rule<Self>; 14] = [
         ("decisive", |r| &mut r.decisive),
         ("hint", |r| &mut r.hint),
         ("indistinguishable", |r| &mut r.indistinguishable),
@@ -136,6 +140,7 @@ impl MotionRules {
         ("delay_s", |r| &mut r.delay_s),
         ("zero_g", |r| &mut r.zero_g),
         ("play", |r| &mut r.play),
+        ("limits", |r| &mut r.limits),
         ("lost", |r| &mut r.lost),
     ];
 }

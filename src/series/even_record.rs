@@ -1,18 +1,7 @@
-//! Records of any format read whole, whose samples are the stored ones.
+//! Records whose samples are the stored ones.
 
 use super::error::SeriesError;
-use super::record::{Bytes, Evenness, Options, Record, open_record};
-
-/// Opens a record of even steps without gaps.
-///
-/// # Errors
-/// A build without the format's feature, a file that can't be read, uneven or missing times, a rate other than the declared one, wanted
-/// channels that were not sampled together.
-pub fn open_even(bytes: Bytes, options: &Options) -> Result<Record, SeriesError> {
-    let record = open_record(bytes, options)?;
-    check_even(&record)?;
-    Ok(record)
-}
+use super::record::{Evenness, Record};
 
 /// Refuses a record whose samples are not the stored ones, all of them.
 pub(super) fn check_even(record: &Record) -> Result<(), SeriesError> {

@@ -8,7 +8,7 @@
 //! - [`rpc`]: RPC III files, read and written
 //! - [`foreign`]: Parquet and MDF4 in memory
 //! - [`number`]: numbers read and written fast
-//! - [`quality`]: dead, clipped, spiky, drifting, reversed, wrongly scaled channels as findings
+//! - [`quality`]: dead, clipped, spiky, drifting channels as findings
 //! - [`detrend`]: mean, line and zero-run removal
 //! - [`plans`]: plans of transforms, kept between calls
 //! - [`still`]: columns that give nothing, or one and the same value

@@ -87,8 +87,7 @@ pub fn parquet_bytes(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::even_record::open_even;
-    use crate::series::record::{Options, read_channels};
+    use crate::series::record::{Options, open_record, read_channels};
     use parquet::schema::parser::parse_message_type;
 
     fn read_parquet(bytes: &[u8], hz: Option<f64>) -> Result<crate::series::Channels, SeriesError> {
@@ -96,7 +95,7 @@ mod tests {
             declared_hz: hz,
             ..Options::default()
         };
-        read_channels(&open_even(Arc::new(bytes.to_vec()), &options)?)
+        read_channels(&open_record(Arc::new(bytes.to_vec()), &options)?)
     }
 
     #[test]

@@ -284,8 +284,6 @@ fn check_drift(c: &Channel, kind: Kind, gravity: f64) -> Option<Finding> {
 fn check_gravity(c: &Channel, gravity: f64) -> Option<Finding> {
     let m = mean(&finite(&c.samples));
     let near = |target: f64| (m / target - 1.0).abs() < GRAVITY_TOLERANCE;
-    // Standard gravity as a pure number: the factor between g and m/s2.
-    let g_number = 9.80665;
     if near(gravity) {
         let off = m - gravity;
         let limit = 0.05 * gravity;
@@ -293,28 +291,6 @@ fn check_gravity(c: &Channel, gravity: f64) -> Option<Finding> {
             let message = format!("The mean is {m:.3}, gravity is {gravity:.3}: an offset of {off:.3}. Band-limiting removes it.");
             Finding::new(Severity::Info, "offset", &c.name, message, "Zero the sensor on level ground.").with_numbers(off, limit)
         });
-    }
-    if near(-gravity) || near(-gravity / g_number) {
-        let message = format!(
-            "The mean is {m:.3} where gravity should read {gravity:+.3}: the axis points down."
-        );
-        let remedy = "Turn the sign of this channel.";
-        return Some(
-            Finding::new(Severity::Error, "wrong-sign", &c.name, message, remedy)
-                .with_numbers(m, gravity),
-        );
-    }
-    for (factor, unit) in [(1.0 / g_number, "g"), (g_number, "m/s2 times 9.81")] {
-        if near(gravity * factor) {
-            let message = format!(
-                "The mean is {m:.3} where gravity should read {gravity:.3}: the channel is in {unit}, off by a factor 9.81."
-            );
-            let remedy = "Correct the unit of this channel.";
-            return Some(
-                Finding::new(Severity::Error, "wrong-units", &c.name, message, remedy)
-                    .with_numbers(m, gravity),
-            );
-        }
     }
     // Near zero is an AC-coupled sensor, which is fine; anything else is not explained by gravity.
     let limit = 0.3 * gravity;

@@ -218,9 +218,6 @@ fn each_fault_of_a_channel_is_named() {
             faulty(&|i, v| if i % 5000 == 77 { v + 30.0 } else { v }),
         ),
         ("drift", faulty(&|i, v| v + 1.0 * i as f64 / 16_000.0)),
-        ("wrong-sign", faulty(&|_, v| -v)),
-        ("wrong-units", faulty(&|_, v| v / 9.81)),
-        ("wrong-units", faulty(&|_, v| v * 9.81)),
         (
             "missing-samples",
             faulty(&|i, v| if i == 500 { f64::NAN } else { v }),

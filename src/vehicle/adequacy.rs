@@ -157,12 +157,9 @@ pub fn check_lost(channel: &str, relative: f64, on: &str) -> Option<Finding> {
     if relative < LOST {
         return None;
     }
-    let left = match relative.is_finite() {
-        true => format!("{:.0} %", 100.0 * relative),
-        false => "all".to_owned(),
-    };
     let message = format!(
-        "The model leaves {left} of `{channel}` unexplained ({on} data): it says nothing of this vehicle, and neither do its parameters."
+        "The model leaves {:.0} % of `{channel}` unexplained ({on} data): its parameters do not describe this vehicle.",
+        100.0 * relative
     );
     let remedy = "Look at signs and units of the channels, at the band and at the names of the columns; then run `reconcile` on this job.";
     let code = "model-incomplete";

@@ -1,10 +1,11 @@
 //! Forces on the chassis: by its inertia, by its springs, at the seats of leaf springs.
 
-use super::identification::Identification;
+use super::identification::{Identification, IdentifyTask};
 use super::layout::Vehicle;
 use super::loads::link_forces;
 use super::motion::Motion;
 use super::preset::COUPLINGS;
+use crate::linalg::tall::left_inverse;
 use crate::series::detrend::rms;
 
 /// Force on one sprung body in the band, about its mean, upwards; samples as the motion.
@@ -14,22 +15,41 @@ pub struct ChassisForce {
     pub body: String,
     /// Its inertia times its acceleration, M q'' in heave (thesis 5.8, 5.11).
     pub by_mass: Vec<f64>,
-    /// Minus the sum of its link forces (thesis 5.9, 5.12).
+    /// Half width of the 95 % interval of `by_mass`: the inertia, noise and gains of the accelerometers.
+    pub by_mass_half: Vec<f64>,
+    /// Minus the sum of its link forces (thesis 5.9, 5.12); empty where no link was identified.
     pub by_springs: Vec<f64>,
     /// The share of each spring by its link.
-    pub springs: Vec<(String, Vec<f64>)>,
+    pub springs: Vec<SpringForce>,
+}
+
+/// Force of one spring and damper on a body, upwards.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpringForce {
+    /// The link.
+    pub link: String,
+    /// Samples.
+    pub force: Vec<f64>,
+    /// Half width of their 95 % interval: the parameters, and what the balance of the body leaves.
+    pub half: Vec<f64>,
 }
 
 impl ChassisForce {
-    /// RMS of the difference between the two ways: what either may be wrong by.
-    pub fn difference(&self) -> f64 {
+    /// Returns the RMS of the difference between the two ways, an estimate of the error of either; `None` with one way alone.
+    pub fn difference(&self) -> Option<f64> {
         let pairs = self.by_mass.iter().zip(&self.by_springs);
-        rms(&pairs.map(|(a, b)| a - b).collect::<Vec<f64>>())
+        let is_known = !self.by_springs.is_empty();
+        is_known.then(|| rms(&pairs.map(|(a, b)| a - b).collect::<Vec<f64>>()))
     }
 }
 
-/// Forces on every sprung body whose inertia and links were identified with the scale of forces.
-pub fn chassis_forces(found: &Identification, motion: &Motion) -> Vec<ChassisForce> {
+/// Returns the forces on every sprung body whose inertia, and links as far as there are any, were identified with the scale of forces. `motion`
+/// is at the rate of the record.
+pub fn chassis_forces(
+    task: &IdentifyTask,
+    found: &Identification,
+    motion: &Motion,
+) -> Vec<ChassisForce> {
     let v = &found.vehicle;
     let links = link_forces(v, &found.values, motion);
     let told = |i: usize| found.scaled[i] && found.values[i].is_finite();
@@ -47,13 +67,16 @@ pub fn chassis_forces(found: &Identification, motion: &Motion) -> Vec<ChassisFor
                 let n = v.links[*l].terms.len();
                 (0..n).map(move |t| v.term_index(*l, t))
             });
-            if own.is_empty() || !inertias.iter().copied().chain(terms).all(told) {
+            let has_links = own.is_empty() == v.links.is_empty();
+            if !has_links || !inertias.iter().copied().chain(terms).all(told) {
                 return None;
             }
+            let n = motion.n_samples();
             let mut out = ChassisForce {
                 body: v.bodies[b].name.clone(),
-                by_mass: vec![0.0; motion.n_samples()],
-                by_springs: vec![0.0; motion.n_samples()],
+                by_mass: vec![0.0; n],
+                by_mass_half: half_widths_by_mass(task, found, motion, b),
+                by_springs: vec![0.0; if own.is_empty() { 0 } else { n }],
                 springs: vec![],
             };
             for (q, i) in motion.bodies[b].iter().zip(inertias) {
@@ -65,12 +88,83 @@ pub fn chassis_forces(found: &Identification, motion: &Motion) -> Vec<ChassisFor
                 let sum = out.by_springs.iter_mut().zip(&force);
                 sum.for_each(|(s, f)| *s += f);
                 if !COUPLINGS.contains(&v.links[l].name.as_str()) {
-                    out.springs.push((v.links[l].name.clone(), force));
+                    out.springs.push(SpringForce {
+                        link: v.links[l].name.clone(),
+                        half: half_widths_of_link(found, motion, l, w),
+                        force,
+                    });
                 }
             }
+            let balance = found.coverage_factor * out.difference().unwrap_or(0.0);
+            let halves = out.springs.iter_mut().flat_map(|s| &mut s.half);
+            halves.for_each(|h| *h = h.hypot(balance));
             Some(out)
         })
         .collect()
+}
+
+/// Returns the half width of `sum_j M_0j q_j''` by sample.
+///
+/// The heave force is `sum_s c_s a_s` over the accelerometers of the body, `c = M_0 pinv(phi)`: a gain error of each one counts with `c_s a_s`, white
+/// noise with `c_s` times its share in the band, `sqrt(2 (high - low) / rate)`.
+fn half_widths_by_mass(
+    task: &IdentifyTask,
+    found: &Identification,
+    motion: &Motion,
+    body: usize,
+) -> Vec<f64> {
+    let v = &found.vehicle;
+    let own: Vec<usize> = (0..v.sensors.len())
+        .filter(|s| v.sensors[*s].at.body == body)
+        .collect();
+    let inertias: Vec<usize> = (0..v.bodies[body].shape.n())
+        .map(|i| v.inertia_index(body, i, 0))
+        .collect();
+    let functions: Vec<Vec<f64>> = own.iter().map(|s| v.functions(&v.sensors[*s].at)).collect();
+    let inverse = left_inverse(&functions).unwrap_or_default();
+    let shares: Vec<f64> = (0..own.len())
+        .map(|s| {
+            let rows = inertias.iter().zip(&inverse);
+            rows.map(|(i, row)| found.values[*i] * row[s]).sum()
+        })
+        .collect();
+    let width_hz = task.band.high_hz - task.band.low_hz;
+    let in_band = (2.0 * width_hz / motion.rate_hz).min(1.0);
+    let squares: f64 = shares.iter().map(|c| c * c).sum();
+    let noise = task.noise_acc.unwrap_or(0.0).powi(2) * in_band * squares;
+    let variance = |t: usize| {
+        let of_gains = own.iter().zip(&shares);
+        let gains =
+            of_gains.map(|(s, c)| (c * task.gain_tolerance * motion.sensors[*s][t]).powi(2));
+        noise + gains.sum::<f64>() + quadratic(found, &inertias, |k| motion.bodies[body][k][t])
+    };
+    (0..motion.n_samples())
+        .map(|t| found.coverage_factor * variance(t).max(0.0).sqrt())
+        .collect()
+}
+
+fn half_widths_of_link(found: &Identification, motion: &Motion, l: usize, w: f64) -> Vec<f64> {
+    let columns = &motion.terms[l];
+    let terms: Vec<usize> = (0..columns.len())
+        .map(|t| found.vehicle.term_index(l, t))
+        .collect();
+    (0..motion.n_samples())
+        .map(|t| {
+            let variance = quadratic(found, &terms, |k| w * columns[k][t]);
+            found.coverage_factor * variance.max(0.0).sqrt()
+        })
+        .collect()
+}
+
+/// Returns `x' C x` with the covariance of parameters.
+fn quadratic(found: &Identification, parameters: &[usize], x: impl Fn(usize) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for (a, i) in parameters.iter().enumerate() {
+        for (b, j) in parameters.iter().enumerate() {
+            sum += x(a) * x(b) * found.covariance[*i][*j];
+        }
+    }
+    sum
 }
 
 /// What a link's force does to the heave of a body.

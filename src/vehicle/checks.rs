@@ -33,8 +33,7 @@ pub fn check_mass_closure(
     gravity: f64,
 ) -> Option<(MassClosure, Option<Finding>)> {
     let weighed = mean_force / gravity;
-    // A mean of less than a twentieth of the identified weight is a zeroed channel, not a vehicle.
-    if !(weighed > 0.05 * identified && identified > 0.0) {
+    if !is_static(weighed, identified) {
         return None;
     }
     let ratio = identified / weighed;
@@ -47,33 +46,27 @@ pub fn check_mass_closure(
     if (ratio - 1.0).abs() < CLOSURE_LIMIT.max(3.0 * sigma / weighed) {
         return Some((closure, None));
     }
-    let g = 9.80665;
-    let units = [g, 1.0 / g].iter().any(|f| (ratio / f - 1.0).abs() < 0.15);
-    let message = if units {
-        format!(
-            "Identified mass is {ratio:.2} times the weighed mass {weighed:.1}: close to 9.81, so a unit is wrong."
-        )
-    } else {
-        format!(
-            "Identified sprung and unsprung mass {identified:.1} is {:+.0} % off the mean wheel force over gravity, {weighed:.1}. \
-             Masses, stiffness and forces share that error.",
-            100.0 * (ratio - 1.0)
-        )
-    };
-    let remedy = if units {
-        "Declare accelerations in the job's unit, not in g."
-    } else {
-        "Possible causes: accelerometers that read low (gain), a wheel force channel that reads high or was zeroed under load, load \
-         carried over from the other side or axle (roll, pitch), friction or a delay taken for mass. Weigh the axle; check gains."
-    };
-    let severity = if units {
-        Severity::Error
-    } else {
-        Severity::Warning
-    };
-    let finding = Finding::new(severity, "mass-closure", "wheel forces", message, remedy)
-        .with_numbers(ratio, 1.0 + CLOSURE_LIMIT);
+    let message = format!(
+        "Identified sprung and unsprung mass {identified:.1} is {:+.0} % off the mean wheel force over gravity, {weighed:.1}. \
+         Masses, stiffness and forces share that error.",
+        100.0 * (ratio - 1.0)
+    );
+    let remedy = "Possible causes: accelerometers that read low (gain), a wheel force channel that reads high or was zeroed under load, load \
+         carried over from the other side or axle (roll, pitch), friction or a delay taken for mass. Weigh the axle; check gains.";
+    let finding = Finding::new(
+        Severity::Warning,
+        "mass-closure",
+        "wheel forces",
+        message,
+        remedy,
+    )
+    .with_numbers(ratio, 1.0 + CLOSURE_LIMIT);
     Some((closure, Some(finding)))
+}
+
+/// Whether a mean wheel force, or its mass, contains the static load: less than a twentieth of the identified weight is a zeroed channel.
+pub(super) fn is_static(weighed: f64, identified: f64) -> bool {
+    weighed > 0.05 * identified && identified > 0.0
 }
 
 /// Parameters of the two sides of a vehicle that differ by more than wear would explain.

@@ -26,12 +26,18 @@ pub fn scale_sentence(group: &[String], reference: &str, springs: &[String]) -> 
     )
 }
 
-/// The sentence for parameters that no equation holds.
-pub fn absent_sentence(names: &[String], channels: &[String]) -> String {
+/// Returns the sentence for parameters without a value: `unmeasured` wheel forces are in all of their equations, or none is and nothing fits.
+pub fn absent_sentence(names: &[String], unmeasured: &[String]) -> String {
+    let names = names.join(", ");
+    if unmeasured.is_empty() {
+        return format!(
+            "{names} cannot be determined: no values within their limits fit the record. Check signs and units of the channels."
+        );
+    }
     format!(
-        "{} can't be found: every equation with it also holds an unmeasured wheel force ({}). Measure that force, or weigh the part.",
-        names.join(", "),
-        channels.join(", ")
+        "{names} cannot be determined: every equation with them also contains an unmeasured wheel force ({}). Measure that force, or weigh the \
+         part.",
+        unmeasured.join(", ")
     )
 }
 

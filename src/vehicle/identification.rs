@@ -112,10 +112,23 @@ impl Identification {
             .and_then(|p| p.value)
     }
 
+    /// Returns the finding on a wrong input of the record.
+    pub fn wrong_input(&self) -> Option<Finding> {
+        let codes = ["input-sign-reversed", "input-unit", "inputs-exchanged"];
+        let mut all = self.findings.iter();
+        all.find(|f| codes.contains(&f.code)).cloned()
+    }
+
     /// Findings of error severity if nothing at all could be told.
     pub fn verdict(&self) -> Option<Finding> {
-        let told = self.parameters.iter().any(|p| p.identifiable && !p.known);
-        (!told).then(|| {
+        let mut parameters = self.parameters.iter();
+        let told = parameters.any(|p| p.identifiable && !p.known);
+        // A wrong input is the reason. Without links, the forces of stated masses are what was asked.
+        let is_explained = self.vehicle.links.is_empty()
+            || self
+                .wrong_input()
+                .is_some_and(|f| f.severity == Severity::Error);
+        (!told && !is_explained).then(|| {
             let message = "No parameter can be told from this record.";
             Finding::new(
                 Severity::Error,

@@ -7,13 +7,17 @@ use super::equations::{Equation, equations};
 use super::fit::{Allowed, Fit, fit};
 use super::identifiability::is_known;
 use super::interval::spread;
-use super::layout::{Parameter, Vehicle};
+use super::known_body::{bodies_of_known_inertia, identify_known};
+use super::layout::Vehicle;
 use super::loads::best_blend;
-use super::motion::{motion, resolved};
+use super::motion::motion;
 use super::part_answer::{PartAnswer, collect};
+use super::part_problem::{PartProblem, begun};
 use super::stretch::slow_stretches;
 use super::treatment::{Treatment, VehicleError};
+use super::wrong_inputs::wrong_input;
 use crate::estimate::NORMAL_95;
+use crate::finding::Severity;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 
@@ -29,6 +33,9 @@ pub fn identify(
     record: &Channels,
     hold_out: Option<&Channels>,
 ) -> Result<Identification, VehicleError> {
+    if let Some(vehicle) = bodies_of_known_inertia(task, record) {
+        return Ok(identify_known(task, vehicle, record));
+    }
     let (treatment, vehicle) = begun(task, record)?;
     let all = vehicle.parameters();
     let mut answer = Identification {
@@ -93,7 +100,20 @@ pub fn identify(
         .findings
         .extend(check_sides(&all, &answer.values, &answer.sigmas));
     close_masses(task, &mut answer, record);
+    report_wrong_inputs(task, &mut answer, record);
     Ok(answer)
+}
+
+/// Puts the finding on wrong inputs first. The misfit and the bounds that they cause are no findings of their own.
+fn report_wrong_inputs(task: &IdentifyTask, answer: &mut Identification, record: &Channels) {
+    let Some(wrong) = wrong_input(task, record, answer) else {
+        return;
+    };
+    if wrong.severity == Severity::Error {
+        let caused = ["model-incomplete", "parameter-at-bound", "mass-closure"];
+        answer.findings.retain(|f| !caused.contains(&f.code));
+    }
+    answer.findings.insert(0, wrong);
 }
 
 fn declared(task: &IdentifyTask) -> Declared {
@@ -105,53 +125,6 @@ fn declared(task: &IdentifyTask) -> Declared {
     }
 }
 
-/// The vehicle less sensors whose channels the record lacks, where the rest still gives the body's motion.
-fn with_measured_sensors(vehicle: &Vehicle, record: &Channels) -> Vehicle {
-    let mut out = vehicle.clone();
-    let enough = |b: usize| {
-        let present = vehicle
-            .sensors
-            .iter()
-            .filter(|s| s.at.body == b && record.has(&s.channel))
-            .count();
-        present >= vehicle.bodies[b].shape.n()
-    };
-    out.sensors
-        .retain(|s| record.has(&s.channel) || !enough(s.at.body));
-    out
-}
-
-fn allowed(task: &IdentifyTask, parameters: &[Parameter]) -> Vec<Allowed> {
-    parameters
-        .iter()
-        .map(
-            |p| match (task.known.get(&p.name), task.bounds.get(&p.name)) {
-                (Some(v), _) => Allowed::Known(*v),
-                (None, Some([lo, hi])) if p.positive => Allowed::Within(lo.max(0.0), *hi),
-                (None, Some([lo, hi])) => Allowed::Within(*lo, *hi),
-                (None, None) if p.positive => Allowed::Within(0.0, f64::INFINITY),
-                (None, None) => Allowed::Free,
-            },
-        )
-        .collect()
-}
-
-/// Index of the parameter that all others are measured by when no force sets the scale.
-fn reference(part: &Vehicle, equations: &[Equation], allowed: &[Allowed]) -> Option<usize> {
-    let occurs = |i: usize| equations.iter().any(|e| e.columns.iter().any(|c| c.0 == i));
-    let driven = equations
-        .iter()
-        .any(|e| e.driven && e.target.iter().any(|t| *t != 0.0));
-    let held = (0..allowed.len())
-        .any(|i| matches!(allowed[i], Allowed::Known(v) if v != 0.0) && occurs(i));
-    if driven || held {
-        return None;
-    }
-    let mut bodies: Vec<usize> = (0..part.bodies.len()).collect();
-    bodies.sort_by_key(|&b| !part.bodies[b].sprung);
-    part.masses(&bodies).into_iter().find(|&i| occurs(i))
-}
-
 /// Whether [`identify`] can begin with these records: their channels, rate and length, and the parameters that the task names.
 ///
 /// # Errors
@@ -161,6 +134,13 @@ pub fn check_records(
     record: &Channels,
     hold_out: Option<&Channels>,
 ) -> Result<(), VehicleError> {
+    if let Some(vehicle) = bodies_of_known_inertia(task, record) {
+        let treatment = Treatment {
+            adjust: task.corrections.clone(),
+            ..Treatment::of(task.band)
+        };
+        return motion(&vehicle, record, &treatment).map(|_| ());
+    }
     let (treatment, vehicle) = begun(task, record)?;
     let elsewhere = Treatment {
         adjust: Adjustment::elsewhere(&treatment.adjust),
@@ -176,49 +156,21 @@ pub fn check_records(
     Ok(())
 }
 
-/// How the record is treated, and the vehicle with the sensors that it has.
-fn begun(task: &IdentifyTask, record: &Channels) -> Result<(Treatment, Vehicle), VehicleError> {
-    let treatment = Treatment {
-        adjust: task.corrections.clone(),
-        ..Treatment::of(task.band)
-    };
-    let measured = with_measured_sensors(&task.vehicle, record);
-    let vehicle = resolved(&measured, record, &treatment)?;
-    let all = vehicle.parameters();
-    let mut named = task.known.keys().chain(task.bounds.keys());
-    if let Some(name) = named.find(|k| all.iter().all(|p| p.name != **k)) {
-        return Err(VehicleError::Known {
-            name: name.clone(),
-            present: all.iter().map(|p| p.name.clone()).collect(),
-        });
-    }
-    let against_nature = |p: &&Parameter| {
-        let high = task.bounds.get(&p.name).map(|b| b[1]);
-        p.positive && high.is_some_and(|high| high <= 0.0)
-    };
-    match all.iter().find(against_nature) {
-        Some(p) => Err(VehicleError::Bounds {
-            name: p.name.clone(),
-            high: task.bounds.get(&p.name).map_or(0.0, |b| b[1]),
-        }),
-        None => Ok((treatment, vehicle)),
-    }
-}
-
 fn fit_part(
     task: &IdentifyTask,
     part: &Vehicle,
     record: &Channels,
     treatment: &Treatment,
 ) -> Result<PartAnswer, VehicleError> {
-    let names = part.parameters();
-    let m = motion(part, record, treatment)?;
-    let mut eqs = equations(part, &m);
-    let mut allow = allowed(task, &names);
-    let reference = reference(part, &eqs, &allow);
-    if let Some(r) = reference {
-        allow[r] = Allowed::Known(1.0);
-    }
+    let problem = PartProblem::of(task, part, record, treatment)?;
+    let is_solvable = problem.is_solvable();
+    let PartProblem {
+        names,
+        motion: m,
+        equations: mut eqs,
+        allowed: allow,
+        reference,
+    } = problem;
     let n = names.len();
     let mut out = PartAnswer {
         part: part.clone(),
@@ -241,10 +193,7 @@ fn fit_part(
         motion: m,
         names,
     };
-    let has_scale = reference.is_some()
-        || eqs.iter().any(|e| e.target.iter().any(|t| *t != 0.0))
-        || allow.iter().any(|a| matches!(a, Allowed::Known(_)));
-    if eqs.is_empty() || !has_scale {
+    if !is_solvable {
         return Ok(out);
     }
     let mut f = fit(&eqs, &allow);

@@ -4,7 +4,7 @@
 //!   a job can name
 //! - [`motion`]: measured channels made comparable; [`equations`]: the equations of motion, linear in the parameters
 //! - [`fit`]: weighted least squares with bounds; [`interval`]: covariance under coloured residuals
-//! - [`identify`]: all of it, with [`identifiability`] in words and [`checks`]
+//! - [`identify`]: all of it, with [`identifiability`] in words, [`checks`] and [`wrong_inputs`]
 //! - [`loads`]: wheel forces; [`chassis`]: chassis forces
 //! - [`stretch`]: slow stretch from force, where integration drifts
 //! - [`simulate`]: forward in time; [`refine`]: nonlinear parameters by simulation error
@@ -20,6 +20,7 @@ pub mod identifiability;
 pub mod identification;
 pub mod identify;
 pub mod interval;
+mod known_body;
 pub mod layout;
 mod limiter;
 mod link_motion;
@@ -27,12 +28,14 @@ pub mod loads;
 pub mod misfit;
 pub mod motion;
 mod part_answer;
+mod part_problem;
 pub mod preset;
 pub mod refine;
 pub mod simulate;
 pub mod stretch;
 pub mod term;
 pub mod treatment;
+pub mod wrong_inputs;
 
 #[cfg(test)]
 mod tests;

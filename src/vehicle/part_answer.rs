@@ -177,11 +177,16 @@ fn put_fit(
 ) {
     let fitted = channel_misfits(&part.part, &part.values, &part.motion, &part.blend);
     let judged = held.map(|h| channel_misfits(&part.part, &part.values, h, &part.blend));
+    // A model without values of its parameters explains nothing.
+    let share = |error: &f64, size: &f64| match (error / size).is_finite() {
+        true => error / size,
+        false => 1.0,
+    };
     for (i, (channel, error, size)) in fitted.iter().enumerate() {
         let held_out = judged.as_ref().and_then(|j| j.get(i));
-        let own = error / size;
+        let own = share(error, size);
         let (relative_rms, size, on) = match held_out {
-            Some((_, e, s)) => (e / s, *s, "hold-out"),
+            Some((_, e, s)) => (share(e, s), *s, "hold-out"),
             None => (own, *size, "fitted"),
         };
         let (told, size, on_told) = if part.part.changes() {
@@ -210,7 +215,8 @@ fn put_fit(
         });
         let wheel = (answer.vehicle.wheels.iter()).position(|w| w.channel == *channel);
         if let Some(w) = wheel {
-            answer.wheel_force_sigma[w] = Some(error.max(held_out.map_or(0.0, |h| h.1)));
+            let larger = error.max(held_out.map_or(0.0, |h| h.1));
+            answer.wheel_force_sigma[w] = Some(larger).filter(|s| s.is_finite());
         }
     }
 }

@@ -13,6 +13,7 @@ mod rig;
 mod shared_cases;
 mod silverbox;
 mod truck_simulator;
+mod wrong_inputs;
 
 fn task(model: &str, terms: &[&str], band: (f64, f64)) -> IdentifyTask {
     let request = PresetRequest {

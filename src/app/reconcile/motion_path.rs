@@ -18,6 +18,7 @@ use crate::app::vehicle::{
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Verdict;
+use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::channel_check::broken_channels;
 use crate::reconcile::motion::sits::gap_sits;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome, examine, simulated_gap};
@@ -45,9 +46,22 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         .unwrap_or_default();
     let outcome = work.stage("search", |_| examine(&frame, &only));
     work.go_on()?;
-    let outcome = outcome.map_err(|e| Faults::from(vehicle_fault(job, &section.data.given, &e)))?;
-    let (wheel_force, found) =
-        work.stage("wheel forces", |_| wheel_forces(&records, &frame, &outcome));
+    let mut outcome =
+        outcome.map_err(|e| Faults::from(vehicle_fault(job, &section.data.given, &e)))?;
+    let found = work.stage("identify", |_| identified(&records, &outcome));
+    if let Some(wrong) = found.as_ref().and_then(Identification::wrong_input) {
+        let is_error = wrong.severity == Severity::Error;
+        if is_error && !is_identified(&wrong, &outcome) {
+            outcome.refuse(&wrong);
+        }
+        if !is_error || outcome.verdict != Verdict::Named {
+            work.findings.push(wrong);
+        }
+    }
+    let outcome = outcome;
+    let wheel_force = work.stage("wheel forces", |_| {
+        wheel_forces(&records, &frame, &outcome, found.as_ref())
+    });
     let identified = found.and_then(|f| driven(&records, f));
     let named = outcome.verdict == Verdict::Named && repairable(&outcome);
     work.go_on()?;
@@ -179,6 +193,21 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
     ));
 }
 
+/// Whether the outcome identifies the wrong input as an effect of a channel, or has channels without a signal.
+fn is_identified(wrong: &Finding, outcome: &MotionOutcome) -> bool {
+    let of_channel = |e: &MotionEffect| match &e.change {
+        Change::Flip { channel } => {
+            wrong.code == "input-sign-reversed" && wrong.subject == *channel
+        }
+        Change::Swap { a, b } => {
+            let pairs = [[a, b], [b, a]].map(|[x, y]| format!("{x}, {y}"));
+            wrong.code == "inputs-exchanged" && pairs.contains(&wrong.subject)
+        }
+        _ => is_lost(e),
+    };
+    outcome.effects.iter().any(of_channel)
+}
+
 /// A dead channel can't be put right by a model.
 fn repairable(outcome: &MotionOutcome) -> bool {
     !outcome.effects.iter().any(is_lost)
@@ -259,17 +288,20 @@ fn driven(records: &VehicleRecords, found: Identification) -> Option<(Identifica
     Some((found, moved))
 }
 
-/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data; and the analyst's
-/// vehicle as identified.
+/// The analyst's vehicle as identified; none where a channel has no signal, as the vehicle would be fitted to it.
+fn identified(records: &VehicleRecords, outcome: &MotionOutcome) -> Option<Identification> {
+    let is_dead = outcome.effects.iter().any(is_dead);
+    let found = || identify(&records.task, &records.data, records.hold_out.as_ref()).ok();
+    (!is_dead).then(found).flatten()
+}
+
+/// Misfit of each measured wheel force, without and with the effects in, as `identify` leaves it on held-out data.
 fn wheel_forces(
     records: &VehicleRecords,
     frame: &MotionFrame,
     outcome: &MotionOutcome,
-) -> (Vec<WheelMisfit>, Option<Identification>) {
-    if outcome.effects.iter().any(is_dead) {
-        // Forces of a vehicle that was fitted to a reading that is none.
-        return (vec![], None);
-    }
+    found: Option<&Identification>,
+) -> Vec<WheelMisfit> {
     let identified = |q: &IdentifyTask| identify(q, &records.data, records.hold_out.as_ref()).ok();
     let misfits = |id: &Identification| -> Vec<(String, f64)> {
         id.fit
@@ -278,8 +310,7 @@ fn wheel_forces(
             .map(|f| (f.channel.clone(), f.relative_rms))
             .collect()
     };
-    let found = identified(&records.task);
-    let before = found.as_ref().map(misfits).unwrap_or_default();
+    let before = found.map(misfits).unwrap_or_default();
     let after = (outcome.verdict == Verdict::Named && repairable(outcome)).then(|| {
         let q = IdentifyTask {
             vehicle: outcome
@@ -298,5 +329,5 @@ fn wheel_forces(
         before,
         channel,
     });
-    (list.collect(), found)
+    list.collect()
 }

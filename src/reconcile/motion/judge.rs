@@ -39,16 +39,18 @@ impl Gaps {
         }
     }
 
-    /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges.
-    /// `excess` is the squared size of what named effects took, over that of what was measured.
+    /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges;
+    /// and the gap on what judges is within a few limits in either case. `excess` is the squared size of what named effects took, over that of what
+    /// was measured.
     fn at_floor(&self, rules: &MotionRules, excess: f64) -> bool {
-        let within = |g: &Option<RecordGap>| {
-            g.as_ref().is_some_and(|g| {
-                g.gap.powi(2) <= g.floor.limit(rules).powi(2) + rules.form * excess
-            })
+        let within = |g: &RecordGap, limits: f64| {
+            g.gap.powi(2) <= (limits * g.floor.limit(rules)).powi(2) + rules.form * excess
         };
-        self.reduced_chi2 < rules.noise_factor * rules.noise_factor
-            || within(&self.fitted) && within(&self.proof)
+        let is_at = |g: &Option<RecordGap>| g.as_ref().is_some_and(|g| within(g, 1.0));
+        let is_near = |g: &RecordGap| within(g, rules.limits);
+        let by_size = is_at(&self.fitted) && is_at(&self.proof);
+        let by_residual = self.reduced_chi2 < rules.noise_factor * rules.noise_factor;
+        (by_residual || by_size) && self.proof.as_ref().is_none_or(is_near)
     }
 }
 

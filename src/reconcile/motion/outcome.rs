@@ -2,6 +2,7 @@
 
 use super::change::Change;
 use super::gap::{Proof, RecordGap};
+use crate::finding::Finding;
 use crate::reconcile::outcome::{Gap, Rival, Verdict};
 use crate::vehicle::adjustment::Adjustment;
 
@@ -72,4 +73,17 @@ pub struct MotionOutcome {
     pub remains: String,
     /// What would separate the first two explanations.
     pub next_measurement: String,
+}
+
+impl MotionOutcome {
+    /// Withdraws the effects: a wrong input explains the gap, and no effect is looked for on top of it.
+    pub fn refuse(&mut self, wrong: &Finding) {
+        self.verdict = Verdict::Unknown;
+        self.effects.clear();
+        self.remains = format!(
+            "An input is wrong. {}.",
+            wrong.message.trim_end_matches('.')
+        );
+        self.next_measurement.clone_from(&wrong.remedy);
+    }
 }

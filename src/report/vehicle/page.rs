@@ -49,7 +49,10 @@ pub fn identify_page(
         )],
     ));
     let rows = chassis.iter().map(|f| {
-        let sizes = [rms(&f.by_mass), rms(&f.by_springs), f.difference()].map(number);
+        let difference = f.difference();
+        let by_springs = difference.map(|_| rms(&f.by_springs));
+        let size = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), number);
+        let sizes = [Some(rms(&f.by_mass)), by_springs, difference].map(size);
         std::iter::once(f.body.clone()).chain(sizes).collect()
     });
     sections.push(table_section(

@@ -1,7 +1,7 @@
 //! Tables of an identification.
 
 use super::restoring::{asked_force, links_told};
-use crate::vehicle::chassis::{ChassisForce, LeafSeat, split_leaf};
+use crate::vehicle::chassis::{ChassisForce, LeafSeat, SpringForce, split_leaf};
 use crate::vehicle::identify::Identification;
 use crate::vehicle::loads::{LoadHistory, link_forces};
 use crate::vehicle::motion::Motion;
@@ -116,18 +116,30 @@ pub fn write_restoring_force(found: &Identification, motion: &Motion) -> String 
 }
 
 /// `chassis_forces.csv`: time, then of each sprung body the force by mass and by springs, of each spring its force on the chassis, and of a
-/// leaf spring those at hanger and shackle (vertical) and along the frame; in the band, about their means, upwards.
+/// leaf spring those at hanger and shackle (vertical) and along the frame; in the band, about their means, upwards. Then the ends of the 95 %
+/// interval of the force on each body by mass, and of each spring.
 pub fn write_chassis_forces(
     forces: &[ChassisForce],
     leaves: &BTreeMap<String, LeafSeat>,
     motion: &Motion,
 ) -> String {
     let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut intervals: Vec<(String, Vec<f64>)> = Vec::new();
+    let mut bound = |place: &str, force: &[f64], half: &[f64]| {
+        for (end, sign) in [("low", -1.0), ("high", 1.0)] {
+            let at = force.iter().zip(half).map(|(f, h)| f + sign * h).collect();
+            intervals.push((format!("{place}.{end}"), at));
+        }
+    };
     for f in forces {
         columns.push((format!("{}.by_mass", f.body), f.by_mass.clone()));
-        columns.push((format!("{}.by_springs", f.body), f.by_springs.clone()));
-        for (link, force) in &f.springs {
+        bound(&f.body, &f.by_mass, &f.by_mass_half);
+        if !f.by_springs.is_empty() {
+            columns.push((format!("{}.by_springs", f.body), f.by_springs.clone()));
+        }
+        for SpringForce { link, force, half } in &f.springs {
             columns.push((link.clone(), force.clone()));
+            bound(link, force, half);
             if let Some(seat) = leaves.get(link) {
                 for (k, part) in ["hanger", "shackle", "horizontal"].iter().enumerate() {
                     let at = force.iter().map(|v| split_leaf(*v, *seat)[k]).collect();
@@ -136,6 +148,7 @@ pub fn write_chassis_forces(
             }
         }
     }
+    columns.extend(intervals);
     let mut out = String::from("time");
     columns.iter().for_each(|c| {
         let _ = write!(out, ",{}", c.0);

@@ -1,6 +1,7 @@
 //! Fits, intervals, simulation, checks and bad input, each on its own.
 
 use super::*;
+use crate::finding::Severity;
 use crate::series::integrate::integrated;
 use crate::series::{Channel, SeriesError};
 use crate::vehicle::chassis::{LeafSeat, split_leaf};
@@ -290,12 +291,14 @@ fn accelerations_in_g_are_recognised() {
         .filter(|c| c.name.starts_with("a_"))
         .for_each(|c| c.samples.iter_mut().for_each(|v| *v = *v / 9.81 - 1.0));
     let id = identify(&task("front2", &[], (1.0, 15.0)), &r, None).unwrap();
-    let f = id
-        .findings
-        .iter()
-        .find(|f| f.code == "mass-closure")
-        .unwrap();
-    assert!(f.message.contains("9.81"), "{}", f.message);
+    let f = id.findings.iter().find(|f| f.code == "input-unit").unwrap();
+    assert_eq!((f.subject.as_str(), f.severity), ("all", Severity::Error));
+    assert!(
+        f.message
+            .contains("accelerations are in g and are read as m/s2"),
+        "{}",
+        f.message
+    );
 }
 
 #[test]

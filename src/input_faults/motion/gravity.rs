@@ -1,0 +1,80 @@
+//! The sign and unit of an accelerometer by the gravity in its mean.
+
+use super::{ChannelKind, MotionChannel, MotionFault, names, of_kind, other_units, shows};
+use crate::finding::{Finding, Severity, few};
+use crate::units::number;
+
+/// Returns the faults that the means of accelerometers show: minus gravity, or gravity in another unit.
+///
+/// A unit counts only if every accelerometer shows gravity in it or in the unit that it is read in: the offset of a sensor that does not measure
+/// gravity may have that size as well.
+pub fn faults_by_gravity(channels: &[MotionChannel], gravity: f64) -> Vec<MotionFault> {
+    let mut signs = Vec::new();
+    let mut units: Vec<MotionFault> = Vec::new();
+    let accelerations = of_kind(channels, ChannelKind::Acceleration);
+    for &i in &accelerations {
+        let mean = channels[i].mean;
+        if shows(mean.abs(), gravity) {
+            if mean < 0.0 {
+                signs.push(i);
+            }
+            continue;
+        }
+        let agreed = |factor: f64| {
+            let mut all = accelerations.iter().map(|a| channels[*a].mean.abs());
+            all.all(|m| shows(m, gravity) || shows(m * factor, gravity))
+        };
+        let unit = other_units(&channels[i])
+            .into_iter()
+            .find(|(_, f)| shows(mean.abs() * f, gravity) && agreed(*f));
+        let Some((name, factor)) = unit else { continue };
+        if mean < 0.0 {
+            signs.push(i);
+        }
+        let same = units.iter_mut().find_map(|u| match u {
+            MotionFault::Unit(list, n, f) if *n == name && *f == factor => Some(list),
+            _ => None,
+        });
+        match same {
+            Some(list) => list.push(i),
+            None => units.push(MotionFault::Unit(vec![i], name, factor)),
+        }
+    }
+    let sign = (!signs.is_empty()).then_some(MotionFault::Sign(signs));
+    sign.into_iter().chain(units).collect()
+}
+
+/// Returns the names of the channels of [`faults_by_gravity`].
+pub fn channels_by_gravity<'a>(channels: &[MotionChannel<'a>], gravity: f64) -> Vec<&'a str> {
+    let faults = faults_by_gravity(channels, gravity);
+    let each = faults.iter().flat_map(|f| names(f.channels(), channels));
+    each.collect()
+}
+
+/// Returns the findings on [`faults_by_gravity`] in a record of `file`, errors.
+pub fn findings_by_gravity(channels: &[MotionChannel], gravity: f64, file: &str) -> Vec<Finding> {
+    let faults = faults_by_gravity(channels, gravity);
+    let each = faults.iter().map(|fault| {
+        let own = fault.channels();
+        let means = own.iter().map(|c| {
+            let c = &channels[*c];
+            format!("{} {}", c.name, number(c.mean))
+        });
+        let first = own.first().map_or(f64::NAN, |c| channels[*c].mean);
+        let message = format!(
+            "{} in `{file}`: the mean shows gravity, which is {} in the unit of the job (means: {})",
+            fault.describe(channels),
+            number(gravity),
+            few(&means.collect::<Vec<_>>())
+        );
+        Finding::new(
+            Severity::Error,
+            fault.code(),
+            fault.subject(channels),
+            message,
+            fault.remedy(channels),
+        )
+        .with_numbers(first, gravity)
+    });
+    each.collect()
+}
