@@ -12,15 +12,16 @@ pub use outcome::*;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::strain::{StrainRows, StrainTable, no_gauge_column, stated_readings};
+use super::job::readings::stated_readings;
 use super::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
+use super::measured::strain_file::{StrainRows, StrainTable, no_gauge_column};
+use super::measured::zero::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
 use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
 use super::recover::listed;
 use super::strain::{Prepared, given_as_asked, prepare};
 use super::work::Work;
-use super::zeroed::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
 use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
 use crate::linalg::Matrix;
 use crate::recovery::Readings;

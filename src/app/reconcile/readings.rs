@@ -1,10 +1,10 @@
 //! Readings of a job by run and gauge, with those that are held out.
 
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::strain::{StrainRows, StrainTable};
 use crate::app::job::{HoldOut, Job, Measured, Reference};
+use crate::app::measured::strain_file::{StrainRows, StrainTable};
+use crate::app::measured::zero::{Zeroed, judged, read_zeroed, some_left};
 use crate::app::work::Work;
-use crate::app::zeroed::{Zeroed, judged, read_zeroed, some_left};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Observations;
 use crate::recovery::Readings;

@@ -3,7 +3,7 @@
 use super::model_part::ModelPart;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::Job;
-use crate::app::job::runs::{RunRow, read_runs};
+use crate::app::measured::runs_file::{RunRow, read_runs};
 use crate::app::work::Work;
 use crate::reconcile::Observations;
 use crate::reconcile::strain::{PayloadWeight, StrainFrame, angle_scatter};

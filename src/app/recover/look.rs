@@ -1,15 +1,15 @@
 //! What `recover` says of measured strain before S weighs it: what `check` asks.
 
 use super::combined::listed;
-use super::reading::{Record, is_record};
 use super::task::{Task, task_of, without_reference};
 use super::{record, runs};
 use crate::app::fault::{FaultList, Faults};
-use crate::app::job::strain::{read_strain, wanted_columns};
 use crate::app::job::{Job, Measured, Reference};
+use crate::app::measured::record::{Record, is_record};
+use crate::app::measured::strain_file::{read_strain, wanted_columns};
+use crate::app::measured::zero::reads_strain;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
-use crate::app::zeroed::reads_strain;
 use crate::recovery::plausible;
 use crate::sensitivity::{Sensitivity, check_separability};
 

@@ -4,6 +4,7 @@
 //! loads go to a [`RecordSink`] as they come.
 
 mod answer;
+mod block;
 mod combined;
 mod content;
 mod damage;
@@ -15,7 +16,6 @@ mod history;
 mod judged;
 mod known_payload;
 mod look;
-mod reading;
 mod record;
 mod recorded;
 mod runs;
@@ -37,13 +37,13 @@ pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use task::{gauges_without_strain, reference_strain, strain_without_gauge, zero_of};
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
 
 use super::context::Context;
 use super::fault::Faults;
 use super::job::{Job, Measured};
+use super::measured::record::is_record;
 use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::{Conditioning, Prepared, prepare};
@@ -108,7 +108,7 @@ fn recovered(
     let task = task::task_of(work, job, measured, prepared)?;
     work.findings.extend(task::changes(measured));
     let bytes = work.inputs.read_named(job, &measured.strain)?;
-    Ok(if reading::is_record(&bytes) {
+    Ok(if is_record(&bytes) {
         let (record, validation) =
             work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
         (States::Record(Box::new(record)), validation)

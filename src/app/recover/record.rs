@@ -1,13 +1,13 @@
 //! Records: samples streamed through one estimate, pieces in parallel, a few pieces in memory at a time.
 
 use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
+use super::block::block;
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
 use super::dynamic::{Motion, rested};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
-use super::reading::{Record, block};
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
@@ -16,9 +16,10 @@ use super::validation::{self, Channels, Compared, ValidationGauge};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::LoadFile;
+use crate::app::measured::record::Record;
+use crate::app::measured::zero::no_zero_runs;
 use crate::app::outcome::finite;
 use crate::app::work::Work;
-use crate::app::zeroed::no_zero_runs;
 use crate::finding::Finding;
 use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;

@@ -5,18 +5,19 @@ use super::combined::{Listed, listed};
 use super::glued_wrong;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
-use super::task::{Task, columns_of};
+use super::task::Task;
 use super::validation::{self, ValidationGauge};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::LoadActs;
 use crate::app::job::correct::channel_of;
-use crate::app::job::strain::{
+use crate::app::measured::columns::columns_of;
+use crate::app::measured::means::is_long_record;
+use crate::app::measured::strain_file::{
     StrainRows, StrainTable, no_gauge_column, read_strain, record_fault, wanted_columns,
 };
-use crate::app::job::strain_means::is_long_record;
+use crate::app::measured::zero::{RowZeros, zeros_by_row};
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
-use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::{Readings, Recovery, recover};
 use crate::sensitivity::Sensitivity;

@@ -1,11 +1,12 @@
 //! The gauges of a record that read, and S of them.
 
-use super::reading::Record;
-use super::task::{Task, columns_of};
+use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::correct::channel_of;
-use crate::app::job::strain::no_gauge_column;
+use crate::app::measured::columns::columns_of;
+use crate::app::measured::record::Record;
+use crate::app::measured::strain_file::no_gauge_column;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::sensitivity::Sensitivity;

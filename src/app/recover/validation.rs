@@ -1,10 +1,11 @@
 //! Validation gauges: no load is estimated from them, and the loads predict their readings.
 
-use super::reading::Record;
-use super::task::{Task, columns_of_gauges};
+use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::correct::channel_of;
+use crate::app::measured::columns::columns_of_gauges;
+use crate::app::measured::record::Record;
 use crate::app::outcome::finite;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::validation::prediction_variance;

@@ -1,7 +1,7 @@
 //! Measured strain in memory: a row a run or a sample.
 
-use super::correct::{Channel, channel_of, column_of};
-use super::types::StrainCorrection;
+use crate::app::job::StrainCorrection;
+use crate::app::job::correct::{Channel, channel_of, column_of};
 
 /// What the rows of a strain file are.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ impl StrainTable {
     }
 
     /// Drops the columns of these gauges.
-    pub(super) fn leave_out(&mut self, gauges: &[String]) {
+    pub(in crate::app) fn leave_out(&mut self, gauges: &[String]) {
         let kept: Vec<bool> = self.gauges.iter().map(|g| !gauges.contains(g)).collect();
         if kept.iter().all(|k| *k) {
             return;
@@ -53,7 +53,7 @@ impl StrainTable {
     }
 
     /// Gives every column its gauge's name and every reading its gauge's strain.
-    pub(super) fn put_right(&mut self, corrections: &[StrainCorrection]) {
+    pub(in crate::app) fn put_right(&mut self, corrections: &[StrainCorrection]) {
         if corrections.is_empty() {
             return;
         }

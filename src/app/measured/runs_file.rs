@@ -1,12 +1,12 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::column_unit::{PAYLOAD, known_column, note_unread_runs, run_column, take_units};
-use super::given_columns::columns_of_given;
-use super::quantity::quantity_of_name;
-use super::table::read_table;
-use super::types::{Job, Runs};
+use super::runs_columns::{PAYLOAD, known_column, note_unread_runs, run_column, take_units};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
+use crate::app::job::given_columns::columns_of_given;
+use crate::app::job::quantity::quantity_of_name;
+use crate::app::job::table::read_table;
+use crate::app::job::{Job, Runs};
 use crate::units::Quantity;
 use std::collections::{BTreeMap, HashSet};
 

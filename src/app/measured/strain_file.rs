@@ -1,16 +1,16 @@
 //! The strain file: a column a gauge in microstrain, a row a run (`run`) or a sample (`time`); or RPC III, Parquet, MDF4, a channel a
-//! gauge. Text is read in [`super::strain_text`], means of long records in [`super::strain_means`].
+//! gauge. Text is read in [`super::strain_text`], means of long records in [`super::means`].
 
-use super::correct::{check_channels, columns_wanted};
-use super::gauge_column::strain_columns;
-use super::readings::readings_of;
-use super::same_name::is_same_name;
+use super::gauge_columns::find_gauge_columns;
 pub use super::strain_table::{StrainRows, StrainTable};
 use super::strain_text::strain_from_text;
-use super::table::read_table;
-use super::types::{Job, JobGauge, NamedFile};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::{FileBytes, Inputs};
+use crate::app::job::correct::{check_channels, columns_wanted};
+use crate::app::job::readings::{readings_of, stated_readings};
+use crate::app::job::same_name::is_same_name;
+use crate::app::job::table::read_table;
+use crate::app::job::{Job, JobGauge, NamedFile};
 use crate::finding::few;
 use crate::series::SeriesError;
 use crate::series::record::{Options, Record, is_format, open_record};
@@ -37,7 +37,7 @@ pub fn read_strain(
 }
 
 /// Refuses corrections of channels that the job's strain file lacks, where nothing else names the channels.
-pub(super) fn check_corrected(
+pub(in crate::app) fn check_corrected(
     job: &Job,
     named: &NamedFile,
     columns: &[String],
@@ -71,11 +71,6 @@ pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names = gauge_names(inputs, job);
     names.extend(job.reserved.iter().cloned());
     columns_wanted(&job.corrections, &names)
-}
-
-/// What the readings of the job's stated gauges are called: those of a rosette by its legs.
-pub fn stated_readings(job: &Job) -> Vec<String> {
-    job.gauges.iter().flat_map(readings_of).collect()
 }
 
 /// Readings of the job's gauges that a strain file has no column of. A rosette may have one column of its own name in place of its legs.
@@ -158,7 +153,7 @@ pub fn no_gauge_column(job: &Job, file: &str, columns: &[String], gauges: &[Stri
 
 /// A record that is read whole or passed over: its columns of strain, each with its name, as `gauges` are called, and microstrain in one of
 /// its unit.
-pub(super) fn open_strain(
+pub(in crate::app) fn open_strain(
     file: &str,
     bytes: FileBytes,
     gauges: &[String],
@@ -169,7 +164,7 @@ pub(super) fn open_strain(
     };
     let record =
         open_record(Arc::new(bytes), &options).map_err(|e| Faults::from(record_fault(file, &e)))?;
-    let columns = strain_columns(file, record.columns(), gauges)?
+    let columns = find_gauge_columns(file, record.columns(), gauges)?
         .into_iter()
         .enumerate()
         .filter_map(|(i, c)| Some((i, c.name, c.microstrain?)))

@@ -1,12 +1,12 @@
 //! Names and units of a run table's columns, read as those of records are: `A [kN]`, `A (kN)`, or a row of units below the names.
 
-use super::same_name::{is_same_name, is_same_word};
-use super::suggest;
-use super::table::Table;
-use super::types::{Job, Runs};
-use super::unread::note_unread;
 use crate::app::fault::{Fault, FaultList};
 use crate::app::files::Inputs;
+use crate::app::job::same_name::{is_same_name, is_same_word};
+use crate::app::job::suggest;
+use crate::app::job::table::Table;
+use crate::app::job::unread::note_unread;
+use crate::app::job::{Job, Runs};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
 use crate::series::record::{Clash, Column, name_and_unit, take_unit_below};

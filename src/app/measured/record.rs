@@ -1,17 +1,15 @@
 //! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
 
-use super::sink::Block;
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
 use crate::app::job::correct::{Channel, column_of, columns_wanted};
-use crate::app::job::gauge_column::{StrainColumn, strain_columns};
-use crate::app::job::strain::record_fault;
 use crate::app::job::{Job, Measured};
+use crate::app::measured::gauge_columns::{StrainColumn, find_gauge_columns};
+use crate::app::measured::strain_file::record_fault;
 use crate::finding::Finding;
-use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::clock;
 use crate::recovery::plausible::LARGEST_STRAIN;
 use crate::recovery::stuck::Stuck;
-use crate::recovery::{Sums, clock};
 use crate::series::record::csv::Layout;
 use crate::series::record::{self as series, Clock, Options, Times, is_format, open_record};
 use crate::series::still::{self, Gives, Still};
@@ -20,12 +18,12 @@ use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
 /// Whether a strain file is read as a record, a sample a row, rather than as runs.
-pub(super) fn is_record(bytes: &FileBytes) -> bool {
+pub(in crate::app) fn is_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || Layout::of(bytes).is_ok_and(|l| l.is_record())
 }
 
 /// A record whose columns are read as strain.
-pub(super) struct Record {
+pub(in crate::app) struct Record {
     inner: series::Record,
     file: String,
     /// The gauge that each column holds the readings of, as the job calls it.
@@ -56,7 +54,7 @@ impl Record {
             wanted: columns_wanted(&job.corrections, gauges),
         };
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
-        let columns = strain_columns(file, inner.columns(), &options.wanted)?;
+        let columns = find_gauge_columns(file, inner.columns(), &options.wanted)?;
         let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
         let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
         Ok(Self {
@@ -197,7 +195,10 @@ impl Record {
     }
 
     /// Hands the readings of a piece on, strain, a block at a time.
-    fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
         let n = self.columns.len().max(1);
         let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
         let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
@@ -240,7 +241,7 @@ impl Record {
         Ok(n)
     }
 
-    fn times(&self, i: usize) -> Vec<f64> {
+    pub fn times(&self, i: usize) -> Vec<f64> {
         let (from, to) = self.inner.span(i);
         (from..to).map(|s| self.time_s(s)).collect()
     }
@@ -249,17 +250,4 @@ impl Record {
     pub fn findings(&self) -> Vec<Finding> {
         clock::irregular(&self.file, self.clock())
     }
-}
-
-/// Loads of piece `i`, and the sums over it. Where the piece stands in the record is left to whoever puts pieces in order.
-pub(super) fn block(record: &Record, filter: &Filter, i: usize) -> Result<(Block, Sums), Fault> {
-    let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
-    let mut loads = SampleLoads::default();
-    record.each(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
-    let block = Block {
-        first: 0,
-        times: record.times(i),
-        loads,
-    };
-    Ok((block, sums))
 }

@@ -1,10 +1,10 @@
 //! What a strain file comes to where only its means count: sums over the rows, of a record passed over once, however long it is.
 
-use super::correct::{Channel, channel_of, column_of};
-use super::strain::{StrainTable, open_strain, read_strain, record_fault};
-use super::types::{Job, NamedFile};
+use super::strain_file::{StrainTable, open_strain, read_strain, record_fault};
 use crate::app::fault::Faults;
 use crate::app::files::{FileBytes, Inputs};
+use crate::app::job::correct::{Channel, channel_of, column_of};
+use crate::app::job::{Job, NamedFile};
 use crate::recovery::net::Series;
 use crate::series::record::csv::Layout;
 use crate::series::record::is_format;
@@ -64,7 +64,7 @@ pub fn is_long_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || bytes.len() > LARGE && Layout::of(bytes).is_ok_and(|l| l.is_record())
 }
 
-/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain::wanted_columns`].
+/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain_file::wanted_columns`].
 ///
 /// # Errors
 /// Every fault of the file.
