@@ -1,30 +1,26 @@
 //! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
 
+use super::faults::record_fault;
+use super::gauge_columns::{StrainColumn, find_gauge_columns};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
-use crate::app::job::correct::{Channel, column_of, columns_wanted};
-use crate::app::job::{Job, Measured};
-use crate::app::measured::gauge_columns::{StrainColumn, find_gauge_columns};
-use crate::app::measured::strain_file::record_fault;
+use crate::app::job::Job;
+use crate::app::job::correct::{Channel, channel_of, column_of};
 use crate::finding::Finding;
 use crate::recovery::clock;
+use crate::recovery::net::Series;
 use crate::recovery::plausible::LARGEST_STRAIN;
 use crate::recovery::stuck::Stuck;
-use crate::series::record::csv::Layout;
-use crate::series::record::{self as series, Clock, Options, Times, is_format, open_record};
+use crate::series::record::{self as series, Clock, Options, Times, open_record};
 use crate::series::still::{self, Gives, Still};
 use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-/// Whether a strain file is read as a record, a sample a row, rather than as runs.
-pub(in crate::app) fn is_record(bytes: &FileBytes) -> bool {
-    is_format(bytes) || Layout::of(bytes).is_ok_and(|l| l.is_record())
-}
-
 /// A record whose columns are read as strain.
+#[derive(Clone)]
 pub(in crate::app) struct Record {
-    inner: series::Record,
+    inner: Arc<series::Record>,
     file: String,
     /// The gauge that each column holds the readings of, as the job calls it.
     pub names: Vec<String>,
@@ -37,21 +33,21 @@ pub(in crate::app) struct Record {
 }
 
 impl Record {
-    /// The record in the strain file of a job, of which channels named after `gauges` will be read.
+    /// Opens the record in a strain file of a job, of which the columns `wanted` will be read; `time_unit_s` counts where the file states no unit
+    /// of time.
     ///
     /// # Errors
     /// Faults of the file: its format, its times, units that are none of strain.
     pub fn open(
         job: &Job,
-        measured: &Measured,
+        (file, time_unit_s): (&str, Option<f64>),
         bytes: FileBytes,
-        gauges: &[String],
+        wanted: &[String],
     ) -> Result<Self, Faults> {
-        let file = measured.strain.given.as_str();
         let options = Options {
             declared_hz: None,
-            time_unit_s: measured.time_unit_s,
-            wanted: columns_wanted(&job.corrections, gauges),
+            time_unit_s,
+            wanted: wanted.to_vec(),
         };
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
         let columns = find_gauge_columns(file, inner.columns(), &options.wanted)?;
@@ -63,13 +59,45 @@ impl Record {
             micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
             blank: Vec::new(),
-            inner,
+            inner: Arc::new(inner),
         })
     }
 
     /// The same, with the columns that are read.
     pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
         Self { columns, ..self }
+    }
+
+    /// Returns the record with all columns of strain read, but those of the job's reserved gauges.
+    pub fn with_all_strain(self, job: &Job) -> Self {
+        let is_read =
+            |c: &usize| !self.micro[*c].is_nan() && !job.reserved.contains(&self.names[*c]);
+        let columns = (0..self.names.len()).filter(is_read);
+        let columns = columns.map(|c| (Some(c), channel_of(&job.corrections, &self.names[c])));
+        let columns = columns.collect();
+        self.with_columns(columns)
+    }
+
+    /// Returns the gauges whose columns are read.
+    pub fn names_read(&self) -> Vec<String> {
+        let read = self.columns.iter().filter_map(|c| self.names.get(c.0?));
+        read.cloned().collect()
+    }
+
+    /// Returns sums over all samples, microstrain, by column that is read.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn sums(&self) -> Result<Vec<Series>, Fault> {
+        let mut sums = vec![Series::default(); self.columns.len()];
+        for i in 0..self.n_pieces() {
+            self.each_microstrain(i, |_, values| {
+                for row in values.chunks_exact(self.columns.len().max(1)) {
+                    sums.iter_mut().zip(row).for_each(|(s, v)| s.add(*v));
+                }
+            })?;
+        }
+        Ok(sums)
     }
 
     /// The same, without readings: number of the column that is read, and samples.
@@ -147,7 +175,7 @@ impl Record {
             ignore: false,
         };
         Ok(Self {
-            inner,
+            inner: Arc::new(inner),
             file: self.file.clone(),
             names: self.names.clone(),
             micro: vec![1.0; n],
@@ -200,6 +228,20 @@ impl Record {
     /// A piece that can't be read.
     pub fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
         let n = self.columns.len().max(1);
+        self.each_microstrain(i, |first, values| {
+            values.iter_mut().for_each(|v| *v *= MICROSTRAIN);
+            still::blank(values, n, first, &self.blank);
+            sink(values);
+        })
+    }
+
+    /// Hands the readings of a piece on, microstrain, a block at a time with the number of its first sample.
+    fn each_microstrain(
+        &self,
+        i: usize,
+        mut sink: impl FnMut(usize, &mut [f64]),
+    ) -> Result<(), Fault> {
+        let n = self.columns.len().max(1);
         let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
         let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
         let right: Vec<(f64, Channel)> = self
@@ -211,12 +253,10 @@ impl Record {
         let read = self.inner.read(i, &columns, &mut |block| {
             strain.clear();
             for row in block.values.chunks_exact(n) {
-                let put_right =
-                    |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro) * MICROSTRAIN;
+                let put_right = |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro);
                 strain.extend(row.iter().zip(&right).map(put_right));
             }
-            still::blank(&mut strain, n, block.first, &self.blank);
-            sink(&strain);
+            sink(block.first, &mut strain);
             ControlFlow::Continue(())
         });
         read.map_err(|e| record_fault(&self.file, &e))

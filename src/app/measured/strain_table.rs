@@ -34,6 +34,14 @@ impl StrainTable {
         }
     }
 
+    /// Returns the names of the runs; none of a record.
+    pub fn runs(&self) -> &[String] {
+        match &self.rows {
+            StrainRows::Runs(names) => names,
+            StrainRows::Times(_) => &[],
+        }
+    }
+
     /// Readings of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         let w = self.gauges.len();

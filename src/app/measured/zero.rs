@@ -5,11 +5,12 @@
 //! row to row is seen between them, and the readings count with that much more noise.
 
 use super::columns::{columns_of, gauges_without_strain, strain_without_gauge};
+use super::faults::no_runs;
 use super::means::is_long_record;
 use super::means::read_strain_file;
-use super::strain_file::{
-    StrainRows, StrainTable, gauge_names, read_strain, wanted_columns, without_column,
-};
+use super::open::{MeasuredStrain, open};
+use super::strain_file::{gauge_names, read_strain, wanted_columns, without_column};
+use super::strain_table::{StrainRows, StrainTable};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::{HoldOut, Job, Measured, NamedFile};
 use crate::app::work::Work;
@@ -26,6 +27,17 @@ pub(in crate::app) struct Zeroed {
 }
 
 impl Zeroed {
+    /// Returns the names of the runs.
+    ///
+    /// # Errors
+    /// A record.
+    pub fn runs(&self) -> Result<&[String], Faults> {
+        match &self.table.rows {
+            StrainRows::Runs(names) => Ok(names),
+            StrainRows::Times(_) => Err(no_runs(&self.table.file).into()),
+        }
+    }
+
     /// What these gauges read in each row, strain; not a number for a gauge without a column.
     pub fn readings(&self, gauges: &[String]) -> Vec<Readings> {
         let table = &self.table;
@@ -64,13 +76,7 @@ pub(in crate::app) fn read_zeroed(
 ) -> Result<Zeroed, Faults> {
     let bytes = work.inputs.read_named(job, named)?;
     if is_long_record(&bytes) {
-        return Err(Fault::of(
-            &*named.given,
-            "run",
-            "rows are samples of one record",
-            "give the means of static runs, a row each, with a column `run`",
-        )
-        .into());
+        return Err(no_runs(&named.given).into());
     }
     let wanted = wanted_columns(&mut work.inputs, job);
     let mut table = read_strain(&mut work.inputs, job, named, &wanted)?;
@@ -318,11 +324,9 @@ fn zero_rows(
     {
         let both = [&measured.strain, hold_out];
         files = format!("neither `{}` nor `{}` has a", both[0].given, both[1].given);
-        let wanted = wanted_columns(&mut work.inputs, job);
         for other in both.into_iter().filter(|f| f.given != table.file) {
-            let other = read_strain(&mut work.inputs, job, other, &wanted)?;
-            if let StrainRows::Runs(runs) = other.rows {
-                known.extend(runs);
+            if let MeasuredStrain::Runs(other) = open(&mut work.inputs, job, measured, other)? {
+                known.extend_from_slice(other.runs());
             }
         }
     }

@@ -3,9 +3,11 @@
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Measured, NamedFile};
+use crate::app::measured::faults::no_gauge_column;
 use crate::app::measured::means::{StrainFile, read_strain_file};
 use crate::app::measured::runs_file::{RunRow, read_runs};
-use crate::app::measured::strain_file::{StrainRows, StrainTable, no_gauge_column, wanted_columns};
+use crate::app::measured::strain_file::wanted_columns;
+use crate::app::measured::strain_table::{StrainRows, StrainTable};
 use crate::app::measured::zero::{no_zero_runs, note_columns, zeros_by_row};
 use crate::app::outcome::finite;
 use crate::app::work::Work;

@@ -3,7 +3,7 @@
 use crate::app::fault::Faults;
 use crate::app::job::{Job, Reference};
 use crate::app::measured::means::is_long_record;
-use crate::app::measured::strain_file::StrainRows;
+use crate::app::measured::strain_table::StrainRows;
 use crate::app::measured::zero::{judged, read_zeroed};
 use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
