@@ -14,7 +14,7 @@ mod text;
 
 pub use end::{is_cut, unsure_end};
 pub use layout::{Layout, is_units};
-pub use text::{eight_bit_text, has_bare_returns};
+pub use text::{has_bare_returns, table_text};
 
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
@@ -214,7 +214,7 @@ fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wr
             let next = next.get(..text::field_end(next, delimiter));
             date::beside(shown, text::bare(next.unwrap_or_default())).map(|s| s - epoch_s)
         }
-        TimeKind::OfDay { first_s } => date::of_day(shown).map(|s| s - first_s),
+        TimeKind::OfDay { first_s } => date::of_day(shown).map(|s| date::since(first_s, s)),
         TimeKind::Number { .. } => None,
     };
     match found {
