@@ -169,7 +169,7 @@ const PLATE: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\n\
     CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\n\
     SPC1,1,123456,1,4\nENDDATA\n";
 
-/// Weight of a payload that acts along a force of the job, from the strain of a force of -250 N along basic y.
+/// The strain is that of a force of -250 N along basic y at the grid of the payload, by the S of the job.
 #[test]
 fn a_payload_acts_along_a_force_that_is_stated_in_another_coordinate_system() {
     let weight = |load: &str| {
@@ -197,11 +197,17 @@ fn a_payload_acts_along_a_force_that_is_stated_in_another_coordinate_system() {
                 ),
             );
         let read = Job::read("job.toml", &files).unwrap();
-        payload(&read, &Context::new(&files)).unwrap().weighing.runs[0].force
+        let found = payload(&read, &Context::new(&files)).unwrap();
+        let run = &found.weighing.runs[0];
+        (run.force, run.interval)
     };
-    for load in ["component = \"FY\"", "component = \"FX\"\ncid = 5"] {
-        let found = weight(load);
-        // Strain is written to its last digit.
-        assert!((found - 250.0).abs() < 1e-6, "{load}: {found}");
-    }
+    let (along_y, interval) = weight("component = \"FY\"");
+    assert!(interval[0] < 250.0 && 250.0 < interval[1], "{interval:?}");
+    assert!(interval[1] - interval[0] < 25.0, "{interval:?}");
+    let (in_system_5, _) = weight("component = \"FX\"\ncid = 5");
+    // The same force: the turned vector is off in its last digit.
+    assert!(
+        (in_system_5 - along_y).abs() < 1e-9 * along_y,
+        "{in_system_5} {along_y}"
+    );
 }

@@ -28,17 +28,6 @@ pub fn of_day(field: &[u8]) -> Option<f64> {
     (parts == 3).then(|| seconds_of_day(text))?
 }
 
-/// Seconds from one time of day to another of the same record. One that is earlier by more than three hours is of the next day; one that is
-/// earlier by less is out of order.
-pub fn since(first_s: f64, of_day_s: f64) -> f64 {
-    const OUT_OF_ORDER_S: f64 = 3.0 * 3600.0;
-    let s = of_day_s - first_s;
-    match s < -OUT_OF_ORDER_S {
-        true => s + DAY,
-        false => s,
-    }
-}
-
 /// Days since 1970.
 fn days_of(date: &str) -> Option<i64> {
     let mark = ['.', '/', '-'].into_iter().find(|m| date.contains(*m))?;

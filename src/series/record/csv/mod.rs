@@ -214,7 +214,7 @@ fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wr
             let next = next.get(..text::field_end(next, delimiter));
             date::beside(shown, text::bare(next.unwrap_or_default())).map(|s| s - epoch_s)
         }
-        TimeKind::OfDay { first_s } => date::of_day(shown).map(|s| date::since(first_s, s)),
+        TimeKind::OfDay { first_s } => date::of_day(shown).map(|s| s - first_s),
         TimeKind::Number { .. } => None,
     };
     match found {

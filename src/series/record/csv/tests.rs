@@ -62,31 +62,6 @@ const DATED: &str = "Date;Time;SG1 [um/m];SG2 [um/m]\n\
     31.05.2026;09:15:02,000;1250,5;-3,25\n31.05.2026;09:15:02,010;1251,5;#NV\n31.05.2026;09:15:02,020;1252,5;-1,25\n";
 
 #[test]
-fn times_of_day_go_on_over_midnight_and_smaller_steps_back_are_out_of_order() {
-    let rows = |times: [&str; 3]| {
-        let row = |(i, t): (usize, &&str)| format!("{t},{i}\n");
-        format!(
-            "Time,G1\n{}",
-            times.iter().enumerate().map(row).collect::<String>()
-        )
-    };
-    let night = open(rows(["23:59:59.9", "00:00:00.0", "00:00:00.1"]).as_bytes()).unwrap();
-    assert_eq!(night.clock.samples, 3);
-    assert!((night.clock.rate_hz - 10.0).abs() < 1e-6);
-    assert_eq!(samples(&night, "G1").unwrap(), [0.0, 1.0, 2.0]);
-    for back in [
-        ["12:00:00.2", "12:00:00.1", "12:00:00.3"],
-        ["12:00:00", "11:00:00", "10:00:00"],
-    ] {
-        assert!(
-            refusal(&rows(back)).contains("after"),
-            "{}",
-            refusal(&rows(back))
-        );
-    }
-}
-
-#[test]
 fn a_name_that_begins_with_a_quotation_mark_keeps_it() {
     let record = open(b"Time,\"\"\"A\"\" front\",B\n0.0,1,2\n0.1,3,4\n").unwrap();
     assert_eq!(samples(&record, "\"A\" front").unwrap(), [1.0, 3.0]);
