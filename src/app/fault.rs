@@ -1,7 +1,8 @@
 //! Bad input: what is wrong, where, and what to do about it.
 
-use crate::finding::bounded;
+use crate::finding::{bounded, few};
 use serde::Serialize;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 /// One fault, printed as `file:line: field: what is wrong: what to do`; its words are [`bounded`].
@@ -85,7 +86,7 @@ impl Faults {
         if list.is_empty() {
             Ok(())
         } else {
-            Err(Self(list))
+            Err(Self(fold_alike(list)))
         }
     }
 
@@ -94,7 +95,7 @@ impl Faults {
         if list.is_empty() {
             otherwise.into()
         } else {
-            Self(list)
+            Self(fold_alike(list))
         }
     }
 
@@ -102,6 +103,37 @@ impl Faults {
     pub fn into_list(self) -> FaultList {
         self.0
     }
+}
+
+/// Returns the faults with one for all that have the file, field and remedy in common, where they are many.
+fn fold_alike(list: FaultList) -> FaultList {
+    /// Faults up to which each is listed.
+    const FEW: usize = 3;
+    let key = |f: &Fault| (f.file.clone(), f.field.clone(), f.remedy.clone());
+    let mut lines: HashMap<_, Vec<u32>> = HashMap::new();
+    for fault in list.iter().filter(|f| f.line.is_some()) {
+        lines.entry(key(fault)).or_default().extend(fault.line);
+    }
+    lines.retain(|_, l| l.len() > FEW);
+    let mut out = FaultList::new();
+    let mut folded = HashSet::new();
+    for mut fault in list {
+        let key = key(&fault);
+        if let Some(lines) = lines.get(&key).filter(|_| fault.line.is_some()) {
+            if !folded.insert(key) {
+                continue;
+            }
+            let others: Vec<String> = lines.iter().skip(1).map(u32::to_string).collect();
+            fault.wrong = bounded(format!(
+                "{}; {} more faults of this kind, in lines {}",
+                fault.wrong,
+                others.len(),
+                few(&others)
+            ));
+        }
+        out.push(fault);
+    }
+    out
 }
 
 impl From<Fault> for Faults {

@@ -8,7 +8,7 @@ use super::sheet::{csv_of_sheet, is_sheet};
 use super::what_is::no_table;
 pub use super::whole_file::{FileBytes, Opened, Stamp};
 use crate::finding::{Finding, Severity};
-use crate::series::record::csv::{Layout, eight_bit_text, is_cut, unsure_end};
+use crate::series::record::csv::{Layout, is_cut, table_text, unsure_end};
 #[cfg(feature = "parquet")]
 use crate::series::record::runs_as_csv;
 use crate::series::record::{format_of, is_format};
@@ -145,6 +145,15 @@ impl<'a> Inputs<'a> {
     /// # Errors
     /// A fault where it can't be read or isn't UTF-8.
     pub fn read_text(&mut self, base: &Path, given: &str) -> Result<String, Fault> {
+        let bytes = self.table_bytes(base, given)?;
+        match std::str::from_utf8(&bytes) {
+            Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()),
+            Err(_) => Err(no_text(given, &bytes)),
+        }
+    }
+
+    /// Bytes of a table of text.
+    fn table_bytes(&mut self, base: &Path, given: &str) -> Result<FileBytes, Fault> {
         let bytes = as_table(given, self.read(base, given)?)?;
         if let Some(format) = format_of(&bytes) {
             let remedy = "name a table of text or a spreadsheet";
@@ -155,20 +164,7 @@ impl<'a> Inputs<'a> {
                 remedy,
             ));
         }
-        match std::str::from_utf8(&bytes) {
-            Ok(text) => Ok(text.strip_prefix('\u{feff}').unwrap_or(text).to_owned()),
-            Err(e) => {
-                let before = bytes.get(..e.valid_up_to()).unwrap_or_default();
-                let line = 1 + before.iter().filter(|b| **b == b'\n').count() as u32;
-                Err(Fault::at(
-                    given,
-                    line,
-                    "text",
-                    "not UTF-8",
-                    "save the file as UTF-8 text",
-                ))
-            }
-        }
+        Ok(bytes)
     }
 
     /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet and Feather with a column `run`
@@ -195,11 +191,9 @@ impl<'a> Inputs<'a> {
     /// # Errors
     /// A fault at the line of the job that names it, or at the line that isn't text.
     pub fn read_named_text(&mut self, job: &Job, named: &NamedFile) -> Result<String, Fault> {
-        let text = self.read_text(&job.folder, &named.given);
-        let text = text.or_else(|not_utf8| {
-            let bytes = self.read(&job.folder, &named.given)?;
-            eight_bit_text(&bytes).ok_or(not_utf8)
-        });
+        let text = self.table_bytes(&job.folder, &named.given);
+        let text =
+            text.and_then(|bytes| table_text(&bytes).ok_or_else(|| no_text(&named.given, &bytes)));
         self.note_end(&named.given, text.as_ref().ok());
         text.map_err(|f| at_job_line(job, named, f))
     }
@@ -311,6 +305,15 @@ fn runs_in_columns(given: &str, bytes: &FileBytes) -> Result<Option<String>, Fau
 #[cfg(not(feature = "parquet"))]
 fn runs_in_columns(_: &str, _: &FileBytes) -> Result<Option<String>, Fault> {
     Ok(None)
+}
+
+/// Returns the fault of a file that is not text, at the first line that is not.
+fn no_text(given: &str, bytes: &[u8]) -> Fault {
+    let valid = std::str::from_utf8(bytes).map_or_else(|e| e.valid_up_to(), str::len);
+    let before = bytes.get(..valid).unwrap_or_default();
+    let line = 1 + before.iter().filter(|b| **b == b'\n').count() as u32;
+    let remedy = "save the file as UTF-8 text";
+    Fault::at(given, line, "text", "not UTF-8", remedy)
 }
 
 /// Returns the findings that were noted on a table.

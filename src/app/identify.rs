@@ -3,6 +3,7 @@
 use super::context::Context;
 use super::fault::Faults;
 use super::job::Job;
+use super::named_results::check_tables;
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::vehicle::{VehicleRecords, read_vehicle, vehicle_fault};
 use super::work::Work;
@@ -124,6 +125,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
 /// Every fault of the job and its records.
 pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> {
     let mut work = Work::of_job(cx, job);
+    check_tables(&work, job)?;
     let records = work.stage("read", |w| read_vehicle(w, job))?;
     let VehicleRecords {
         task,

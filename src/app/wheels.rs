@@ -90,6 +90,13 @@ pub fn wheels_of(job: &Job, model: &Model) -> Result<Wheels, Faults> {
     Ok(out)
 }
 
+/// Returns the basic degree of freedom (0 to 5) along which component `dof` acts at a grid in a coordinate system; `None` where it points
+/// elsewhere.
+pub fn basic_dof(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
+    let axis = basic_axis(model, grid, dof % 3, cid)?;
+    Some(axis + dof - dof % 3)
+}
+
 /// Returns the basic axis whose positive direction is that of a force along axis `dof` of a coordinate system at a grid; `None` where it
 /// points elsewhere.
 fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {

@@ -16,8 +16,8 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use strainbridge::app::context::{Context, InMemory};
 use strainbridge::app::job::Job;
-use strainbridge::app::job::strain::{read_strain, wanted_columns};
 use strainbridge::app::job::table::read_table;
+use strainbridge::app::measured::strain_file::{read_strain, wanted_columns};
 use strainbridge::model::Model;
 use strainbridge::series::record::{Options, open_record};
 

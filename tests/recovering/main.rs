@@ -11,6 +11,7 @@ mod kinds;
 mod misled;
 mod mistakes;
 mod payload;
+mod readings;
 mod supported;
 mod tables;
 mod validation;

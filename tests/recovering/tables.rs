@@ -191,8 +191,11 @@ fn columns_of_the_runs_file_are_read_or_named() {
         );
         let job = Job::read("job.toml", &files).unwrap();
         let mut inputs = strainbridge::app::files::Inputs::of(&files);
-        let rows =
-            strainbridge::app::job::runs::read_runs(&mut inputs, &job, job.runs.as_ref().unwrap());
+        let rows = strainbridge::app::measured::runs_file::read_runs(
+            &mut inputs,
+            &job,
+            job.runs.as_ref().unwrap(),
+        );
         (rows.unwrap(), inputs.findings())
     };
     let (right, findings) = job("run,payload_mass,payload_x,A.FZ,B.FZ\nR0,300,2,1,2\n");

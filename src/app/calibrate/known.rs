@@ -2,12 +2,12 @@
 
 use super::payloads::{Payloads, add_columns};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{
-    asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
-};
 use crate::app::job::suggest;
 use crate::app::job::table::{Table, read_table};
 use crate::app::job::{HoldOut, Job, Measured, Runs};
+use crate::app::measured::runs_columns::{
+    asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
+};
 use crate::app::work::Work;
 use crate::calibrate::KnownLoads;
 use crate::finding::{Finding, Severity};

@@ -12,15 +12,17 @@ pub use outcome::*;
 
 use super::context::Context;
 use super::fault::{Fault, Faults};
-use super::job::strain::{StrainRows, StrainTable, no_gauge_column, stated_readings};
+use super::job::readings::stated_readings;
 use super::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
+use super::measured::faults::no_gauge_column;
+use super::measured::strain_table::StrainTable;
+use super::measured::zero::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
 use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::reconcile::redirect::text_of;
 use super::recover::listed;
 use super::strain::{Prepared, given_as_asked, prepare};
 use super::work::Work;
-use super::zeroed::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
 use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
 use crate::linalg::Matrix;
 use crate::recovery::Readings;
@@ -42,7 +44,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let listed = listed(job, s)?;
     let origin = payload_place(job, &prepared);
     let (known, strain) = read(&mut work, job, (measured, runs), &zeroed, s, origin)?;
-    let names = names_of(&zeroed.table);
+    let names = zeroed.runs()?;
     let noise_factor = &zeroed.noise_factor;
     let task = Task {
         gauges: prepared.sensitivity.gauges.clone(),
@@ -139,24 +141,8 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
 /// Those of the file; a record.
 fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<Zeroed, Faults> {
     let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
-    match &zeroed.table.rows {
-        StrainRows::Runs(_) => Ok(zeroed),
-        _ => Err(Fault::of(
-            &*measured.strain.given,
-            "time",
-            "a record can't be read as runs",
-            "write a row a run, its name in a column `run`",
-        )
-        .into()),
-    }
-}
-
-/// Names of the rows.
-fn names_of(table: &StrainTable) -> &[String] {
-    match &table.rows {
-        StrainRows::Runs(names) => names,
-        _ => &[],
-    }
+    zeroed.runs()?;
+    Ok(zeroed)
 }
 
 /// Known loads, and the strain of all rows by gauge of `s`, judged.
@@ -171,7 +157,7 @@ fn read(
     s: &Sensitivity,
     origin: [f64; 2],
 ) -> Result<(known::KnownRuns, Vec<Readings>), Faults> {
-    let names = names_of(&zeroed.table);
+    let names = zeroed.runs()?;
     let known = known::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
     check_readings(job, measured, &zeroed.table, &s.gauges)?;
     let read = zeroed.readings(&s.gauges);

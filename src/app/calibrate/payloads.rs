@@ -1,11 +1,11 @@
 //! Weighed payloads as known loads: mass and place of the runs file make the columns of the payload's loads.
 
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{column_called, known_column};
 use crate::app::job::payload_loads::part_of;
-use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::Table;
 use crate::app::job::{Job, Runs};
+use crate::app::measured::runs_columns::{column_called, known_column};
+use crate::app::measured::runs_file::{RunRow, read_runs};
 use crate::app::work::Work;
 use crate::sensitivity::Load;
 use crate::series::record::{Column, name_and_unit};

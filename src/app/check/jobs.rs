@@ -3,14 +3,15 @@
 use super::asked::ask;
 use super::checked::Checked;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::strain::stated_readings;
+use crate::app::job::readings::stated_readings;
 use crate::app::job::{self, GivenSensitivity, HoldOut, Job, Measured, NamedFile};
 use crate::app::job_deck::against_units;
+use crate::app::measured::runs_file;
+use crate::app::measured::zero::read_zeroed;
 use crate::app::outcome::StatedUnits;
 use crate::app::solved::{relief_of_job, support_finding, support_of_job};
 use crate::app::strain::{given_as_asked, off_their_elements};
 use crate::app::work::Work;
-use crate::app::zeroed::read_zeroed;
 use crate::app::{calibrate, identify, reconcile, recover, respond};
 use crate::linalg::Matrix;
 use crate::model::Model;
@@ -55,7 +56,7 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         faults.extend(signatures(work, &job, given, &gauges));
     }
     if let Some(r) = &job.runs {
-        kept(job::runs::read_runs(&mut work.inputs, &job, r), &mut faults);
+        kept(runs_file::read_runs(&mut work.inputs, &job, r), &mut faults);
     }
     if job.vehicle.is_some() {
         kept(identify::look(work, &job), &mut faults);

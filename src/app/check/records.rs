@@ -2,7 +2,7 @@
 
 use crate::app::fault::Faults;
 use crate::app::files::as_table;
-use crate::app::job::strain::record_fault;
+use crate::app::measured::faults::record_fault;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::finding::few;

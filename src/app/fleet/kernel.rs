@@ -10,8 +10,9 @@ use super::scale::{noise_of, scales};
 use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
-use crate::app::job::gauge_column::strain_columns;
-use crate::app::recover::{Listed, strain_without_gauge};
+use crate::app::measured::columns::strain_without_gauge;
+use crate::app::measured::gauge_columns::find_gauge_columns;
+use crate::app::recover::Listed;
 use crate::finding::Severity;
 use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
@@ -221,11 +222,12 @@ impl Kernel {
         findings: &mut Vec<DayFinding>,
     ) -> Result<Recovering, String> {
         let all = &self.sensitivity;
-        let columns = strain_columns("record", record.columns(), &self.wanted()).map_err(|e| {
-            let list = e.into_list();
-            let each = list.iter().map(|f| format!("`{}`: {}", f.field, f.wrong));
-            each.collect::<Vec<_>>().join("; ")
-        })?;
+        let columns =
+            find_gauge_columns("record", record.columns(), &self.wanted()).map_err(|e| {
+                let list = e.into_list();
+                let each = list.iter().map(|f| format!("`{}`: {}", f.field, f.wrong));
+                each.collect::<Vec<_>>().join("; ")
+            })?;
         let names: Vec<String> = columns
             .iter()
             .map(|c| column_of(&self.corrections, &c.name).to_owned())

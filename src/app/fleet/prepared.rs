@@ -5,11 +5,13 @@ use super::recovering::UnderWay;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Job;
 use crate::app::job::correct::channel_of;
+use crate::app::measured::reference::reference_strain;
+use crate::app::measured::zero::no_zero_runs;
+use crate::app::measured::zero::zero_of;
 use crate::app::named_results::check_tables;
-use crate::app::recover::{listed, reference_strain, zero_of};
+use crate::app::recover::listed;
 use crate::app::strain::{prepare, stated_errors};
 use crate::app::work::Work;
-use crate::app::zeroed::no_zero_runs;
 use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
 

@@ -2,10 +2,8 @@
 //! structs of [`types`]; [`gauges`], [`strain`] and [`runs`] read the tables a job names; [`schema`] describes
 //! a job to editors.
 
-pub mod column_unit;
 pub mod correct;
 mod faults;
-pub mod gauge_column;
 mod gauge_table;
 pub mod gauges;
 pub mod given_columns;
@@ -19,15 +17,10 @@ mod raw;
 pub mod readings;
 mod resolve;
 mod roles;
-pub mod runs;
-mod same_name;
+pub(in crate::app) mod same_name;
 pub mod schema;
 mod shapes;
 mod spanned;
-pub mod strain;
-pub mod strain_means;
-mod strain_table;
-mod strain_text;
 pub mod suggest;
 pub mod table;
 mod types;

@@ -141,6 +141,13 @@ fn with_point(field: &str, mark: DecimalMark) -> String {
     }
 }
 
+/// Whether a number has a mark between thousands and another before its fraction: `2.497,6` or `2,497.6`.
+fn has_thousands(text: &str) -> bool {
+    let has = |c: char| text.contains(c);
+    let bare: String = text.chars().filter(|c| !matches!(c, '.' | ',')).collect();
+    has('.') && has(',') && bare.parse::<f64>().is_ok()
+}
+
 impl Table {
     /// Refuses a header without rows, which says nothing.
     ///
@@ -198,6 +205,12 @@ impl Table {
         }
         match text.parse::<f64>() {
             Ok(x) if x.is_finite() => Ok(Some(x)),
+            _ if has_thousands(text) => {
+                let name = self.header.get(column).map_or("", String::as_str);
+                let wrong = format!("column `{name}`: `{text}` has a mark between thousands");
+                let remedy = "write numbers without marks between thousands";
+                Err(Fault::at(&*self.file, *line, "numbers", wrong, remedy))
+            }
             _ => {
                 let name = self.header.get(column).map_or("", String::as_str);
                 Err(Fault::at(

@@ -1,6 +1,7 @@
-use super::gauge_column::{StrainColumn, strain_columns};
 use super::*;
 use crate::app::fault::{Fault, Faults};
+use crate::app::measured::gauge_columns::{StrainColumn, find_gauge_columns};
+use crate::app::measured::{runs_file, strain_file, strain_table, strain_text};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Bridge;
 use crate::reconcile::strain::WheelForces;
@@ -47,8 +48,8 @@ fn every_shared_job_is_read_with_all_files_it_names() {
         let job =
             read_job(&mut inputs, &path).unwrap_or_else(|f| panic!("{}: {f:?}", path.display()));
         if let Some(m) = &job.measured {
-            let wanted = strain::wanted_columns(&mut inputs, &job);
-            let strain = strain::read_strain(&mut inputs, &job, &m.strain, &wanted).unwrap();
+            let wanted = strain_file::wanted_columns(&mut inputs, &job);
+            let strain = strain_file::read_strain(&mut inputs, &job, &m.strain, &wanted).unwrap();
             let names: Vec<&String> = job.gauges.iter().map(|g| &g.name).collect();
             assert_eq!(
                 strain.gauges.iter().collect::<Vec<_>>(),
@@ -59,7 +60,7 @@ fn every_shared_job_is_read_with_all_files_it_names() {
             assert!(strain.n_rows() >= 12);
         }
         if let Some(r) = &job.runs {
-            let runs = runs::read_runs(&mut inputs, &job, r).unwrap();
+            let runs = runs_file::read_runs(&mut inputs, &job, r).unwrap();
             assert!(runs.iter().all(|r| r.loads_si.len() == 6
                 && r.payload_mass_kg.is_some()
                 && r.payload_x_m.is_some()));
@@ -91,7 +92,7 @@ fn a_runs_file_is_read_in_si_by_the_jobs_names() {
         .skip(1)
         .map(|x| x.parse().unwrap())
         .collect();
-    let runs = runs::read_runs(&mut inputs, &job, job.runs.as_ref().unwrap()).unwrap();
+    let runs = runs_file::read_runs(&mut inputs, &job, job.runs.as_ref().unwrap()).unwrap();
     assert_eq!(runs[0].payload_mass_kg, Some(first[0]));
     assert_eq!(runs[0].loads_si["RR.FZ"], first[2] * 1e3);
     assert_eq!(runs[0].loads_si["LR.FZ"], first[7] * 1e3);
@@ -489,7 +490,7 @@ fn strain_tables_hold_runs_or_samples() {
     let s = read("run,G1,G2\nR1,1.5,\nR2,3,4\n").unwrap();
     assert_eq!(
         s.rows,
-        strain::StrainRows::Runs(vec!["R1".into(), "R2".into()])
+        strain_table::StrainRows::Runs(vec!["R1".into(), "R2".into()])
     );
     assert!(s.row(0)[1].is_nan());
     let f = read("time;G1\n0;1\n0.1;2\n0.1;3\n").unwrap_err();
@@ -529,7 +530,7 @@ fn without_a_model_a_load_needs_a_name_alone_and_with_one_it_must_act_somewhere(
 }
 
 /// The runs of a table, read for a job with these further lines under `[runs]`.
-fn runs_of(table: &str, more: &str) -> Result<Vec<runs::RunRow>, Faults> {
+fn runs_of(table: &str, more: &str) -> Result<Vec<runs_file::RunRow>, Faults> {
     let files = crate::app::context::InMemory::default().with("runs.csv", table);
     let text = format!(
         "units = \"m-kg-s\"\nreport_units = {{ force = \"kN\" }}\n[[load]]\nname = \"LF.FZ\"\n[[load]]\nname = \"LF.MX\"\n\
@@ -537,7 +538,7 @@ fn runs_of(table: &str, more: &str) -> Result<Vec<runs::RunRow>, Faults> {
     );
     let job = read_text(&text)?;
     let runs = job.runs.as_ref().unwrap();
-    runs::read_runs(&mut Inputs::of(&files), &job, runs)
+    runs_file::read_runs(&mut Inputs::of(&files), &job, runs)
 }
 
 #[test]
@@ -648,7 +649,7 @@ fn labels_and_units_of_gauges_are_told_apart() {
         Column::of_channel("P01", "um/m"),
         Column::of_channel("P01", "raw"),
     ];
-    let found = strain_columns("r.mf4", &two, &["P01".to_owned()]).unwrap();
+    let found = find_gauge_columns("r.mf4", &two, &["P01".to_owned()]).unwrap();
     assert_eq!(of_gauges(&found), [("P01", Some(1.0)), ("P01 [raw]", None)]);
     // No strain, whether gauges are known or not.
     for gauges in [&["G1"][..], &[]] {
@@ -667,7 +668,7 @@ fn labels_and_units_of_gauges_are_told_apart() {
     let bare = read("G1,run\n,R1\n3,R2\n", &["G1"]).unwrap();
     assert_eq!(
         bare.rows,
-        strain::StrainRows::Runs(vec!["R1".into(), "R2".into()])
+        strain_table::StrainRows::Runs(vec!["R1".into(), "R2".into()])
     );
 }
 
@@ -719,7 +720,7 @@ fn a_table_and_a_record_give_one_verdict_on_a_header() {
     ] {
         let gauges = gauges(wanted);
         let columns: Vec<Column> = header.split(',').map(name_and_unit).collect();
-        let of_record = strain_columns("r.csv", &columns, &gauges);
+        let of_record = find_gauge_columns("r.csv", &columns, &gauges);
         let of_text = columns_of_text(header, &gauges);
         let Some(expected) = expected else {
             assert!(of_record.is_err() && of_text.is_err(), "{header}");
@@ -741,7 +742,7 @@ fn where_no_gauges_are_known_a_unit_of_anything_else_is_no_strain() {
         assert!(said.contains("is no unit of strain"), "{said}");
         // A record holds other channels too: they are left out.
         let column = [name_and_unit(header)];
-        let found = strain_columns("r.parquet", &column, &[]).unwrap();
+        let found = find_gauge_columns("r.parquet", &column, &[]).unwrap();
         assert_eq!(found[0].microstrain, None, "{header}");
     }
 }
@@ -808,8 +809,8 @@ fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
     .unwrap();
     let measured = job.measured.as_ref().unwrap();
     let mut inputs = Inputs::of(&files);
-    let wanted = strain::wanted_columns(&mut inputs, &job);
-    let table = strain::read_strain(&mut inputs, &job, &measured.strain, &wanted).unwrap();
+    let wanted = strain_file::wanted_columns(&mut inputs, &job);
+    let table = strain_file::read_strain(&mut inputs, &job, &measured.strain, &wanted).unwrap();
     assert_eq!(table.gauges, ["G1", "G2"]);
     assert!(table.row(0)[0] == 1.0 && table.row(0)[1].is_nan());
 }

@@ -3,9 +3,9 @@
 use super::model::Parts;
 use super::stated::REFUTED;
 use super::task::Task;
+use crate::app::measured::zero::judged;
 use crate::app::words::short;
 use crate::app::work::Work;
-use crate::app::zeroed::judged;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};

@@ -5,11 +5,11 @@ use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::payload_loads::part_of;
 use crate::app::job::payload_signature::{COLUMNS, note_unread};
 use crate::app::job::table::read_table;
-use crate::app::job::{Component, GivenSensitivity, Job, LoadActs, NamedFile};
+use crate::app::job::{GivenSensitivity, Job, LoadActs, NamedFile};
 use crate::app::job_deck::read_deck;
 use crate::app::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, has_covariance, prepare};
-use crate::app::wheels::{floor_fault, wheels_of};
+use crate::app::wheels::{basic_dof, floor_fault, wheels_of};
 use crate::app::work::Work;
 use crate::fe::floor::solve_standing;
 use crate::fe::{CaseResult, Support, UnitLoad};
@@ -145,19 +145,24 @@ impl Place {
 }
 
 /// The job's own loads at the payload's grid, by part.
-fn own_columns(job: &Job, place: Place) -> [Option<usize>; 3] {
+fn own_columns(job: &Job, model: &Model, place: Place) -> [Option<usize>; 3] {
     let [a, b, c] = place.axes();
     [a, 3 + b, 3 + c].map(|component| {
         job.loads.iter().position(|l| {
-            matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid: 0 } if grid == place.id && d == Component::ALL[component])
+            matches!(l.acts, LoadActs::AtGrid { grid, component: d, cid } if grid == place.id && basic_dof(model, grid, d.dof(), cid) == Some(component))
         })
     })
 }
 
 /// Strain of the payload's parts by gauge: the job's own column where it has one, else the solution `others` made for it.
-fn direct(job: &Job, p: &Prepared, place: Place, others: &[CaseResult]) -> Matrix {
+fn direct(
+    (job, model): (&Job, &Model),
+    p: &Prepared,
+    place: Place,
+    others: &[CaseResult],
+) -> Matrix {
     let mut out = Matrix::zeros(p.gauges.len(), 3);
-    for (k, own) in own_columns(job, place).into_iter().enumerate() {
+    for (k, own) in own_columns(job, model, place).into_iter().enumerate() {
         for (g, gauge) in p.gauges.iter().enumerate() {
             let v = match own {
                 Some(l) => p.sensitivity.values[(g, l)],
@@ -212,8 +217,10 @@ fn held(
         LoadActs::AtGrid {
             grid,
             component,
-            cid: 0,
-        } if grid == id && component.is_force() => Some(component.dof()),
+            cid,
+        } if grid == id && component.is_force() => {
+            basic_dof(fields.model(), grid, component.dof(), cid)
+        }
         _ => None,
     });
     let place = Place {
@@ -239,8 +246,8 @@ fn held(
         ),
         "write support = \"free\" where wheels carry it",
     ));
-    let columns = direct(job, prepared, place, &solution.cases);
-    let own = own_columns(job, place);
+    let columns = direct((job, fields.model()), prepared, place, &solution.cases);
+    let own = own_columns(job, fields.model(), place);
     let mut calibrated_columns = [None; 3];
     for (k, l) in own.iter().enumerate() {
         calibrated_columns[SHIFT_OF[k]] = l.map(|l| (l, SIGNS[k]));
@@ -315,7 +322,7 @@ fn standing(
             let rows = s.gauges.len();
             let columns =
                 Matrix::from_fn(rows, n, |g, w| s.values[(g, wheels.loads[w])] / task.force);
-            let direct = direct(job, p, place, &standing.others);
+            let direct = direct((job, model), p, place, &standing.others);
             (s.gauges.clone(), columns, direct)
         }
     };

@@ -2,13 +2,15 @@
 
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::runs::{RunRow, read_runs};
-use crate::app::job::strain::{StrainRows, StrainTable, no_gauge_column, wanted_columns};
-use crate::app::job::strain_means::{StrainFile, read_strain_file};
 use crate::app::job::{Measured, NamedFile};
+use crate::app::measured::faults::no_gauge_column;
+use crate::app::measured::means::{StrainFile, read_strain_file};
+use crate::app::measured::runs_file::{RunRow, read_runs};
+use crate::app::measured::strain_file::wanted_columns;
+use crate::app::measured::strain_table::{StrainRows, StrainTable};
+use crate::app::measured::zero::{no_zero_runs, note_columns, zeros_by_row};
 use crate::app::outcome::finite;
 use crate::app::work::Work;
-use crate::app::zeroed::{no_zero_runs, note_columns, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
 use crate::payload::{PayloadModel, PayloadRun, Place};
 use crate::reconcile::strain::WheelForces;

@@ -3,7 +3,7 @@
 use super::model::Parts;
 use super::task::Task;
 use crate::app::fault::Faults;
-use crate::app::job::runs::read_runs;
+use crate::app::measured::runs_file::read_runs;
 use crate::app::words::short;
 use crate::app::work::Work;
 use crate::estimate::NORMAL_95;

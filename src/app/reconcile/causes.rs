@@ -2,10 +2,10 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled, RivalFound, SlopeFound};
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::column_unit::{asked_column, note_unread_runs, run_column, take_units};
-use crate::app::job::runs::given_loads;
 use crate::app::job::table::read_table;
 use crate::app::job::{Job, Reconcile};
+use crate::app::measured::runs_columns::{asked_column, note_unread_runs, run_column, take_units};
+use crate::app::measured::runs_file::given_loads;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, Verdict, weigh_causes};

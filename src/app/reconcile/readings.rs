@@ -1,10 +1,9 @@
 //! Readings of a job by run and gauge, with those that are held out.
 
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::strain::{StrainRows, StrainTable};
 use crate::app::job::{HoldOut, Job, Measured, Reference};
+use crate::app::measured::zero::{Zeroed, judged, read_zeroed, some_left};
 use crate::app::work::Work;
-use crate::app::zeroed::{Zeroed, judged, read_zeroed, some_left};
 use crate::finding::{Finding, Severity};
 use crate::reconcile::Observations;
 use crate::recovery::Readings;
@@ -29,24 +28,14 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             "write reference = \"none\", and the loads of [runs] as changes from that state",
         )));
     }
+    let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
+    let runs = zeroed.runs()?.to_vec();
     let Zeroed {
         table,
         mut noise_factor,
-    } = read_zeroed(work, job, measured, &measured.strain)?;
-    let runs_of = |t: &StrainTable| match &t.rows {
-        StrainRows::Runs(runs) => Ok(runs.clone()),
-        StrainRows::Times(_) => {
-            let wrong = "rows are samples of one record";
-            Err(Faults::from(Fault::of(
-                &*t.file,
-                "run",
-                wrong,
-                "give the means of static runs, a row each, with a column `run`",
-            )))
-        }
-    };
+    } = zeroed;
     let mut out = Observations {
-        runs: runs_of(&table)?,
+        runs,
         channels: table.gauges.clone(),
         values: table.microstrain.clone(),
         held_out: Vec::new(),
@@ -56,10 +45,12 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         _ => vec![false; out.runs.len()],
     };
     if let HoldOut::File(named) = &measured.hold_out {
+        let zeroed = read_zeroed(work, job, measured, named)?;
+        let names = zeroed.runs()?.to_vec();
         let Zeroed {
             table: kept,
             noise_factor: own,
-        } = read_zeroed(work, job, measured, named)?;
+        } = zeroed;
         noise_factor.extend(own);
         if kept.gauges != out.channels {
             return Err(Faults::from(Fault::of(
@@ -69,7 +60,6 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
                 "give the same columns",
             )));
         }
-        let names = runs_of(&kept)?;
         out.held_out.extend(vec![true; names.len()]);
         out.runs.extend(names);
         out.values.extend(&kept.microstrain);

@@ -3,8 +3,10 @@
 use super::model_part::ModelPart;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::Job;
-use crate::app::job::runs::{RunRow, read_runs};
+use crate::app::job::suggest::header_remedy;
+use crate::app::measured::runs_file::{RunRow, no_load_column, read_runs};
 use crate::app::work::Work;
+use crate::finding::few;
 use crate::reconcile::Observations;
 use crate::reconcile::strain::{PayloadWeight, StrainFrame, angle_scatter};
 use crate::units::{KILO, Quantity};
@@ -32,29 +34,48 @@ pub(super) fn frame(
     let gravity = job.gravity_m_s2();
     let mut faults = FaultList::new();
     let (mut loads, mut payload) = (Vec::new(), Vec::new());
+    let mut without_row = Vec::new();
+    let mut without_value: Vec<Vec<&RunRow>> = vec![Vec::new(); part.load_names.len()];
     for run in &observations.runs {
         let Some(row) = rows.iter().find(|r| r.run == *run) else {
-            faults.push(Fault::of(
-                &*runs.file.given,
-                "run",
-                format!("no row for run `{run}`"),
-                "give every run of the strain file a row",
-            ));
+            without_row.push(run.as_str());
             continue;
         };
-        for name in &part.load_names {
+        for (name, without) in part.load_names.iter().zip(&mut without_value) {
             match row.loads_si.get(name) {
                 Some(n) => loads.push(n / KILO),
-                None => faults.push(Fault::at(
-                    &*runs.file.given,
-                    row.line,
-                    name.clone(),
-                    format!("run `{run}` has no value for load `{name}`"),
-                    "give the load in the runs file, and its column in `runs.columns`",
-                )),
+                None => without.push(row),
             }
         }
         payload.push(payload_of(row, gravity, part.payload_origin));
+    }
+    if let Some(first) = without_row.first() {
+        let of_file = rows.iter().map(|r| r.run.as_str());
+        let general = "give every run of the strain file a row";
+        faults.push(Fault::of(
+            &*runs.file.given,
+            "run",
+            format!("no row for {}", few(&without_row)),
+            header_remedy(first, of_file, general),
+        ));
+    }
+    for (name, without) in part.load_names.iter().zip(&without_value) {
+        faults.extend(match without.first() {
+            Some(_) if rows.iter().all(|r| !r.loads_si.contains_key(name)) => {
+                Some(no_load_column(&mut work.inputs, job, runs, name)?)
+            }
+            Some(first) => {
+                let names: Vec<&str> = without.iter().map(|r| r.run.as_str()).collect();
+                Some(Fault::at(
+                    &*runs.file.given,
+                    first.line,
+                    name.clone(),
+                    format!("load `{name}` has no value in {}", few(&names)),
+                    "give the load in every run, 0 where it does not act",
+                ))
+            }
+            None => None,
+        });
     }
     Faults::check(faults)?;
     let load_noise = runs

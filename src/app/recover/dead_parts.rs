@@ -1,9 +1,9 @@
 //! A record without the readings of gauges that are dead in a part of it.
 
 use super::judged::spread_readings;
-use super::reading::Record;
 use super::task::Task;
 use crate::app::fault::Faults;
+use crate::app::measured::record::Record;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::Readings;

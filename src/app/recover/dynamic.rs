@@ -1,10 +1,10 @@
 //! `[dynamic]`: the vibration of the structure taken out of a record, with the modes of the model.
 
-use super::reading::Record;
 use super::task::Task;
 use crate::app::deck::DeckModel;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::Dynamic;
+use crate::app::measured::record::Record;
 use crate::app::solved::{ElasticModes, cases_of_job, faults_of, modes_kept};
 use crate::app::work::Work;
 use crate::fe::{CaseResult, LoadCase, modal_loads};

@@ -1,10 +1,11 @@
 //! What samples spread over a record say of it before all of it is read.
 
 use super::answer::Content;
+use super::block::block;
 use super::content::{check_band, check_content, content_of_loads, structure};
-use super::reading::{Record, block};
 use super::task::Task;
 use crate::app::fault::{Fault, Faults};
+use crate::app::measured::record::Record;
 use crate::app::solved::{first_mode_of, support_of_job};
 use crate::app::work::Work;
 use crate::recovery::dynamic::Doubt;

@@ -4,9 +4,9 @@
 use super::task::Task;
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::job::payload_signature::{COLUMNS, note_unread};
-use crate::app::job::runs::{RunRow, read_runs};
 use crate::app::job::table::read_table;
 use crate::app::job::{Component, GivenSensitivity, Job, JobLoad, LoadActs, LoadRole};
+use crate::app::measured::runs_file::{RunRow, read_runs};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::Readings;

@@ -1,15 +1,14 @@
 //! What `recover` says of measured strain before S weighs it: what `check` asks.
 
 use super::combined::listed;
-use super::reading::{Record, is_record};
 use super::task::{Task, task_of, without_reference};
-use super::{record, runs};
+use super::{open_strain, record, runs};
 use crate::app::fault::{FaultList, Faults};
-use crate::app::job::strain::{read_strain, wanted_columns};
 use crate::app::job::{Job, Measured, Reference};
+use crate::app::measured::MeasuredStrain;
+use crate::app::measured::zero::reads_strain;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
-use crate::app::zeroed::reads_strain;
 use crate::recovery::plausible;
 use crate::sensitivity::{Sensitivity, check_separability};
 
@@ -71,12 +70,9 @@ fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
         }
         listed(task.job, s)?;
     }
-    let bytes = work.inputs.read_named(task.job, &task.measured.strain)?;
-    let (s, readings) = if is_record(&bytes) {
-        record::look(work, task, bytes)?
-    } else {
-        let (readings, _) = runs::read(work, task)?;
-        (s.clone(), readings)
+    let (s, readings) = match open_strain(work, task.job, task.measured)? {
+        MeasuredStrain::Record(record) => record::look(work, task, &record)?,
+        MeasuredStrain::Runs(table) => (s.clone(), runs::read(work, task, &table)?.0),
     };
     let found = match reads_strain(task.job) {
         true => plausible::check(&s.gauges, &readings, task.errors).1,
@@ -102,10 +98,5 @@ pub(in crate::app) fn gauges_of_file(
     job: &Job,
     measured: &Measured,
 ) -> Result<Vec<String>, Faults> {
-    let wanted = wanted_columns(&mut work.inputs, job);
-    let bytes = work.inputs.read_named(job, &measured.strain)?;
-    if is_record(&bytes) {
-        return Ok(Record::open(job, measured, bytes, &wanted)?.names);
-    }
-    Ok(read_strain(&mut work.inputs, job, &measured.strain, &wanted)?.gauges)
+    Ok(open_strain(work, job, measured)?.gauges().to_vec())
 }

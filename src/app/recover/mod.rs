@@ -4,6 +4,7 @@
 //! loads go to a [`RecordSink`] as they come.
 
 mod answer;
+mod block;
 mod combined;
 mod content;
 mod damage;
@@ -15,7 +16,6 @@ mod history;
 mod judged;
 mod known_payload;
 mod look;
-mod reading;
 mod record;
 mod recorded;
 mod runs;
@@ -37,13 +37,13 @@ pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use task::{gauges_without_strain, reference_strain, strain_without_gauge, zero_of};
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
 
 use super::context::Context;
 use super::fault::Faults;
 use super::job::{Job, Measured};
+use super::measured::{self, MeasuredStrain};
 use super::named_results::check_tables;
 use super::outcome::{Outcome, StatedUnits};
 use super::strain::{Conditioning, Prepared, prepare};
@@ -107,16 +107,26 @@ fn recovered(
     work.findings.extend(check_separability(&s.unconditioned()));
     let task = task::task_of(work, job, measured, prepared)?;
     work.findings.extend(task::changes(measured));
-    let bytes = work.inputs.read_named(job, &measured.strain)?;
-    Ok(if reading::is_record(&bytes) {
-        let (record, validation) =
-            work.stage("stream", |w| record::record(w, &task, bytes, sink))?;
-        (States::Record(Box::new(record)), validation)
-    } else {
-        let unused = job.dynamic.map(|_| dynamic::without_record());
-        work.findings.extend(unused);
-        let (runs, validation) = runs::runs(work, &task)?;
-        (States::Runs(Box::new(runs)), validation)
+    let strain = open_strain(work, job, measured)?;
+    Ok(match strain {
+        MeasuredStrain::Record(record) => {
+            let (record, validation) =
+                work.stage("stream", |w| record::record(w, &task, &record, sink))?;
+            (States::Record(Box::new(record)), validation)
+        }
+        MeasuredStrain::Runs(table) => {
+            let unused = job.dynamic.map(|_| dynamic::without_record());
+            work.findings.extend(unused);
+            let (runs, validation) = runs::runs(work, &task, &table)?;
+            (States::Runs(Box::new(runs)), validation)
+        }
+    })
+}
+
+/// Opens the strain file of a job.
+fn open_strain(work: &mut Work, job: &Job, measured: &Measured) -> Result<MeasuredStrain, Faults> {
+    work.stage("read strain", |w| {
+        measured::open(&mut w.inputs, job, measured, &measured.strain)
     })
 }
 
@@ -144,6 +154,7 @@ pub(super) fn recovered_runs(
     prepared: &Prepared,
 ) -> Result<(Vec<Readings>, Recovery), Faults> {
     let task = task::task_of(work, job, measured, prepared)?;
-    let solved = runs::solve(work, &task)?;
+    let table = open_strain(work, job, measured)?.into_runs()?;
+    let solved = runs::solve(work, &task, &table)?;
     Ok((solved.readings, solved.recovery))
 }

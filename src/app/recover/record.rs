@@ -1,24 +1,24 @@
 //! Records: samples streamed through one estimate, pieces in parallel, a few pieces in memory at a time.
 
 use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
+use super::block::block;
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
 use super::dynamic::{Motion, rested};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
-use super::reading::{Record, block};
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, Compared, ValidationGauge};
 use crate::app::fault::{Fault, Faults};
-use crate::app::files::FileBytes;
 use crate::app::job::LoadFile;
+use crate::app::measured::record::Record;
+use crate::app::measured::zero::no_zero_runs;
 use crate::app::outcome::finite;
 use crate::app::work::Work;
-use crate::app::zeroed::no_zero_runs;
 use crate::finding::Finding;
 use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;
@@ -31,23 +31,23 @@ use std::sync::Arc;
 /// Pieces in memory at a time.
 const GROUP: usize = 8;
 
-/// Recovers the loads of the record in `bytes`; they go to `sink` as they come.
+/// Recovers the loads of a record; they go to `sink` as they come.
 ///
 /// # Errors
 /// A record that can't be read; what `sink` refuses.
 pub(super) fn record(
     work: &mut Work,
     task: &Task,
-    bytes: FileBytes,
+    record: &Record,
     sink: &mut dyn RecordSink,
 ) -> Result<(RecoveredRecord, Vec<ValidationGauge>), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
-    let mut channels = Channels::open(task, bytes.clone())?;
+    let mut channels = Channels::of(task, record);
     let Speaking {
         record,
         sensitivity,
         zero,
-    } = speaking(work, task, bytes)?;
+    } = speaking(work, task, record)?;
     let Listed {
         names,
         units,
@@ -136,14 +136,14 @@ pub(super) fn record(
 pub(super) fn look(
     work: &mut Work,
     task: &Task,
-    bytes: FileBytes,
+    record: &Record,
 ) -> Result<(Sensitivity, Vec<Readings>), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
     let Speaking {
         record,
         sensitivity,
         zero,
-    } = speaking(work, task, bytes)?;
+    } = speaking(work, task, record)?;
     let (all, unloaded): (Vec<usize>, _) = (
         (0..sensitivity.gauges.len()).collect(),
         vec![0.0; sensitivity.loads.len()],

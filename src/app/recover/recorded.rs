@@ -4,7 +4,7 @@ use super::known_payload::KnownLoads;
 use super::task::Task;
 use crate::app::fault::Faults;
 use crate::app::job::Job;
-use crate::app::job::runs::read_runs;
+use crate::app::measured::runs_file::read_runs;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::input_faults::{RecordedRuns, findings_of_recorded_loads};

@@ -5,70 +5,45 @@ use super::combined::{Listed, listed};
 use super::glued_wrong;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
-use super::task::{Task, columns_of};
+use super::task::Task;
 use super::validation::{self, ValidationGauge};
-use crate::app::fault::{Fault, Faults};
+use crate::app::fault::Faults;
 use crate::app::job::LoadActs;
 use crate::app::job::correct::channel_of;
-use crate::app::job::strain::{
-    StrainRows, StrainTable, no_gauge_column, read_strain, record_fault, wanted_columns,
-};
-use crate::app::job::strain_means::is_long_record;
+use crate::app::measured::columns::columns_of;
+use crate::app::measured::faults::no_gauge_column;
+use crate::app::measured::strain_table::StrainTable;
+use crate::app::measured::zero::{RowZeros, zeros_by_row};
 use crate::app::strain::LoadUnits;
 use crate::app::work::Work;
-use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::{Readings, Recovery, recover};
 use crate::sensitivity::Sensitivity;
-use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
 use std::collections::{HashMap, HashSet};
 
 /// Readings of the runs, less their zeros and the strain of loads that are known, and these loads.
-pub(super) fn read(work: &mut Work, task: &Task) -> Result<(Vec<Readings>, KnownLoads), Faults> {
+pub(super) fn read(
+    work: &mut Work,
+    task: &Task,
+    table: &StrainTable,
+) -> Result<(Vec<Readings>, KnownLoads), Faults> {
     let s = &task.prepared.sensitivity;
     let named = &task.measured.strain;
-    let a_record = || {
-        Faults::from(Fault::of(
-            &*named.given,
-            "time",
-            "a record can't be read as runs",
-            "name the column of runs `run`; loads of a record come from `recover`, whose table [respond] loads names",
-        ))
-    };
-    let bytes = work.inputs.read_named(task.job, named)?;
-    if is_long_record(&bytes) {
-        return Err(a_record());
-    }
-    let table = work.stage("read strain", |x| {
-        let wanted = wanted_columns(&mut x.inputs, task.job);
-        read_strain(&mut x.inputs, task.job, named, &wanted)
-    });
-    let looks_like_record = match &table {
-        Ok(t) => matches!(t.rows, StrainRows::Times(_)),
-        Err(_) => has_bare_returns(&bytes),
-    };
-    // It was not taken for a record because of its layout.
-    if looks_like_record && let Err(e) = Layout::of(&bytes) {
-        return Err(record_fault(&named.given, &e).into());
-    }
-    let table = table?;
-    let StrainRows::Runs(names) = &table.rows else {
-        return Err(a_record());
-    };
+    let names = table.runs();
     let columns = columns_of(work, named, &table.gauges, &s.gauges);
     if columns.iter().all(Option::is_none) {
         return Err(no_gauge_column(task.job, &named.given, &table.gauges, &s.gauges).into());
     }
-    let zeros = zeros_by_row(work, task.job, task.measured, &table)?;
-    let mut readings = readings_of(&table, names, &columns, task, zeros.as_ref());
+    let zeros = zeros_by_row(work, task.job, task.measured, table)?;
+    let mut readings = readings_of(table, names, &columns, task, zeros.as_ref());
     // What the job leaves out is not missing.
     let asked: Vec<(usize, &str)> = (task.estimating.iter())
         .map(|g| (columns[*g], &s.gauges[*g]))
         .filter(|(_, gauge)| !channel_of(&task.job.corrections, gauge).ignore)
         .filter_map(|(column, gauge)| Some((column?, gauge.as_str())))
         .collect();
-    work.findings.extend(blanks(&table, names, &asked));
+    work.findings.extend(blanks(table, names, &asked));
     let known = known_payload::take_out(work, task, &mut readings)?;
     Ok((readings, known))
 }
@@ -160,9 +135,9 @@ pub(super) struct Solved {
 }
 
 /// Reads the strain of the runs and recovers their loads.
-pub(super) fn solve(work: &mut Work, task: &Task) -> Result<Solved, Faults> {
+pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result<Solved, Faults> {
     let s = task.prepared.sensitivity.of_gauges(&task.estimating);
-    let (all, known) = read(work, task)?;
+    let (all, known) = read(work, task, table)?;
     let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
     let mut recovery = work.stage("recover", |_| recover(&s, &readings, task.errors));
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
@@ -222,13 +197,14 @@ fn readings_of(
 pub(super) fn runs(
     work: &mut Work,
     task: &Task,
+    table: &StrainTable,
 ) -> Result<(RecoveredRuns, Vec<ValidationGauge>), Faults> {
     let Solved {
         s,
         readings,
         mut recovery,
         validation,
-    } = solve(work, task)?;
+    } = solve(work, task, table)?;
     let Listed {
         names,
         units,

@@ -1,11 +1,11 @@
 //! The gauges of a record that read, and S of them.
 
-use super::reading::Record;
-use super::task::{Task, columns_of};
+use super::task::Task;
 use crate::app::fault::{Fault, Faults};
-use crate::app::files::FileBytes;
 use crate::app::job::correct::channel_of;
-use crate::app::job::strain::no_gauge_column;
+use crate::app::measured::columns::columns_of;
+use crate::app::measured::faults::no_gauge_column;
+use crate::app::measured::record::Record;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::sensitivity::Sensitivity;
@@ -19,16 +19,15 @@ pub(super) struct Speaking {
     pub zero: Vec<f64>,
 }
 
-/// Opens the record of a job and leaves out the gauges that have no column, are ignored, or give nothing.
+/// Leaves out the gauges of a record that have no column, are ignored, or give nothing.
 ///
 /// # Errors
 /// A record that can't be read, or without a single reading.
-pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result<Speaking, Faults> {
+pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<Speaking, Faults> {
     let all = &task.prepared.sensitivity;
     let named = &task.measured.strain;
     let file = named.given.as_str();
     let corrections = &task.job.corrections;
-    let record = Record::open(task.job, task.measured, bytes, &all.gauges)?;
     work.findings.extend(record.findings());
     let found = columns_of(work, named, &record.names, &all.gauges);
     let channel = |g: usize| (found[g], channel_of(corrections, &all.gauges[g]));
@@ -42,7 +41,9 @@ pub(super) fn speaking(work: &mut Work, task: &Task, bytes: FileBytes) -> Result
     if used.is_empty() {
         return Err(no_gauge_column(task.job, file, &record.names, &all.gauges).into());
     }
-    let mut record = record.with_columns(used.iter().map(|&g| channel(g)).collect());
+    let mut record = record
+        .clone()
+        .with_columns(used.iter().map(|&g| channel(g)).collect());
     let given = columns_of_record(&record)?;
     if given.iter().any(|g| *g != Gives::Signal) {
         for (gives, what) in [

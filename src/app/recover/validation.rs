@@ -1,10 +1,10 @@
 //! Validation gauges: no load is estimated from them, and the loads predict their readings.
 
-use super::reading::Record;
-use super::task::{Task, columns_of_gauges};
-use crate::app::fault::{Fault, Faults};
-use crate::app::files::FileBytes;
+use super::task::Task;
+use crate::app::fault::Fault;
 use crate::app::job::correct::channel_of;
+use crate::app::measured::columns::columns_of_gauges;
+use crate::app::measured::record::Record;
 use crate::app::outcome::finite;
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::validation::prediction_variance;
@@ -192,17 +192,13 @@ impl Compared {
 }
 
 impl<'a> Channels<'a> {
-    /// Opens the record once more for the job's validation gauges; `None` where it has none.
-    ///
-    /// # Errors
-    /// Faults of the record.
-    pub fn open(task: &'a Task<'a>, bytes: FileBytes) -> Result<Option<Self>, Faults> {
+    /// Returns the channels of the job's validation gauges in a record; `None` where it has none.
+    pub fn of(task: &'a Task<'a>, record: &Record) -> Option<Self> {
         let gauges = Predicted::all(task);
         if gauges.is_empty() {
-            return Ok(None);
+            return None;
         }
         let all = &task.prepared.sensitivity.gauges;
-        let record = Record::open(task.job, task.measured, bytes, all)?;
         let found = columns_of_gauges(&record.names, all);
         let (mut of, mut columns) = (Vec::new(), Vec::new());
         for (i, gauge) in gauges.iter().enumerate() {
@@ -212,8 +208,8 @@ impl<'a> Channels<'a> {
                 columns.push((found[gauge.row], channel));
             }
         }
-        let record = record.with_columns(columns);
-        Ok(Some(Self { record, gauges, of }))
+        let record = record.clone().with_columns(columns);
+        Some(Self { record, gauges, of })
     }
 
     /// Returns a note that the gauges are not compared, as their readings contain the vibration that `[dynamic]` takes out of the loads.

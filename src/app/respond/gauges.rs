@@ -1,13 +1,13 @@
 //! Predicted against measured strain at the installed gauges.
 
 use crate::app::fault::Faults;
-use crate::app::job::strain::StrainRows;
-use crate::app::job::strain_means::is_long_record;
 use crate::app::job::{Job, Reference};
+use crate::app::measured::means::is_long_record;
+use crate::app::measured::strain_table::StrainRows;
+use crate::app::measured::zero::{judged, read_zeroed};
 use crate::app::outcome::finite;
 use crate::app::strain::Prepared;
 use crate::app::work::Work;
-use crate::app::zeroed::{judged, read_zeroed};
 use crate::finding::{Finding, Severity, few};
 use crate::respond::LoadState;
 use crate::units::MICROSTRAIN;

@@ -5,8 +5,8 @@ mod pool;
 
 use super::context::Context;
 use super::fault::{Fault, FaultList, Faults};
-use super::job::runs::read_runs;
-use super::job::{self, Job, Study};
+use super::job::{Job, Study};
+use super::measured::runs_file::{RunRow, read_runs};
 use super::named_results::check_tables;
 use super::outcome::{Answer, Outcome, StatedUnits, finite};
 use super::strain::{Conditioning, LoadUnits, load_units};
@@ -203,7 +203,7 @@ fn truth(
             job.units.si(Quantity::Force),
             job.units.si(Quantity::Moment),
         );
-        let of = |row: &job::runs::RunRow| -> Option<Vec<f64>> {
+        let of = |row: &RunRow| -> Option<Vec<f64>> {
             loads
                 .iter()
                 .map(|l| {

@@ -2,8 +2,8 @@
 
 use super::super::faults::Collector;
 use super::super::raw::{RawChannelCorrection, RawCombination};
+use super::super::readings::stated_readings;
 use super::super::spanned::Spanned;
-use super::super::strain::stated_readings;
 use super::super::suggest;
 use super::super::types::*;
 use crate::app::fault::{Fault, FaultList};

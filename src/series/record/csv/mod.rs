@@ -14,7 +14,7 @@ mod text;
 
 pub use end::{is_cut, unsure_end};
 pub use layout::{Layout, is_units};
-pub use text::{eight_bit_text, has_bare_returns};
+pub use text::{has_bare_returns, table_text};
 
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};

@@ -62,6 +62,12 @@ const DATED: &str = "Date;Time;SG1 [um/m];SG2 [um/m]\n\
     31.05.2026;09:15:02,000;1250,5;-3,25\n31.05.2026;09:15:02,010;1251,5;#NV\n31.05.2026;09:15:02,020;1252,5;-1,25\n";
 
 #[test]
+fn a_name_that_begins_with_a_quotation_mark_keeps_it() {
+    let record = open(b"Time,\"\"\"A\"\" front\",B\n0.0,1,2\n0.1,3,4\n").unwrap();
+    assert_eq!(samples(&record, "\"A\" front").unwrap(), [1.0, 3.0]);
+}
+
+#[test]
 fn tables_in_the_manners_of_measuring_programs_are_one_record() {
     let latin: Vec<u8> = CATMAN.chars().map(|c| c as u8).collect();
     let mut files: Vec<(String, Vec<u8>)> = vec![("catman in Latin-1".into(), latin)];

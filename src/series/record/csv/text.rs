@@ -6,7 +6,7 @@ use std::borrow::Cow;
 const WINDOWS_1252: &str = "€ ‚ƒ„…†‡ˆ‰Š‹Œ Ž  ‘’“”•–—˜™š›œ žŸ";
 
 /// Returns text in the eight-bit code of Windows (1252); `None` for bytes that no text has.
-pub fn eight_bit_text(bytes: &[u8]) -> Option<String> {
+fn eight_bit_text(bytes: &[u8]) -> Option<String> {
     let character = |b: &u8| match b {
         b'\t' | b'\r' | b'\n' | 0x20..=0x7e | 0xa0.. => Some(char::from(*b)),
         0x80..=0x9f => {
@@ -16,6 +16,20 @@ pub fn eight_bit_text(bytes: &[u8]) -> Option<String> {
         _ => None,
     };
     bytes.iter().map(character).collect()
+}
+
+/// Returns a table as text: UTF-8 or UTF-16 with or without its mark, else the eight-bit code of Windows; `None` for bytes that no text has.
+pub fn table_text(bytes: &[u8]) -> Option<String> {
+    let (encoding, begin) = Encoding::of(bytes);
+    let raw = bytes.get(begin..)?;
+    let text = match encoding {
+        Encoding::Bytes => Cow::Borrowed(raw),
+        Encoding::Utf16Le | Encoding::Utf16Be => encoding.text(raw),
+    };
+    match std::str::from_utf8(&text) {
+        Ok(text) => Some(text.to_owned()),
+        Err(_) => eight_bit_text(&text),
+    }
 }
 
 /// How text is coded.
@@ -189,10 +203,10 @@ pub fn bare(field: &[u8]) -> &[u8] {
         .map_or(field, <[u8]>::trim_ascii)
 }
 
-/// Text of a field: UTF-8, else an eight-bit code.
+/// Text of a field without its quotes: UTF-8, else an eight-bit code. A quotation mark within is doubled in the file.
 pub fn shown(field: &[u8]) -> String {
     match std::str::from_utf8(field) {
-        Ok(t) => t.to_owned(),
+        Ok(t) => t.replace("\"\"", "\""),
         Err(_) => field.iter().map(|b| char::from(*b)).collect(),
     }
 }

@@ -1,7 +1,7 @@
 //! A zero that is followed through runs without load, of known drift.
 
 use super::{Between, Drift, between};
-use crate::app::job::strain::{StrainRows, StrainTable};
+use crate::app::measured::strain_table::{StrainRows, StrainTable};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 

@@ -1,12 +1,14 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
-use super::column_unit::{PAYLOAD, known_column, note_unread_runs, run_column, take_units};
-use super::given_columns::columns_of_given;
-use super::quantity::quantity_of_name;
-use super::table::read_table;
-use super::types::{Job, Runs};
+use super::runs_columns::{
+    PAYLOAD, column_meant, known_column, note_unread_runs, run_column, take_units,
+};
 use crate::app::fault::{Fault, FaultList, Faults};
 use crate::app::files::Inputs;
+use crate::app::job::given_columns::columns_of_given;
+use crate::app::job::quantity::quantity_of_name;
+use crate::app::job::table::read_table;
+use crate::app::job::{Job, Runs};
 use crate::units::Quantity;
 use std::collections::{BTreeMap, HashSet};
 
@@ -95,6 +97,30 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     }
     Faults::check(faults)?;
     Ok(out)
+}
+
+/// Returns the fault of a runs file without a column of a load.
+///
+/// # Errors
+/// Faults of the file.
+pub fn no_load_column(
+    inputs: &mut Inputs,
+    job: &Job,
+    runs: &Runs,
+    name: &str,
+) -> Result<Fault, Faults> {
+    let text = inputs.read_named_text(job, &runs.file)?;
+    let mut t = read_table(&runs.file.given, &text)?;
+    let columns = take_units(&mut t);
+    let given = given_loads(inputs, job)?;
+    let remedy = match column_meant(job, (&t, &columns), &given, name) {
+        Some(column) => format!(
+            "rename column `{column}`, or name it in the job: [runs] columns = {{ \"{name}\" = \"{column}\" }}"
+        ),
+        None => "add the column, or name it in the job under [runs] columns".to_owned(),
+    };
+    let wrong = format!("no run has a value for load `{name}`");
+    Ok(Fault::at(&*t.file, 1, name, wrong, remedy))
 }
 
 /// Loads of a given S; where the job does not list them, S's own table does.

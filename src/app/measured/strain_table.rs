@@ -1,7 +1,7 @@
 //! Measured strain in memory: a row a run or a sample.
 
-use super::correct::{Channel, channel_of, column_of};
-use super::types::StrainCorrection;
+use crate::app::job::StrainCorrection;
+use crate::app::job::correct::{Channel, channel_of, column_of};
 
 /// What the rows of a strain file are.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,6 +34,14 @@ impl StrainTable {
         }
     }
 
+    /// Returns the names of the runs; none of a record.
+    pub fn runs(&self) -> &[String] {
+        match &self.rows {
+            StrainRows::Runs(names) => names,
+            StrainRows::Times(_) => &[],
+        }
+    }
+
     /// Readings of row `i`.
     pub fn row(&self, i: usize) -> &[f64] {
         let w = self.gauges.len();
@@ -41,7 +49,7 @@ impl StrainTable {
     }
 
     /// Drops the columns of these gauges.
-    pub(super) fn leave_out(&mut self, gauges: &[String]) {
+    pub(in crate::app) fn leave_out(&mut self, gauges: &[String]) {
         let kept: Vec<bool> = self.gauges.iter().map(|g| !gauges.contains(g)).collect();
         if kept.iter().all(|k| *k) {
             return;
@@ -53,7 +61,7 @@ impl StrainTable {
     }
 
     /// Gives every column its gauge's name and every reading its gauge's strain.
-    pub(super) fn put_right(&mut self, corrections: &[StrainCorrection]) {
+    pub(in crate::app) fn put_right(&mut self, corrections: &[StrainCorrection]) {
         if corrections.is_empty() {
             return;
         }

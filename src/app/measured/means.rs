@@ -1,14 +1,14 @@
 //! What a strain file comes to where only its means count: sums over the rows, of a record passed over once, however long it is.
 
-use super::correct::{Channel, channel_of, column_of};
-use super::strain::{StrainTable, open_strain, read_strain, record_fault};
-use super::types::{Job, NamedFile};
+use super::open::is_record;
+use super::record::Record;
+use super::strain_file::read_strain;
+use super::strain_table::StrainTable;
 use crate::app::fault::Faults;
 use crate::app::files::{FileBytes, Inputs};
+use crate::app::job::{Job, NamedFile};
 use crate::recovery::net::Series;
-use crate::series::record::csv::Layout;
 use crate::series::record::is_format;
-use std::ops::ControlFlow;
 
 /// Text beyond which a record is passed over rather than read whole: its samples would take as much again.
 const LARGE: usize = 16 << 20;
@@ -25,8 +25,6 @@ pub enum StrainFile {
 /// The sums of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainMeans {
-    /// File as given.
-    pub file: String,
     /// Gauge names.
     pub gauges: Vec<String>,
     /// Readings of each, microstrain, channels put right.
@@ -61,10 +59,10 @@ impl StrainFile {
 
 /// Whether the bytes are a record that is not to be read whole.
 pub fn is_long_record(bytes: &FileBytes) -> bool {
-    is_format(bytes) || bytes.len() > LARGE && Layout::of(bytes).is_ok_and(|l| l.is_record())
+    is_format(bytes) || bytes.len() > LARGE && is_record(bytes)
 }
 
-/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain::wanted_columns`].
+/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain_file::wanted_columns`].
 ///
 /// # Errors
 /// Every fault of the file.
@@ -75,45 +73,19 @@ pub fn read_strain_file(
     wanted: &[String],
 ) -> Result<StrainFile, Faults> {
     let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
-    let record = |bytes| means(job, &named.given, bytes, wanted).map(StrainFile::Means);
+    let record = |bytes| {
+        let record = Record::open(job, (&named.given, None), bytes, wanted)?.with_all_strain(job);
+        Ok(StrainFile::Means(StrainMeans {
+            readings: record.sums()?,
+            gauges: record.names_read(),
+        }))
+    };
     if is_long_record(&bytes) {
         return record(bytes);
     }
     // A short record is a table too, unless it holds what only records may: words for no reading, dates, lines before its header.
     match read_strain(inputs, job, named, wanted) {
-        Err(_) if Layout::of(&bytes).is_ok_and(|l| l.is_record()) => record(bytes),
+        Err(_) if is_record(&bytes) => record(bytes),
         read => read.map(StrainFile::Table),
     }
-}
-
-fn means(job: &Job, file: &str, bytes: FileBytes, names: &[String]) -> Result<StrainMeans, Faults> {
-    let (record, columns) = open_strain(file, bytes, names)?;
-    let gauge = |name: &str| column_of(&job.corrections, name).to_owned();
-    let is_reserved = |c: &(usize, String, f64)| job.reserved.contains(&gauge(&c.1));
-    let columns: Vec<_> = columns.into_iter().filter(|c| !is_reserved(c)).collect();
-    let gauges: Vec<String> = columns.iter().map(|c| gauge(&c.1)).collect();
-    let channels: Vec<(f64, Channel)> = columns
-        .iter()
-        .zip(&gauges)
-        .map(|(c, g)| (c.2, channel_of(&job.corrections, g)))
-        .collect();
-    let picks: Vec<Option<usize>> = columns.iter().map(|c| Some(c.0)).collect();
-    let mut readings = vec![Series::default(); gauges.len()];
-    for piece in 0..record.n_pieces() {
-        let read = record.read(piece, &picks, &mut |block| {
-            for row in block.values.chunks_exact(picks.len().max(1)) {
-                for ((v, (micro, channel)), series) in row.iter().zip(&channels).zip(&mut readings)
-                {
-                    series.add(channel.put_right(v * micro));
-                }
-            }
-            ControlFlow::Continue(())
-        });
-        read.map_err(|e| Faults::from(record_fault(file, &e)))?;
-    }
-    Ok(StrainMeans {
-        file: file.to_owned(),
-        gauges,
-        readings,
-    })
 }

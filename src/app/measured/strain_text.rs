@@ -1,11 +1,11 @@
 //! Strain in a CSV text: a row a run or a sample.
 
-use super::column_unit::take_units;
-use super::gauge_column::{no_strain, strain_columns};
+use super::gauge_columns::{find_gauge_columns, no_strain};
+use super::runs_columns::take_units;
 use super::strain_table::{StrainRows, StrainTable};
-use super::suggest::header_remedy;
-use super::table::{Table, each_part};
 use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::suggest::header_remedy;
+use crate::app::job::table::{Table, each_part};
 use crate::series::record::{Clash, Column, seconds_in};
 use std::collections::HashSet;
 
@@ -119,7 +119,7 @@ impl Reading {
             others.push(column.clone());
         }
         let (mut columns, mut gauges) = (Vec::new(), Vec::new());
-        let found = strain_columns(&t.file, &others, known)?;
+        let found = find_gauge_columns(&t.file, &others, known)?;
         for ((c, column), found) in places.into_iter().zip(&others).zip(found) {
             if found.microstrain.is_none() && known.is_empty() {
                 faults.push(no_strain(&t.file, column));

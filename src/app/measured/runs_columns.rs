@@ -1,12 +1,12 @@
 //! Names and units of a run table's columns, read as those of records are: `A [kN]`, `A (kN)`, or a row of units below the names.
 
-use super::same_name::{is_same_name, is_same_word};
-use super::suggest;
-use super::table::Table;
-use super::types::{Job, Runs};
-use super::unread::note_unread;
 use crate::app::fault::{Fault, FaultList};
 use crate::app::files::Inputs;
+use crate::app::job::same_name::{is_same_name, is_same_word};
+use crate::app::job::suggest;
+use crate::app::job::table::Table;
+use crate::app::job::unread::note_unread;
+use crate::app::job::{Job, Runs};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
 use crate::series::record::{Clash, Column, name_and_unit, take_unit_below};
@@ -135,13 +135,12 @@ pub fn names_in_runs(job: &Job) -> Vec<String> {
     out
 }
 
-/// Adds a warning that names the columns of the runs file which no command reads; `given` are the loads of a given S.
-pub fn note_unread_runs(
-    inputs: &mut Inputs,
+/// Returns the names that columns of the runs file may have, and for each column whether it has one; `given` are the loads of a given S.
+fn columns_claimed(
     job: &Job,
     (t, columns): (&Table, &[Column]),
     given: &[String],
-) {
+) -> (Vec<String>, Vec<bool>) {
     let of_job = names_in_runs(job);
     let mut names = of_job.clone();
     names.extend(given.iter().flat_map(|n| [n.clone(), format!("{n}_sd")]));
@@ -151,6 +150,38 @@ pub fn note_unread_runs(
             read[at] = true;
         }
     }
+    (names, read)
+}
+
+/// Returns the column that no name of the job claims and that may be the one of a load: `FZ_FL` for `FL.FZ`, else the closest by its letters.
+pub fn column_meant<'a>(
+    job: &Job,
+    (t, columns): (&Table, &'a [Column]),
+    given: &[String],
+    name: &str,
+) -> Option<&'a str> {
+    let (_, claimed) = columns_claimed(job, (t, columns), given);
+    let free = columns.iter().zip(claimed).filter(|(_, claimed)| !claimed);
+    let free: Vec<&str> = free.map(|(c, _)| c.name.as_str()).collect();
+    let words = |name: &str| {
+        let lower = name.to_lowercase();
+        let parts = lower.split(|c: char| !c.is_alphanumeric());
+        let mut words: Vec<String> = parts.filter(|w| !w.is_empty()).map(Into::into).collect();
+        words.sort_unstable();
+        words
+    };
+    let turned = free.iter().find(|c| words(c) == words(name)).copied();
+    turned.or_else(|| suggest::closest(name, free))
+}
+
+/// Adds a warning that names the columns of the runs file which no command reads; `given` are the loads of a given S.
+pub fn note_unread_runs(
+    inputs: &mut Inputs,
+    job: &Job,
+    (t, columns): (&Table, &[Column]),
+    given: &[String],
+) {
+    let (names, read) = columns_claimed(job, (t, columns), given);
     let lacking = |n: &&String| !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd");
     let lacking: Vec<&str> = names.iter().filter(lacking).map(String::as_str).collect();
     note_unread(inputs, t, |c| read[c], &lacking);

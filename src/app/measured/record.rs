@@ -1,32 +1,26 @@
 //! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
 
-use super::sink::Block;
+use super::faults::record_fault;
+use super::gauge_columns::{StrainColumn, find_gauge_columns};
 use crate::app::fault::{Fault, Faults};
 use crate::app::files::FileBytes;
-use crate::app::job::correct::{Channel, column_of, columns_wanted};
-use crate::app::job::gauge_column::{StrainColumn, strain_columns};
-use crate::app::job::strain::record_fault;
-use crate::app::job::{Job, Measured};
+use crate::app::job::Job;
+use crate::app::job::correct::{Channel, channel_of, column_of};
 use crate::finding::Finding;
-use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::clock;
+use crate::recovery::net::Series;
 use crate::recovery::plausible::LARGEST_STRAIN;
 use crate::recovery::stuck::Stuck;
-use crate::recovery::{Sums, clock};
-use crate::series::record::csv::Layout;
-use crate::series::record::{self as series, Clock, Options, Times, is_format, open_record};
+use crate::series::record::{self as series, Clock, Options, Times, open_record};
 use crate::series::still::{self, Gives, Still};
 use crate::units::MICROSTRAIN;
 use std::ops::{ControlFlow, Range};
 use std::sync::Arc;
 
-/// Whether a strain file is read as a record, a sample a row, rather than as runs.
-pub(super) fn is_record(bytes: &FileBytes) -> bool {
-    is_format(bytes) || Layout::of(bytes).is_ok_and(|l| l.is_record())
-}
-
 /// A record whose columns are read as strain.
-pub(super) struct Record {
-    inner: series::Record,
+#[derive(Clone)]
+pub(in crate::app) struct Record {
+    inner: Arc<series::Record>,
     file: String,
     /// The gauge that each column holds the readings of, as the job calls it.
     pub names: Vec<String>,
@@ -39,24 +33,24 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// The record in the strain file of a job, of which channels named after `gauges` will be read.
+    /// Opens the record in a strain file of a job, of which the columns `wanted` will be read; `time_unit_s` counts where the file states no unit
+    /// of time.
     ///
     /// # Errors
     /// Faults of the file: its format, its times, units that are none of strain.
     pub fn open(
         job: &Job,
-        measured: &Measured,
+        (file, time_unit_s): (&str, Option<f64>),
         bytes: FileBytes,
-        gauges: &[String],
+        wanted: &[String],
     ) -> Result<Self, Faults> {
-        let file = measured.strain.given.as_str();
         let options = Options {
             declared_hz: None,
-            time_unit_s: measured.time_unit_s,
-            wanted: columns_wanted(&job.corrections, gauges),
+            time_unit_s,
+            wanted: wanted.to_vec(),
         };
         let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
-        let columns = strain_columns(file, inner.columns(), &options.wanted)?;
+        let columns = find_gauge_columns(file, inner.columns(), &options.wanted)?;
         let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
         let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
         Ok(Self {
@@ -65,13 +59,45 @@ impl Record {
             micro: columns.iter().map(micro).collect(),
             columns: Vec::new(),
             blank: Vec::new(),
-            inner,
+            inner: Arc::new(inner),
         })
     }
 
     /// The same, with the columns that are read.
     pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
         Self { columns, ..self }
+    }
+
+    /// Returns the record with all columns of strain read, but those of the job's reserved gauges.
+    pub fn with_all_strain(self, job: &Job) -> Self {
+        let is_read =
+            |c: &usize| !self.micro[*c].is_nan() && !job.reserved.contains(&self.names[*c]);
+        let columns = (0..self.names.len()).filter(is_read);
+        let columns = columns.map(|c| (Some(c), channel_of(&job.corrections, &self.names[c])));
+        let columns = columns.collect();
+        self.with_columns(columns)
+    }
+
+    /// Returns the gauges whose columns are read.
+    pub fn names_read(&self) -> Vec<String> {
+        let read = self.columns.iter().filter_map(|c| self.names.get(c.0?));
+        read.cloned().collect()
+    }
+
+    /// Returns sums over all samples, microstrain, by column that is read.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn sums(&self) -> Result<Vec<Series>, Fault> {
+        let mut sums = vec![Series::default(); self.columns.len()];
+        for i in 0..self.n_pieces() {
+            self.each_microstrain(i, |_, values| {
+                for row in values.chunks_exact(self.columns.len().max(1)) {
+                    sums.iter_mut().zip(row).for_each(|(s, v)| s.add(*v));
+                }
+            })?;
+        }
+        Ok(sums)
     }
 
     /// The same, without readings: number of the column that is read, and samples.
@@ -149,7 +175,7 @@ impl Record {
             ignore: false,
         };
         Ok(Self {
-            inner,
+            inner: Arc::new(inner),
             file: self.file.clone(),
             names: self.names.clone(),
             micro: vec![1.0; n],
@@ -197,7 +223,24 @@ impl Record {
     }
 
     /// Hands the readings of a piece on, strain, a block at a time.
-    fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+        let n = self.columns.len().max(1);
+        self.each_microstrain(i, |first, values| {
+            values.iter_mut().for_each(|v| *v *= MICROSTRAIN);
+            still::blank(values, n, first, &self.blank);
+            sink(values);
+        })
+    }
+
+    /// Hands the readings of a piece on, microstrain, a block at a time with the number of its first sample.
+    fn each_microstrain(
+        &self,
+        i: usize,
+        mut sink: impl FnMut(usize, &mut [f64]),
+    ) -> Result<(), Fault> {
         let n = self.columns.len().max(1);
         let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
         let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
@@ -210,12 +253,10 @@ impl Record {
         let read = self.inner.read(i, &columns, &mut |block| {
             strain.clear();
             for row in block.values.chunks_exact(n) {
-                let put_right =
-                    |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro) * MICROSTRAIN;
+                let put_right = |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro);
                 strain.extend(row.iter().zip(&right).map(put_right));
             }
-            still::blank(&mut strain, n, block.first, &self.blank);
-            sink(&strain);
+            sink(block.first, &mut strain);
             ControlFlow::Continue(())
         });
         read.map_err(|e| record_fault(&self.file, &e))
@@ -240,7 +281,7 @@ impl Record {
         Ok(n)
     }
 
-    fn times(&self, i: usize) -> Vec<f64> {
+    pub fn times(&self, i: usize) -> Vec<f64> {
         let (from, to) = self.inner.span(i);
         (from..to).map(|s| self.time_s(s)).collect()
     }
@@ -249,17 +290,4 @@ impl Record {
     pub fn findings(&self) -> Vec<Finding> {
         clock::irregular(&self.file, self.clock())
     }
-}
-
-/// Loads of piece `i`, and the sums over it. Where the piece stands in the record is left to whoever puts pieces in order.
-pub(super) fn block(record: &Record, filter: &Filter, i: usize) -> Result<(Block, Sums), Fault> {
-    let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
-    let mut loads = SampleLoads::default();
-    record.each(i, |strain| filter.apply(strain, 1.0, &mut loads, &mut sums))?;
-    let block = Block {
-        first: 0,
-        times: record.times(i),
-        loads,
-    };
-    Ok((block, sums))
 }

@@ -4,20 +4,22 @@
 //! gauge's zero is taken as straight over the rows of the file, before the first and after the last as constant. How far it wanders from
 //! row to row is seen between them, and the readings count with that much more noise.
 
-use super::fault::{Fault, FaultList, Faults};
-use super::job::strain::{
-    StrainRows, StrainTable, gauge_names, read_strain, wanted_columns, without_column,
-};
-use super::job::strain_means::is_long_record;
-use super::job::{HoldOut, Job, Measured, NamedFile};
-use super::recover::{gauges_without_strain, strain_without_gauge, zero_of};
-use super::work::Work;
+use super::columns::{columns_of, gauges_without_strain, strain_without_gauge};
+use super::faults::no_runs;
+use super::means::is_long_record;
+use super::means::read_strain_file;
+use super::open::{MeasuredStrain, open};
+use super::strain_file::{gauge_names, read_strain, wanted_columns, without_column};
+use super::strain_table::{StrainRows, StrainTable};
+use crate::app::fault::{Fault, FaultList, Faults};
+use crate::app::job::{HoldOut, Job, Measured, NamedFile};
+use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
 use crate::recovery::{ErrorModel, Readings, plausible};
 use crate::units::MICROSTRAIN;
 
 /// A strain table less its zero.
-pub(super) struct Zeroed {
+pub(in crate::app) struct Zeroed {
     /// A reading without a zero is not a number.
     pub table: StrainTable,
     /// Noise variance of each row's readings, in units of that of a single one.
@@ -25,6 +27,17 @@ pub(super) struct Zeroed {
 }
 
 impl Zeroed {
+    /// Returns the names of the runs.
+    ///
+    /// # Errors
+    /// A record.
+    pub fn runs(&self) -> Result<&[String], Faults> {
+        match &self.table.rows {
+            StrainRows::Runs(names) => Ok(names),
+            StrainRows::Times(_) => Err(no_runs(&self.table.file).into()),
+        }
+    }
+
     /// What these gauges read in each row, strain; not a number for a gauge without a column.
     pub fn readings(&self, gauges: &[String]) -> Vec<Readings> {
         let table = &self.table;
@@ -55,7 +68,7 @@ impl Zeroed {
 ///
 /// # Errors
 /// Faults of the files, a long record among them; zero runs that the table lacks.
-pub(super) fn read_zeroed(
+pub(in crate::app) fn read_zeroed(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
@@ -63,13 +76,7 @@ pub(super) fn read_zeroed(
 ) -> Result<Zeroed, Faults> {
     let bytes = work.inputs.read_named(job, named)?;
     if is_long_record(&bytes) {
-        return Err(Fault::of(
-            &*named.given,
-            "run",
-            "rows are samples of one record",
-            "give the means of static runs, a row each, with a column `run`",
-        )
-        .into());
+        return Err(no_runs(&named.given).into());
     }
     let wanted = wanted_columns(&mut work.inputs, job);
     let mut table = read_strain(&mut work.inputs, job, named, &wanted)?;
@@ -95,7 +102,7 @@ pub(super) fn read_zeroed(
 
 /// Adds a warning of gauges without a column in a strain file, and one of columns that belong to no gauge of a job that lists its gauges;
 /// `wanted` are the columns that were asked for.
-pub(super) fn note_columns(
+pub(in crate::app) fn note_columns(
     work: &mut Work,
     job: &Job,
     named: &NamedFile,
@@ -119,7 +126,7 @@ pub(super) fn note_columns(
 
 /// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so, once of the
 /// same gauges.
-pub(super) fn judged(
+pub(in crate::app) fn judged(
     work: &mut Work,
     measured: &Measured,
     gauges: &[String],
@@ -140,12 +147,12 @@ pub(super) fn judged(
 }
 
 /// Whether readings are strain by what the job says of S: with a model or a given S. What S is learnt from alone may be any signal.
-pub(super) fn reads_strain(job: &Job) -> bool {
+pub(in crate::app) fn reads_strain(job: &Job) -> bool {
     job.model.is_some() || job.sensitivity.is_some()
 }
 
 /// As [`judged`], of a job that may have no S yet: its readings are held against their noise alone.
-pub(super) fn judged_to_learn(
+pub(in crate::app) fn judged_to_learn(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
@@ -168,7 +175,7 @@ pub(super) fn judged_to_learn(
 ///
 /// # Errors
 /// One fault where there is none.
-pub(super) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults> {
+pub(in crate::app) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults> {
     let mut all = readings.iter().flat_map(|r| &r.strain);
     if all.any(|v| v.is_finite()) {
         return Ok(());
@@ -182,8 +189,35 @@ pub(super) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
     .into())
 }
 
+/// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file. Not a number for a
+/// gauge that the file says nothing of: its readings have no zero, and it is left out.
+pub(in crate::app) fn zero_of(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    gauges: &[String],
+) -> Result<(Vec<f64>, Option<f64>), Faults> {
+    let Some(named) = &measured.zero else {
+        return Ok((vec![0.0; gauges.len()], None));
+    };
+    let wanted = wanted_columns(&mut work.inputs, job);
+    let file = read_strain_file(&mut work.inputs, job, named, &wanted)?;
+    let columns = columns_of(work, named, file.gauges(), gauges);
+    let readings = file.readings();
+    let mut effective = f64::INFINITY;
+    let mut zero = vec![f64::NAN; gauges.len()];
+    for (z, c) in zero.iter_mut().zip(&columns) {
+        let series = c.and_then(|c| readings.get(c));
+        if let Some((series, mean)) = series.and_then(|s| Some((s, s.mean()?))) {
+            *z = mean * MICROSTRAIN;
+            effective = effective.min(series.effective_samples());
+        }
+    }
+    Ok((zero, effective.is_finite().then_some(effective)))
+}
+
 /// The zero that belongs to each row of a table.
-pub(super) struct RowZeros {
+pub(in crate::app) struct RowZeros {
     /// Microstrain by row and column of the table.
     pub zero: Vec<Vec<f64>>,
     /// Noise variance of each row's readings less zero, in units of that of a single one.
@@ -217,7 +251,7 @@ fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<
 ///
 /// # Errors
 /// Runs that the table lacks, those of `hold_out` among them; rows that are samples.
-pub(super) fn zeros_by_row(
+pub(in crate::app) fn zeros_by_row(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
@@ -290,11 +324,9 @@ fn zero_rows(
     {
         let both = [&measured.strain, hold_out];
         files = format!("neither `{}` nor `{}` has a", both[0].given, both[1].given);
-        let wanted = wanted_columns(&mut work.inputs, job);
         for other in both.into_iter().filter(|f| f.given != table.file) {
-            let other = read_strain(&mut work.inputs, job, other, &wanted)?;
-            if let StrainRows::Runs(runs) = other.rows {
-                known.extend(runs);
+            if let MeasuredStrain::Runs(other) = open(&mut work.inputs, job, measured, other)? {
+                known.extend_from_slice(other.runs());
             }
         }
     }
@@ -327,7 +359,11 @@ fn zero_rows(
 ///
 /// # Errors
 /// `zero_runs` of a job whose strain is a record.
-pub(super) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result<(), Faults> {
+pub(in crate::app) fn no_zero_runs(
+    job: &Job,
+    measured: &Measured,
+    file: &str,
+) -> Result<(), Faults> {
     if measured.zero_runs.is_empty() {
         return Ok(());
     }

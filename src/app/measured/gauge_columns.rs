@@ -21,7 +21,7 @@ pub struct StrainColumn {
 ///
 /// # Errors
 /// Gauges in a unit that is none of strain, or that contradicts the row of units; gauges that two columns hold.
-pub fn strain_columns(
+pub fn find_gauge_columns(
     file: &str,
     columns: &[Column],
     gauges: &[String],
