@@ -14,6 +14,7 @@ mod payload;
 mod supported;
 mod tables;
 mod validation;
+mod wrong_inputs;
 
 use serde_json::Value;
 use std::fmt::Write;

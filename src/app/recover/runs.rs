@@ -2,7 +2,6 @@
 
 use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
-use super::glued_wrong;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
 use super::task::{Task, columns_of};
@@ -14,11 +13,12 @@ use crate::app::job::strain::{
     StrainRows, StrainTable, no_gauge_column, read_strain, record_fault, wanted_columns,
 };
 use crate::app::job::strain_means::is_long_record;
-use crate::app::strain::LoadUnits;
+use crate::app::strain::{LoadUnits, alternative_rows};
 use crate::app::work::Work;
 use crate::app::zeroed::{RowZeros, zeros_by_row};
 use crate::finding::{Finding, Severity, few};
-use crate::recovery::{Readings, Recovery, recover};
+use crate::input_faults::not_explained_by;
+use crate::recovery::{Readings, Recovery, recover_beside};
 use crate::sensitivity::Sensitivity;
 use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::units::MICROSTRAIN;
@@ -164,13 +164,16 @@ pub(super) fn solve(work: &mut Work, task: &Task) -> Result<Solved, Faults> {
     let s = task.prepared.sensitivity.of_gauges(&task.estimating);
     let (all, known) = read(work, task)?;
     let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
-    let mut recovery = work.stage("recover", |_| recover(&s, &readings, task.errors));
+    let mut recovery = work.stage("recover", |work| {
+        let fields = task.prepared.fields.as_ref();
+        let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
+        recover_beside(&s, &readings, task.errors, &mut others)
+    });
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
-    let glued = glued_wrong::findings(work, task, &s, &readings);
-    work.findings.extend(glued);
     let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
-    work.findings.extend(wrong);
+    work.findings
+        .extend(not_explained_by(&recovery.findings, wrong));
     for (run, loads) in recovery.runs.iter_mut().zip(&known) {
         for (l, value) in loads {
             if let Some(found) = run.estimate.values.get_mut(*l) {
