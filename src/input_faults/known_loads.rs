@@ -12,7 +12,7 @@ pub struct KnownLoads {
     /// Noise of a reading, 1 sd, in the unit of the readings.
     pub noise: f64,
     /// Error of each load, 1 sd.
-    pub load_noise: f64,
+    pub load_noise: Vec<f64>,
     /// Relative error of each coefficient, 1 sd.
     pub model_rel: f64,
 }
@@ -39,10 +39,11 @@ impl Misfit for KnownLoads {
                 .map(|row| row.iter().zip(loads).map(|(s, f)| s * f).sum())
                 .collect();
             for ((y, p), row) in strain.iter().zip(&predicted).zip(rows) {
-                let of_load = |(s, f): (&f64, &f64)| {
-                    (s * self.load_noise).powi(2) + (self.model_rel * s * f).powi(2)
+                let of_load = |((s, f), sd): ((&f64, &f64), &f64)| {
+                    (s * sd).powi(2) + (self.model_rel * s * f).powi(2)
                 };
-                let known = row.iter().zip(loads).map(of_load).sum::<f64>();
+                let each = row.iter().zip(loads).zip(&self.load_noise);
+                let known = each.map(of_load).sum::<f64>();
                 let variance = self.noise * self.noise + known;
                 if y.is_finite() && p.is_finite() && variance > 0.0 {
                     out.chi2 += (y - p).powi(2) / variance;

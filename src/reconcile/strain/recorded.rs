@@ -96,7 +96,15 @@ pub fn gauges_installed_otherwise(
         },
         loads: runs.map(<[f64]>::to_vec).collect(),
         noise: frame.noise,
-        load_noise: frame.load_noise,
+        load_noise: (0..n_columns)
+            .map(|c| {
+                if c < frame.n_loads() {
+                    frame.load_noise
+                } else {
+                    0.0
+                }
+            })
+            .collect(),
         model_rel: frame.model_rel,
     };
     if misfit.unexplained() < FAR_OFF {
