@@ -12,8 +12,9 @@ use crate::input_faults::Handling;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// Every run, and findings. Gauges that contradict the others are named, and left out where S was learnt and `handling` says so; a run that no loads explain is estimated loosely
-/// ([`unlike::estimate_loosely`]); one that tells several loads at once where known runs had one each is widened ([`taught::check`]).
+/// Every run, and findings. Gauges that contradict the others are named, and left out where S was learnt and `handling` says so; a run that no
+/// loads explain is estimated loosely ([`unlike::estimate_loosely`]); one that tells several loads at once where known runs had one each is
+/// widened ([`taught::check`]).
 pub(super) fn recover(
     s: &Sensitivity,
     readings: &[Readings],

@@ -1,11 +1,11 @@
 //! Loads from measured strain: weighted least squares, covariance, and what the residual says of both.
 //!
-//! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`])
-//! and records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no
-//! load can make, across the runs; [`verdict`] judges it, [`outlier`] and the search for wrong inputs ([`misfit`]) name gauges that look wrong, [`determined`] and
-//! [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead. [`calibrated`] is the same
-//! for a calibrated S, [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates into those at
-//! rest.
+//! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`]) and
+//! records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no load can
+//! make, across the runs; [`verdict`] judges it, [`outlier`] and the search for wrong inputs ([`misfit`]) name gauges that look wrong,
+//! [`determined`] and [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead.
+//! [`calibrated`] is the same for a calibrated S, [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates
+//! into those at rest.
 
 mod by_calibration;
 pub mod calibrated;

@@ -34,8 +34,8 @@ pub fn recover_beside(
     recover_beyond(s, readings, errors, &[], (Handling::LeftOut, alternatives))
 }
 
-/// The same where readings have errors beyond noise, by run, which the judge of the residuals then knows of; none where `beyond` is empty. `handling` says what
-/// becomes of gauges that contradict the others by a calibrated S.
+/// The same where readings have errors beyond noise, by run, which the judge of the residuals then knows of; none where `beyond` is empty.
+/// `handling` says what becomes of gauges that contradict the others by a calibrated S.
 pub(super) fn recover_beyond(
     s: &Sensitivity,
     readings: &[Readings],
