@@ -59,6 +59,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     let wrong_loads = recorded::wrong_loads(task, &state.used, wrongly_wired);
     if wrong_loads.is_empty() {
         findings.extend(shift::findings(task, &shifts));
+        findings.extend(recorded::wrong_gauges(task, &state.used, &shifts));
     }
     findings.extend(wrong_loads);
     let signal = state.lefts.iter().map(|l| l.q2).sum::<f64>() / state.lefts.len().max(1) as f64;

@@ -264,10 +264,10 @@ pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
             };
             let (code, severity, looks) = match s.word {
                 ShiftWord::Dead => ("gauge-dead", Severity::Warning, "it reads nothing in any run: dead, or not connected".to_owned()),
-                ShiftWord::Sign => ("gauge-wired-backwards", Severity::Warning, "its sign is turned: wired backwards".to_owned()),
+                ShiftWord::Sign => ("input-sign-reversed", Severity::Warning, "its sign is turned: wired backwards".to_owned()),
                 ShiftWord::Gain => ("gauge-shifted", Severity::Warning, format!("it looks like a gain of {:.3}", s.scale)),
                 ShiftWord::Angle => ("gauge-shifted", Severity::Warning, "it looks like a turned gauge".to_owned()),
-                ShiftWord::Exchanged { .. } => ("gauges-exchanged", Severity::Warning, "each reads what the model says of the other: exchanged channels, or names".to_owned()),
+                ShiftWord::Exchanged { .. } => ("inputs-exchanged", Severity::Warning, "each reads what the model says of the other: exchanged channels, or names".to_owned()),
                 ShiftWord::Undetermined => ("gauge-shifted", Severity::Warning, "neither a gain, nor an angle, nor another place is clearly it".to_owned()),
                 ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "it looks like another place than the model's".to_owned()),
             };

@@ -54,7 +54,9 @@ pub fn codes() -> &'static [Code] {
 }
 
 /// Former codes, each with the one that means the same today.
-const RENAMED: [(&str, &str); 2] = [
+const RENAMED: [(&str, &str); 4] = [
+    ("gauge-wired-backwards", "input-sign-reversed"),
+    ("gauges-exchanged", "inputs-exchanged"),
     ("known-loads-sign", "input-sign-reversed"),
     ("known-loads-unit", "input-unit"),
 ];

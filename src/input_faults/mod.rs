@@ -1,11 +1,20 @@
-//! Wrong inputs: readings, recorded loads and vehicle records with another sign, in another unit, or under each other's name. They are searched for
-//! before any effect of a model is.
+//! Wrong inputs: readings, recorded loads and vehicle records with another sign, in another unit, or under each other's name; gauges that are dead
+//! or installed otherwise than stated. They are searched for before any effect of a model is.
+//!
+//! [`search_faults`] undoes each [`InputFault`] in turn and asks a [`Misfit`] how well the rest agrees; whoever has readings and a measure of their
+//! errors implements one. [`faults_of_recorded_loads`] compares recorded loads with the readings, [`fault_of_motion`] tests the channels of a
+//! vehicle.
 
+mod fault;
+mod known_loads;
 mod motion;
 mod recorded_loads;
+mod search;
 #[cfg(test)]
 mod tests;
 
+pub use fault::{AlternativeRows, Channels, Handling, InputFault, Inputs, not_explained_by};
+pub use known_loads::KnownLoads;
 pub use motion::{
     ChannelKind, ChannelSource, ExplainedFault, MotionChannel, MotionFault, MotionRecord,
     MotionScale, channels_by_gravity, fault_of_motion, faults_by_gravity, finding_of_motion,
@@ -15,3 +24,4 @@ pub use recorded_loads::{
     RecordFault, RecordedRuns, faults_of_recorded_loads, findings_of_recorded_loads,
     recorded_mass_contradicted,
 };
+pub use search::{Fitted, Found, Misfit, Rules, search_faults};

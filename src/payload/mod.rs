@@ -5,6 +5,7 @@ mod by_calibration;
 mod carrier;
 mod evidence;
 mod locate;
+mod misfit;
 mod one_run;
 mod robust;
 #[cfg(test)]
@@ -14,6 +15,7 @@ mod weigh;
 pub use ballast::{BallastFit, BallastMass, BallastSpec, size_ballast};
 pub use carrier::{Carriers, spread};
 pub use evidence::{PayloadModel, PayloadRun, Place, Refusal, Support, WeighSpec, WeighedRun};
+pub use misfit::{faults_of_gauges, payload_rows};
 pub use robust::{
     GaugeEstimates, GaugeVerdict, RobustPayload, RobustSpec, RunPayload, robust_payload,
 };

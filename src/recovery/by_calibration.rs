@@ -3,22 +3,31 @@
 
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
+use super::runs::Alternatives;
 use super::types::{Readings, RunEstimate};
 use super::verdict::NOT_SOLVABLE;
-use super::{suspects, taught, unlike};
+use super::{misfit, taught, unlike};
 use crate::finding::{Finding, Severity};
+use crate::input_faults::Handling;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// Every run, and findings. Gauges that contradict the others are named and left out; a run that no loads explain is estimated loosely
-/// ([`unlike::estimate_loosely`]); one that tells several loads at once where known runs had one each is widened ([`taught::check`]).
+/// Every run, and findings. Gauges that contradict the others are named, and left out where S was learnt and `handling` says so; a run that no
+/// loads explain is estimated loosely ([`unlike::estimate_loosely`]); one that tells several loads at once where known runs had one each is
+/// widened ([`taught::check`]).
 pub(super) fn recover(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
-    known: &Uncertainty,
+    (known, (handling, alternatives)): (&Uncertainty, (Handling, &mut Alternatives)),
 ) -> (Vec<RunEstimate>, Vec<Finding>) {
-    let (mut findings, readings) = suspects::check(s, readings, errors, known);
+    // A model with a stated error, of its mesh too, is recovered from as measured.
+    let handling = match known.dof.is_finite() {
+        true => handling,
+        false => Handling::AsMeasured,
+    };
+    let (mut findings, readings) =
+        misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives));
     let mut runs: Vec<RunEstimate> = readings
         .par_iter()
         .map(|r| estimate(s, r, errors, known))

@@ -1,11 +1,11 @@
 //! Loads from measured strain: weighted least squares, covariance, and what the residual says of both.
 //!
-//! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`])
-//! and records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no
-//! load can make, across the runs; [`verdict`] judges it, [`outlier`] and [`faults`] name gauges that look wrong, [`determined`] and
-//! [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead. [`calibrated`] is the same
-//! for a calibrated S, [`suspects`], [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates into those at
-//! rest.
+//! `eps = S f + e`, with `e` the noise of the readings and the model's own error. One estimate ([`gain`]) serves static states ([`runs`]) and
+//! records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no load can
+//! make, across the runs; [`verdict`] judges it, [`outlier`] and the search for wrong inputs ([`misfit`]) name gauges that look wrong,
+//! [`determined`] and [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead.
+//! [`calibrated`] is the same for a calibrated S, [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates
+//! into those at rest.
 
 mod by_calibration;
 pub mod calibrated;
@@ -13,10 +13,10 @@ pub mod clock;
 mod determined;
 pub mod dynamic;
 pub mod errors;
-pub mod faults;
 pub mod gain;
 pub mod history;
 mod kernel;
+mod misfit;
 mod missing;
 pub mod net;
 mod outlier;
@@ -27,7 +27,6 @@ mod samples;
 mod solved;
 pub mod stuck;
 mod sums;
-mod suspects;
 mod taught;
 mod types;
 pub mod unlike;
@@ -36,12 +35,11 @@ pub mod verdict;
 
 pub use determined::{beyond_expected, check_planned};
 pub use errors::ErrorModel;
-pub use faults::{EXPLAINED, REPAIR, sum_of_squares};
 pub use gain::Gain;
 pub use missing::Missing;
 pub use outlier::ALARM;
-pub use runs::recover;
-pub use samples::{check_gaps, recover_samples, recover_samples_beyond};
+pub use runs::{Alternatives, recover, recover_beside};
+pub use samples::{check_gaps, recover_samples, recover_samples_beside};
 pub use solved::estimate;
 pub use sums::Sums;
 pub use types::*;

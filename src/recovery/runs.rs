@@ -4,9 +4,10 @@ use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::solved::{Solved, root_mean_squares, solve_beyond};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
-use super::{by_calibration, determined, faults, plausible, verdict};
+use super::{by_calibration, determined, misfit, plausible, verdict};
 use crate::estimate::student_95;
 use crate::finding::Finding;
+use crate::input_faults::{AlternativeRows, Handling};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Loads of every run with intervals, and findings on what the residuals say.
@@ -17,25 +18,41 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
-    recover_beyond(s, readings, errors, &[])
+    recover_beside(s, readings, errors, &mut Vec::new)
+}
+
+/// Asked for the rows of S that gauges would have if they were installed otherwise, where the readings are not explained.
+pub type Alternatives<'a> = dyn FnMut() -> Vec<AlternativeRows> + 'a;
+
+/// Loads of every run as [`recover`] has them; faults of the installation are searched for as well.
+pub fn recover_beside(
+    s: &Sensitivity,
+    readings: &[Readings],
+    errors: ErrorModel,
+    alternatives: &mut Alternatives,
+) -> Recovery {
+    recover_beyond(s, readings, errors, &[], (Handling::LeftOut, alternatives))
 }
 
 /// The same where readings have errors beyond noise, by run, which the judge of the residuals then knows of; none where `beyond` is empty.
+/// `handling` says what becomes of gauges that contradict the others by a calibrated S.
 pub(super) fn recover_beyond(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
     beyond: &[Beyond],
+    (handling, alternatives): (Handling, &mut Alternatives),
 ) -> Recovery {
     let (readings, mut findings) = plausible::check(&s.gauges, readings, errors);
     if let Some(known) = &s.uncertainty {
-        return recover_calibrated(s, &readings, errors, known, findings);
+        let faults = (handling, alternatives);
+        return recover_calibrated(s, &readings, errors, (known, faults), findings);
     }
     let solved = solve_beyond(s, &readings, errors, beyond);
     let verdict = verdict::check(s, &readings, &solved, errors, beyond);
     // Faults are named by how well they explain what noise doesn't: with errors beyond it that names none.
     let named = match verdict.misfit && beyond.is_empty() {
-        true => faults::check(s, &readings, errors),
+        true => misfit::faults_by_stated_errors(s, &readings, errors, alternatives),
         false => Vec::new(),
     };
     findings.extend(unlike(verdict.findings, named));
@@ -77,10 +94,10 @@ fn recover_calibrated(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
-    known: &Uncertainty,
+    (known, faults): (&Uncertainty, (Handling, &mut Alternatives)),
     mut findings: Vec<Finding>,
 ) -> Recovery {
-    let (runs, judged) = by_calibration::recover(s, readings, errors, known);
+    let (runs, judged) = by_calibration::recover(s, readings, errors, (known, faults));
     findings.extend(judged);
     let (residual_rms, gauge_residual_rms, gauge_leverage) = residual_sizes(s.gauges.len(), &runs);
     findings.extend(determined::check(s, &runs));

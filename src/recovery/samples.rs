@@ -5,10 +5,11 @@ use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::missing::Missing;
 use super::plausible;
-use super::runs::recover_beyond;
+use super::runs::{Alternatives, recover_beyond};
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
 use crate::finding::{Finding, Severity, few};
+use crate::input_faults::Handling;
 use crate::sensitivity::Sensitivity;
 
 /// What recovery makes of samples of a record; samples in which no gauge gave anything say nothing, unless there are no others.
@@ -16,15 +17,16 @@ use crate::sensitivity::Sensitivity;
 /// A sample whose gauges don't tell a load is blank there. Whether a load can be had is asked of the whole record ([`check_gaps`]), not of
 /// the samples that happen to be looked at: `run-not-solvable` stays only where all gauges together don't tell a load, which is no gap.
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
-    recover_samples_beyond(s, samples, errors, Vec::new())
+    recover_samples_beside(s, samples, errors, (Vec::new(), &mut Vec::new))
 }
 
-/// The same where readings have errors beyond noise, by sample; none where `beyond` is empty.
-pub fn recover_samples_beyond(
+/// The same where readings have errors beyond noise, by sample (none where `beyond` is empty), and gauges may be installed otherwise. The record is
+/// recovered from all gauges, whatever contradicts the others.
+pub fn recover_samples_beside(
     s: &Sensitivity,
     samples: Vec<Readings>,
     errors: ErrorModel,
-    beyond: Vec<Beyond>,
+    (beyond, alternatives): (Vec<Beyond>, &mut Alternatives),
 ) -> Recovery {
     let reads = |r: &Readings| r.strain.iter().any(|v| v.is_finite());
     let taken: Vec<bool> = samples.iter().map(reads).collect();
@@ -32,7 +34,13 @@ pub fn recover_samples_beyond(
     let samples: Vec<Readings> = samples.into_iter().filter(|r| !some || reads(r)).collect();
     let beyond = beyond.into_iter().zip(taken);
     let beyond: Vec<Beyond> = beyond.filter(|(_, t)| !some || *t).map(|b| b.0).collect();
-    let mut recovery = recover_beyond(s, &samples, errors, &beyond);
+    let mut recovery = recover_beyond(
+        s,
+        &samples,
+        errors,
+        &beyond,
+        (Handling::AsMeasured, alternatives),
+    );
     if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE) && all_tell(s, errors, &recovery) {
         recovery.findings.retain(|f| f.code != NOT_SOLVABLE);
     }

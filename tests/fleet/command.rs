@@ -389,7 +389,7 @@ fn a_record_whose_strain_the_loads_do_not_explain_is_an_error_that_names_it() {
         "2 of 20 records, the first T1_5.csv",
     );
     has("strain-not-explained", "T2", "T2_7.csv");
-    has("gauge-wired-backwards", "T1 G2", "T1_5.csv");
+    has("input-sign-reversed", "T1 G2", "T1_5.csv");
     let all = findings_of(&result, &["warning", "error"]);
     let suspects = |f: &&[String; 3]| f[0] == "gauge-suspect" && f[1] == "T0 G3";
     assert_eq!(all.iter().filter(suspects).count(), 1, "{all:?}");

@@ -15,6 +15,7 @@ mod readings;
 mod supported;
 mod tables;
 mod validation;
+mod wrong_inputs;
 
 use serde_json::Value;
 use std::fmt::Write;

@@ -228,7 +228,7 @@ fn a_gauge_that_is_backwards_is_the_first_thing_said_and_no_finding_is_a_list_of
     let first = got.findings.first().unwrap();
     assert_eq!(
         (first.code, first.subject.as_str()),
-        ("gauge-wired-backwards", "G3")
+        ("input-sign-reversed", "G3")
     );
     let unexplained = got
         .findings

@@ -487,7 +487,7 @@ fn of_readings_that_are_no_loads_check_says_what_recover_says() {
                     _ => keep(f),
                 })
             }),
-            Ends::Error("gauge-suspect"),
+            Ends::Error("gauge-silent"),
         ),
         (
             ("dead", &|t| {
@@ -506,7 +506,7 @@ fn of_readings_that_are_no_loads_check_says_what_recover_says() {
                     _ => keep(f),
                 })
             }),
-            Ends::Error("strain-not-explained"),
+            Ends::Error("inputs-exchanged"),
         ),
     ];
     agree(&folder, "recover.toml", "recover", "strain.csv", &damages);

@@ -15,8 +15,8 @@ const OFF: f64 = 0.1;
 /// What is named of a record by its cause, and makes of the gains and zeros of that day what they are not.
 const CAUSES: [&str; 4] = [
     "gauge_swap",
-    "gauges-exchanged",
-    "gauge-wired-backwards",
+    "inputs-exchanged",
+    "input-sign-reversed",
     "gauge-dead",
 ];
 

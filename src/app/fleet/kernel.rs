@@ -187,7 +187,7 @@ impl Kernel {
         let widening = judgements.first()?.widening.clone();
         let found = findings_of(judgements);
         let explained = found.iter().all(|f| f.code != UNEXPLAINED);
-        let named = |f: &DayFinding| f.code == "gauges-exchanged";
+        let named = |f: &DayFinding| f.code == "inputs-exchanged";
         if !explained && !found.iter().any(named) {
             let rows = samples.iter().map(Vec::as_slice);
             let pair = exchanged(&r.sensitivity, rows, self.errors.noise);

@@ -101,6 +101,9 @@ fn kept(r: &WeighedRun, v: f64) -> Option<f64> {
     if r.refused.is_some() { None } else { finite(v) }
 }
 
+/// Standard deviation of a gauge alone over that of the answer from which it carries less than a thousandth of it.
+const CARRIES: f64 = 32.0;
+
 /// The answer.
 pub(super) fn weighed(
     task: &Task,
@@ -116,16 +119,23 @@ pub(super) fn weighed(
         for (g, name) in parts.model.gauges.iter().enumerate() {
             let verdict = weighing.gauges.iter().find(|v| v.name == *name);
             let estimate = r.estimates.get(g).copied().unwrap_or(f64::NAN);
+            let sigma = r.estimate_sigma.get(g).copied().unwrap_or(f64::NAN);
+            // Shares in a mean are those of 1 / sigma^2.
+            let carries = !(sigma > CARRIES * r.sigma);
             by_gauge.push(SingleGauge {
                 run: r.run.clone(),
                 name: name.clone(),
                 estimate: finite(estimate),
                 sigma: r.estimate_sigma.get(g).copied().and_then(finite),
-                used: verdict.is_some_and(|v| v.used) && estimate.is_finite(),
-                reason: verdict.map_or_else(
-                    || "no gauge says a possible payload".to_owned(),
-                    |v| v.reason.clone(),
-                ),
+                used: verdict.is_some_and(|v| v.used) && estimate.is_finite() && carries,
+                reason: match verdict {
+                    None => "no gauge says a possible payload".to_owned(),
+                    Some(v) if v.used && estimate.is_finite() && !carries => {
+                        "too weak to tell: it carries less than a thousandth of the answer"
+                            .to_owned()
+                    }
+                    Some(v) => v.reason.clone(),
+                },
             });
         }
     }

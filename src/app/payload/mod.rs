@@ -1,6 +1,7 @@
 //! `payload`: mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
 
 mod answer;
+mod faults;
 mod judge;
 mod model;
 mod readings;
@@ -70,6 +71,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
     judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
+    faults::search(&mut work, &task, &parts, runs, (&spec, &weighing));
     let place = stated::place_contradicted(&task, &parts, runs, &spec, &weighing);
     work.findings.extend(place);
     let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;

@@ -15,9 +15,14 @@ use super::strain_findings::findings;
 use super::{causes, described, extend, matrix_frame};
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{EffectSource, Job};
+use crate::app::strain::alternatives_of;
 use crate::app::work::Work;
+use crate::finding::Finding;
+use crate::linalg::Matrix;
 use crate::reconcile::effect::{Correction, Extension};
-use crate::reconcile::strain::{StiffnessOf, StrainFrame, examine, predict};
+use crate::reconcile::strain::{
+    StiffnessOf, StrainFrame, examine, gauges_installed_otherwise, predict, refused,
+};
 use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
 
 /// What strain says.
@@ -57,7 +62,17 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         .as_ref()
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
-    let mut outcome = searched(work, &frame, &only)?;
+    let wrong = match &deck {
+        Some(_) => installed_otherwise(work, job, &frame, &channels),
+        None => Vec::new(),
+    };
+    if !wrong.is_empty() {
+        deck = None;
+    }
+    let mut outcome = match wrong.is_empty() {
+        true => searched(work, &frame, &only)?,
+        false => work.stage("search", |_| refused(&frame, wrong)),
+    };
     if let Some(deck) = &mut deck {
         let off = gauges_that_disagree(&outcome);
         if !off.is_empty() {
@@ -141,6 +156,24 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
         }
         (None, None) => Ok(()),
     }
+}
+
+/// Returns the finding on gauges that are all installed otherwise than stated, by the recorded loads.
+fn installed_otherwise(
+    work: &mut Work,
+    job: &Job,
+    frame: &StrainFrame,
+    channels: &[String],
+) -> Vec<Finding> {
+    let rows_of = |work: &mut Work, job: &Job| {
+        let (part, _) = deck_frame::read(work, job, channels).ok()?;
+        let n_c = frame.n_columns();
+        let rows = Matrix::from_fn(channels.len(), n_c, |g, c| part.influence[g * n_c + c]);
+        Some((channels.to_vec(), rows))
+    };
+    gauges_installed_otherwise(frame, &mut || {
+        alternatives_of(work, job, channels, &rows_of)
+    })
 }
 
 /// The verdict on the frame.

@@ -7,10 +7,11 @@ use super::task::Task;
 use crate::app::fault::{Fault, Faults};
 use crate::app::measured::record::Record;
 use crate::app::solved::{first_mode_of, support_of_job};
+use crate::app::strain::alternative_rows;
 use crate::app::work::Work;
 use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;
-use crate::recovery::{Readings, Recovery, clock, recover_samples, recover_samples_beyond};
+use crate::recovery::{Readings, Recovery, clock, recover_samples_beside};
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 
@@ -24,8 +25,15 @@ const TYPICAL: usize = 20_000;
 const LOOKED_AT: usize = 8;
 
 /// What samples over the record say of the loads asked for, of the gauges, and of the intervals.
-pub(super) fn judge(task: &Task, s: &Sensitivity, readings: Vec<Readings>) -> Recovery {
-    recover_samples(s, readings, task.errors)
+pub(super) fn judge(
+    work: &mut Work,
+    task: &Task,
+    s: &Sensitivity,
+    readings: Vec<Readings>,
+) -> Recovery {
+    let fields = task.prepared.fields.as_ref();
+    let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
+    recover_samples_beside(s, readings, task.errors, (Vec::new(), &mut others))
 }
 
 /// The same of samples at rest, by number, and what they are off by.
@@ -42,7 +50,7 @@ pub(super) fn judge_at_rest(
     };
     let beyond = readings.iter().map(beyond).collect();
     let readings = readings.into_iter().map(|r| r.1).collect();
-    recover_samples_beyond(s, readings, task.errors, beyond)
+    recover_samples_beside(s, readings, task.errors, (beyond, &mut Vec::new))
 }
 
 /// Readings of samples spread over the record, less `zero`, each with the number of its sample.

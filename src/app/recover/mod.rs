@@ -11,7 +11,6 @@ mod damage;
 mod dead_parts;
 mod dynamic;
 mod files;
-mod glued_wrong;
 mod history;
 mod judged;
 mod known_payload;

@@ -68,7 +68,7 @@ pub(super) fn record(
             (judged, errors, Some(r.record), Some(r.motion), r.blank)
         }
         None => {
-            let judged = judge(task, &sensitivity, readings);
+            let judged = judge(work, task, &sensitivity, readings);
             (judged, (task.noise_factor, None), None, None, 0)
         }
     };

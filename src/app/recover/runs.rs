@@ -2,7 +2,6 @@
 
 use super::answer::RecoveredRuns;
 use super::combined::{Listed, listed};
-use super::glued_wrong;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
 use super::task::Task;
@@ -14,10 +13,11 @@ use crate::app::measured::columns::columns_of;
 use crate::app::measured::faults::no_gauge_column;
 use crate::app::measured::strain_table::StrainTable;
 use crate::app::measured::zero::{RowZeros, zeros_by_row};
-use crate::app::strain::LoadUnits;
+use crate::app::strain::{LoadUnits, alternative_rows};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
-use crate::recovery::{Readings, Recovery, recover};
+use crate::input_faults::not_explained_by;
+use crate::recovery::{Readings, Recovery, recover_beside};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use std::collections::{HashMap, HashSet};
@@ -139,13 +139,16 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
     let s = task.prepared.sensitivity.of_gauges(&task.estimating);
     let (all, known) = read(work, task, table)?;
     let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
-    let mut recovery = work.stage("recover", |_| recover(&s, &readings, task.errors));
+    let mut recovery = work.stage("recover", |work| {
+        let fields = task.prepared.fields.as_ref();
+        let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
+        recover_beside(&s, &readings, task.errors, &mut others)
+    });
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
-    let glued = glued_wrong::findings(work, task, &s, &readings);
-    work.findings.extend(glued);
     let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
-    work.findings.extend(wrong);
+    work.findings
+        .extend(not_explained_by(&recovery.findings, wrong));
     for (run, loads) in recovery.runs.iter_mut().zip(&known) {
         for (l, value) in loads {
             if let Some(found) = run.estimate.values.get_mut(*l) {

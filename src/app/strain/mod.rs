@@ -1,5 +1,6 @@
 //! What the strain commands share: the model with its unit-load strain, gauges laid onto it, S from there or from a table.
 
+mod alternative_rows;
 mod covariance;
 mod deck_loads;
 mod fields;
@@ -11,6 +12,7 @@ mod specs;
 mod unit_loads;
 mod units;
 
+pub use alternative_rows::{alternative_rows, alternatives_of};
 pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Beside, Fields, read_fields, read_fields_beside};
 pub use gauges::{lay_gauges, not_laid, off_their_elements, without_strain};

@@ -332,7 +332,7 @@ fn planted(case: &str) -> Option<(Vec<String>, Vec<String>)> {
     let gauges = found
         .findings
         .iter()
-        .filter(|f| f.code.starts_with("gauge"));
+        .filter(|f| f.code.starts_with("gauge") || f.code.starts_with("input"));
     Some(
         gauges
             .map(|f| (f.code.to_owned(), f.subject.clone()))
@@ -343,11 +343,11 @@ fn planted(case: &str) -> Option<(Vec<String>, Vec<String>)> {
 #[test]
 fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
     for (case, code, subject) in [
-        ("case02", "gauges-exchanged", ["B5411", "B7059"].as_slice()),
-        ("case03", "gauge-wired-backwards", &["B7060"]),
+        ("case02", "inputs-exchanged", ["B5411", "B7059"].as_slice()),
+        ("case03", "input-sign-reversed", &["B7060"]),
         ("case04", "gauge-suspect", &["B5412"]),
         ("case06", "gauge-dead", &["B7031"]),
-        ("case07", "gauges-exchanged", &["B5406", "B5381"]),
+        ("case07", "inputs-exchanged", &["B5406", "B5381"]),
     ] {
         let Some((codes, subjects)) = planted(case) else {
             return;
@@ -435,7 +435,9 @@ fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<Stri
         model_rel: 0.0,
     };
     let found = recover(&c.sensitivity, &readings, errors).findings;
-    let named = found.iter().filter(|f| f.code.starts_with("gauge"));
+    let named = found
+        .iter()
+        .filter(|f| f.code.starts_with("gauge") || f.code.starts_with("input"));
     let named = named.flat_map(|f| f.subject.split(", ").map(str::to_owned));
     let faulty = match planted {
         Planted::Nothing => Vec::new(),

@@ -179,7 +179,7 @@ fn gauges_wired_backwards_are_named_and_no_others() {
         let named = c
             .findings
             .iter()
-            .filter(|f| f.code == "gauge-wired-backwards");
+            .filter(|f| f.code == "input-sign-reversed");
         assert_eq!(named.count(), wrong.len());
         assert_eq!(severe(&c, "input-sign-reversed"), None);
     }
@@ -201,7 +201,7 @@ fn two_exchanged_gauges_are_named_and_no_others() {
             };
             assert_eq!(s.word, wanted, "{a} {b}: {s:?}");
         }
-        let subject = severe(&c, "gauges-exchanged");
+        let subject = severe(&c, "inputs-exchanged");
         assert_eq!(subject, Some((Severity::Warning, format!("G{a}, G{b}"))));
     }
 }

@@ -8,6 +8,7 @@ use super::own_covariance::best_by_own_covariance;
 use super::recorded::wrong_records;
 use super::smooth::smooth_instead;
 use super::validation::{Proofs, validated};
+use crate::finding::Finding;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::{Outcome, Verdict};
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
@@ -29,13 +30,18 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
     if wrong.is_empty() {
         return examine_with(frame, &library(frame, only));
     }
+    refused(frame, wrong)
+}
+
+/// Returns the outcome of a frame whose inputs are wrong, as `wrong` says: no effect is looked for.
+pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
     let words: Vec<&str> = wrong.iter().map(|f| f.message.as_str()).collect();
     let remedies: Vec<&str> = wrong.iter().map(|f| f.remedy.as_str()).collect();
     Outcome {
         verdict: Verdict::Unknown,
         remains: words.join("; "),
         next_measurement: remedies.join("; "),
-        input_faults: wrong.clone(),
+        input_faults: wrong,
         ..examine_with(frame, &[])
     }
 }

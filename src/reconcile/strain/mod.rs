@@ -37,7 +37,7 @@ mod validation;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, covariance, read_patterns};
-pub use examine::{examine, examine_with};
+pub use examine::{examine, examine_with, refused};
 pub use extended::{corrected_readings, extended_state};
 pub use frame::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
@@ -47,6 +47,7 @@ pub use gap::{FoundAnew, Judged, judged};
 pub use likelihood::{Fit, Likelihood};
 pub use nuisance::ground_patterns;
 pub use prediction::{predict, read_all};
+pub use recorded::gauges_installed_otherwise;
 pub use recovered::loads_before_after;
 pub use state::{Part, StrainState};
 pub use tolerance::angle_scatter;

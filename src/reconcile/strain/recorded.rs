@@ -3,7 +3,11 @@
 use super::frame::StrainFrame;
 use super::state::StrainState;
 use crate::finding::Finding;
-use crate::input_faults::{RecordedRuns, findings_of_recorded_loads, recorded_mass_contradicted};
+use crate::input_faults::{
+    AlternativeRows, Handling, Inputs, KnownLoads, RecordedRuns, Rules, findings_of_recorded_loads,
+    recorded_mass_contradicted, search_faults,
+};
+use crate::linalg::Matrix;
 use crate::units::{KILO, Quantity, STANDARD_GRAVITY_M_S2};
 
 /// Name of the payload among the loads.
@@ -63,5 +67,55 @@ pub(super) fn wrong_records(frame: &StrainFrame) -> Vec<Finding> {
     let sum_sd = frame.load_noise * (vertical.len() as f64).sqrt();
     recorded_mass_contradicted(&runs, n_loads, (&weights, &sums), sum_sd)
         .into_iter()
+        .collect()
+}
+
+/// Share of the readings, root mean squares, that gauges which are installed otherwise than stated leave unexplained at least: effects of a
+/// structure leave less.
+const FAR_OFF: f64 = 0.25;
+
+/// Returns the finding on gauges that are all on the other surface, or all have angles in radians. `alternatives` is asked only where the recorded
+/// loads leave most of the readings; its rows are those of [`StrainFrame::influence`].
+pub fn gauges_installed_otherwise(
+    frame: &StrainFrame,
+    alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
+) -> Vec<Finding> {
+    let state = StrainState::nominal(frame);
+    let [n_gauges, n_runs, n_columns] = state.shape;
+    let readings = (0..n_runs).map(|r| {
+        let channels = 0..n_gauges;
+        channels.map(|g| frame.observations.value(r, g)).collect()
+    });
+    let runs = state.columns.chunks_exact(n_columns);
+    let misfit = KnownLoads {
+        inputs: Inputs {
+            strain: readings.collect(),
+            rows: Matrix::from_fn(n_gauges, n_columns, |g, c| {
+                state.influence[g * n_columns + c]
+            }),
+        },
+        loads: runs.map(<[f64]>::to_vec).collect(),
+        noise: frame.noise,
+        load_noise: (0..n_columns)
+            .map(|c| {
+                if c < frame.n_loads() {
+                    frame.load_noise
+                } else {
+                    0.0
+                }
+            })
+            .collect(),
+        model_rel: frame.model_rel,
+    };
+    if misfit.unexplained() < FAR_OFF {
+        return Vec::new();
+    }
+    let names: Vec<String> = frame.gauges.iter().map(|g| g.name.clone()).collect();
+    let found = search_faults(&misfit, alternatives, &Rules::STATED);
+    let installed = found
+        .iter()
+        .filter(|f| f.fault.is_of_installation() && f.fault.gauges().is_empty());
+    installed
+        .map(|f| f.finding(&names, Handling::AsMeasured))
         .collect()
 }

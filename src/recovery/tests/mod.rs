@@ -134,7 +134,7 @@ fn a_gauge_wired_backwards_and_a_dead_one_are_named_and_no_other() {
     let named: Vec<&str> = got
         .findings
         .iter()
-        .filter(|f| f.code == "gauge-wired-backwards")
+        .filter(|f| f.code == "input-sign-reversed")
         .map(|f| f.subject.as_str())
         .collect();
     assert_eq!(named, ["G09"], "{:?}", got.findings);

@@ -1,0 +1,323 @@
+//! Faults of measured channels: what each one changes, and the finding that reports it.
+
+use super::search::Found;
+use crate::finding::{Finding, Severity};
+use crate::linalg::Matrix;
+use crate::units::{MICROSTRAIN, number};
+
+/// One gauge by number, or all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channels {
+    /// One gauge.
+    One(usize),
+    /// All gauges.
+    All,
+}
+
+/// A fault of measured channels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InputFault {
+    /// Readings have the opposite sign.
+    Sign(Channels),
+    /// Readings are this multiple of the strain: their unit is another.
+    Unit(Channels, f64),
+    /// A gauge reads this share of the strain.
+    Gain(usize, f64),
+    /// A gauge reads so much more than the strain in all runs.
+    Offset(usize, f64),
+    /// A gauge reads nothing.
+    Dead(usize),
+    /// A gauge gives one reading in all runs.
+    Stuck(usize),
+    /// Two gauges have each other's readings.
+    Exchanged(usize, usize),
+    /// Gauges are on the other surface than their table states.
+    OtherSide(Channels),
+    /// Angles of the table are in radians.
+    Radians(Channels),
+    /// A gauge contradicts the others, for none of these reasons.
+    Unlike(usize),
+}
+
+/// Readings by run and gauge (NaN where one is missing), and the rows of S that they are compared with.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    /// Strain by run and gauge.
+    pub strain: Vec<Vec<f64>>,
+    /// S, strain per unit of load, a row a gauge.
+    pub rows: Matrix,
+}
+
+/// What another installation of the gauges would read.
+#[derive(Clone, Debug)]
+pub struct AlternativeRows {
+    /// [`InputFault::OtherSide`] or [`InputFault::Radians`] of a gauge.
+    pub fault: fn(Channels) -> InputFault,
+    /// S with every gauge so installed.
+    pub rows: Matrix,
+    /// Whether this makes sense for a gauge.
+    pub applies: Vec<bool>,
+}
+
+impl InputFault {
+    /// Returns the gauges that it is of; none where it is of all.
+    pub fn gauges(&self) -> Vec<usize> {
+        match *self {
+            Self::Sign(c) | Self::Unit(c, _) | Self::OtherSide(c) | Self::Radians(c) => match c {
+                Channels::One(g) => vec![g],
+                Channels::All => Vec::new(),
+            },
+            Self::Gain(g, _) | Self::Offset(g, _) => vec![g],
+            Self::Dead(g) | Self::Stuck(g) | Self::Unlike(g) => vec![g],
+            Self::Exchanged(a, b) => vec![a, b],
+        }
+    }
+
+    /// Returns whether gauges are installed otherwise than their table states.
+    pub fn is_of_installation(&self) -> bool {
+        matches!(self, Self::OtherSide(_) | Self::Radians(_))
+    }
+
+    /// Returns the inputs without the fault: corrected, or without the readings of a gauge that can't be corrected.
+    pub fn undone(&self, inputs: &Inputs, alternatives: &[AlternativeRows]) -> Inputs {
+        let mut out = inputs.clone();
+        let of = self.gauges();
+        let of = |g: usize| of.is_empty() || of.contains(&g);
+        match *self {
+            Self::Exchanged(a, b) => out.strain.iter_mut().for_each(|run| run.swap(a, b)),
+            Self::OtherSide(_) | Self::Radians(_) => {
+                let rows = alternatives.iter().find(|a| {
+                    std::mem::discriminant(&(a.fault)(Channels::All))
+                        == std::mem::discriminant(self)
+                });
+                for g in (0..out.rows.nrows()).filter(|g| of(*g)) {
+                    for l in 0..out.rows.ncols() {
+                        out.rows[(g, l)] = rows.map_or(f64::NAN, |a| a.rows[(g, l)]);
+                    }
+                }
+            }
+            _ => {
+                let change = |v: f64| match *self {
+                    Self::Sign(_) => -v,
+                    Self::Unit(_, factor) | Self::Gain(_, factor) => v / factor,
+                    Self::Offset(_, offset) => v - offset,
+                    _ => f64::NAN,
+                };
+                for run in &mut out.strain {
+                    for (_, v) in run.iter_mut().enumerate().filter(|(g, _)| of(*g)) {
+                        *v = change(*v);
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    /// Returns the code of its finding.
+    fn code(&self) -> &'static str {
+        match self {
+            Self::Sign(_) => "input-sign-reversed",
+            Self::Unit(..) => "input-unit",
+            Self::Exchanged(..) => "inputs-exchanged",
+            Self::OtherSide(_) => "gauge-other-side",
+            Self::Radians(_) => "gauge-angle-in-radians",
+            Self::Dead(_) => "gauge-dead",
+            Self::Stuck(_) => "gauge-silent",
+            Self::Gain(..) | Self::Offset(..) | Self::Unlike(_) => "gauge-suspect",
+        }
+    }
+
+    /// Returns what it is of: the names of its gauges, or `all`.
+    fn subject(&self, names: &[String]) -> String {
+        let list: Vec<&str> = (self.gauges().iter())
+            .filter_map(|g| Some(names.get(*g)?.as_str()))
+            .collect();
+        match list.is_empty() {
+            true => "all".to_owned(),
+            false => list.join(", "),
+        }
+    }
+
+    /// Returns a clause that says what is wrong.
+    pub fn clause(&self, names: &[String]) -> String {
+        let name = |g: usize| names.get(g).map_or("", String::as_str);
+        match *self {
+            Self::Sign(Channels::One(g)) => format!("gauge `{}` has the opposite sign", name(g)),
+            Self::Sign(Channels::All) => "all readings have the opposite sign".to_owned(),
+            Self::Unit(c, factor) => {
+                let of = match c {
+                    Channels::One(g) => format!("gauge `{}` reads", name(g)),
+                    Channels::All => "all gauges read".to_owned(),
+                };
+                format!(
+                    "{of} {} times the strain, as in another unit",
+                    number(factor)
+                )
+            }
+            Self::Gain(g, gain) => format!(
+                "gauge `{}` reads {} of the strain that the others predict",
+                name(g),
+                number(gain)
+            ),
+            Self::Offset(g, offset) => format!(
+                "gauge `{}` is offset by {} microstrain in all runs",
+                name(g),
+                number(offset / MICROSTRAIN)
+            ),
+            Self::Dead(g) => format!("gauge `{}` reads nothing", name(g)),
+            Self::Stuck(g) => format!("gauge `{}` gives one reading in all runs", name(g)),
+            Self::Exchanged(a, b) => {
+                format!(
+                    "gauges `{}` and `{}` have each other's readings",
+                    name(a),
+                    name(b)
+                )
+            }
+            Self::OtherSide(Channels::One(g)) => format!(
+                "gauge `{}` is on the other surface than its table states",
+                name(g)
+            ),
+            Self::OtherSide(Channels::All) => {
+                "all gauges are on the other surface than their table states".to_owned()
+            }
+            Self::Radians(Channels::One(g)) => {
+                format!("the stated angle of gauge `{}` is in radians", name(g))
+            }
+            Self::Radians(Channels::All) => {
+                "the stated angles of all gauges are in radians".to_owned()
+            }
+            Self::Unlike(g) => format!("gauge `{}` contradicts the others", name(g)),
+        }
+    }
+
+    /// Returns what corrects it: the line of the job where there is one.
+    fn remedy(&self, names: &[String]) -> String {
+        let key = |c: Channels| match c {
+            Channels::One(g) => {
+                format!("gauge = \"{}\", ", names.get(g).map_or("", String::as_str))
+            }
+            Channels::All => String::new(),
+        };
+        let line = |c: Channels, value: String| format!("[[correction]] {}{value}", key(c));
+        match *self {
+            Self::Sign(c) => format!(
+                "check the wiring; if so, state it: {}",
+                line(c, "sign = -1".to_owned())
+            ),
+            Self::Unit(c, factor) => format!(
+                "check the unit of the channel; if so, state it: {}",
+                line(c, format!("gain = {}", number(factor)))
+            ),
+            Self::Gain(g, gain) => format!(
+                "check gauge factor, bridge factor, position and direction; state a known gain: {}, or leave the gauge out: ignore = true",
+                line(Channels::One(g), format!("gain = {}", number(gain)))
+            ),
+            Self::Offset(g, offset) => format!(
+                "check the zero of the gauge; state a known offset: {}, or leave the gauge out: ignore = true",
+                line(
+                    Channels::One(g),
+                    format!("offset_microstrain = {}", number(offset / MICROSTRAIN))
+                )
+            ),
+            Self::Dead(g) | Self::Stuck(g) => format!(
+                "check wiring and channel, or leave the gauge out: {}",
+                line(Channels::One(g), "ignore = true".to_owned())
+            ),
+            Self::Exchanged(a, b) => {
+                let other = names.get(b).map_or("", String::as_str);
+                let line = line(Channels::One(a), format!("exchanged_with = \"{other}\""));
+                format!("check columns and plugs; if so, state it: {line}")
+            }
+            Self::OtherSide(_) => {
+                "correct `surface` in the table of gauges (top is Z2, bottom Z1 of the element)"
+                    .to_owned()
+            }
+            Self::Radians(_) => "state `angle_deg` in degrees".to_owned(),
+            Self::Unlike(g) => format!(
+                "check its position, direction, bridge factor and wiring, or leave it out: {}",
+                line(Channels::One(g), "ignore = true".to_owned())
+            ),
+        }
+    }
+}
+
+/// What the command does with the gauges of a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Handling {
+    /// The result is that of the readings as they are.
+    AsMeasured,
+    /// The readings of these gauges are left out.
+    LeftOut,
+}
+
+impl Found {
+    /// Returns the finding on a fault of gauges with these names: an error where the result holds it and moves by more than its interval, or
+    /// where that is not known.
+    pub fn finding(&self, names: &[String], handling: Handling) -> Finding {
+        let left_out = handling == Handling::LeftOut && !self.fault.gauges().is_empty();
+        let severity = match self.moves {
+            _ if left_out => Severity::Warning,
+            Some(ratio) if ratio <= 1.0 => Severity::Warning,
+            _ => Severity::Error,
+        };
+        let mut message = self.fault.clause(names);
+        if let (InputFault::Dead(_) | InputFault::Stuck(_), [reads, expected]) =
+            (self.fault, self.sizes)
+        {
+            message += &format!(
+                " ({} microstrain) where the others expect {} microstrain",
+                number(reads / MICROSTRAIN),
+                number(expected / MICROSTRAIN)
+            );
+        }
+        let how = match (self.fault, self.together) {
+            (InputFault::Dead(_) | InputFault::Stuck(_) | InputFault::Unlike(_), false) => {
+                "without it"
+            }
+            (_, false) => "with this corrected",
+            (_, true) => "with all faults found corrected",
+        };
+        message += &format!(
+            ": {how}, the residual sum of squares falls to {} % of its value",
+            number(100.0 * self.share)
+        );
+        if let Some(sigmas) = self.sigmas {
+            message += &format!(" ({} sigma)", number(sigmas));
+        }
+        if let Some(ratio) = self.moves.filter(|r| *r > 1.0 && !left_out) {
+            message += &format!(
+                "; it moves a load by {} times the half width of its interval",
+                number(ratio)
+            );
+        }
+        if left_out {
+            message += ". It is left out here";
+        }
+        if !self.alternatives.is_empty() {
+            let each = self.alternatives.iter().map(|a| a.clause(names));
+            message += &format!(
+                ". The readings allow as well: {}",
+                each.collect::<Vec<_>>().join("; ")
+            );
+        }
+        Finding::new(
+            severity,
+            self.fault.code(),
+            self.fault.subject(names),
+            message,
+            self.fault.remedy(names),
+        )
+        .with_numbers(self.share, self.limit)
+    }
+}
+
+/// Returns the findings on recorded loads beside those on gauges: none where all gauges are installed otherwise than stated, which records of the
+/// other sign look like.
+pub fn not_explained_by(of_gauges: &[Finding], of_records: Vec<Finding>) -> Vec<Finding> {
+    let installed = ["gauge-other-side", "gauge-angle-in-radians"];
+    let all = |f: &Finding| f.subject == "all" && installed.contains(&f.code);
+    match of_gauges.iter().any(all) {
+        true => Vec::new(),
+        false => of_records,
+    }
+}

@@ -1,0 +1,413 @@
+//! The search for faults of measured channels: each is undone in turn, and the one named that makes the rest agree.
+
+use super::fault::{AlternativeRows, Channels, InputFault, Inputs};
+use crate::estimate::{chi_square_tail, median};
+use rayon::prelude::*;
+
+/// How well readings fit, by one measure of their errors.
+pub trait Misfit: Sync {
+    /// Returns the inputs as they are.
+    fn inputs(&self) -> Inputs;
+    /// Returns the noise of a reading, strain, 1 sd.
+    fn noise(&self) -> f64;
+    /// Returns how well changed inputs fit.
+    fn fit(&self, inputs: &Inputs) -> Fitted;
+    /// Returns whether the loads are known, so that a fault of all readings shows.
+    fn knows_loads(&self) -> bool {
+        false
+    }
+}
+
+/// A fit of inputs.
+#[derive(Clone, Debug, Default)]
+pub struct Fitted {
+    /// Sum of squares that is left, in units of the errors.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub dof: usize,
+    /// Predicted strain by run and gauge.
+    pub predicted: Vec<Vec<f64>>,
+    /// Value and half width of the interval of each load asked for, by run; empty where the loads are known.
+    pub loads: Vec<Vec<[f64; 2]>>,
+}
+
+impl Fitted {
+    /// Returns the sum of squares over its degrees of freedom; infinite where there are none.
+    pub fn reduced(&self) -> f64 {
+        match self.dof {
+            0 => f64::INFINITY,
+            n => self.chi2 / n as f64,
+        }
+    }
+
+    /// Returns the largest shift of a load over the half width of its interval; `None` where the loads are known.
+    fn moved_by(&self, other: &Self) -> Option<f64> {
+        let runs = self.loads.iter().zip(&other.loads);
+        let each = runs.flat_map(|(a, b)| a.iter().zip(b));
+        let ratios = each.map(|([a, half], [b, _])| (a - b).abs() / half);
+        ratios.filter(|r| r.is_finite()).reduce(f64::max)
+    }
+}
+
+/// Limits of the search.
+#[derive(Clone, Copy, Debug)]
+pub struct Rules {
+    /// Reduced sum of squares under which errors explain the readings, and chance of one as large from which they do.
+    pub explained: [f64; 2],
+    /// Share of the reduced sum of squares that a fault leaves at most, once it is undone.
+    pub remains: f64,
+    /// Sigmas, root mean square over the runs, by which a gauge contradicts the others where it is named, times what the others have too much:
+    /// where errors come from scatter. All runs may have the same error, so that they count as one. `None`: [`Self::remains`] decides.
+    pub sigmas: Option<f64>,
+    /// Sigmas from which a gauge is named whatever is known of the scatter. A few repeats know their own scatter to a factor of two at best, and
+    /// healthy gauges near a wheel reach five: calibrations of two runs a lane on two measured bridges.
+    pub named: f64,
+    /// Share of what a gauge without its readings explains that a cause may leave.
+    pub cause_leaves: f64,
+    /// Sum of squares, over the reduced one, by which two explanations differ where the readings tell them apart: three sigmas.
+    pub apart: f64,
+    /// Share of the expected strain under which a gauge reads nothing.
+    pub nothing: f64,
+    /// Noise sd that a dead gauge reads at most, and that the others expect at least.
+    pub dead: [f64; 2],
+    /// How close a factor comes to a power of ten to be a unit.
+    pub near: f64,
+    /// Gauges that are tried for a cause, and for an exchange with each other.
+    pub tried: usize,
+    /// Faults looked for one after the other.
+    pub most: usize,
+}
+
+impl Rules {
+    /// Limits where noise and model error are stated.
+    pub const STATED: Self = Self {
+        explained: [2.0, 1e-3],
+        remains: 0.2,
+        sigmas: None,
+        named: 8.0,
+        cause_leaves: 0.05,
+        apart: 9.0,
+        nothing: 0.1,
+        dead: [3.0, 10.0],
+        near: 0.15,
+        tried: 6,
+        most: 3,
+    };
+
+    /// Returns the limits where errors come from scatter, a sound gauge of all beyond `sigmas` by a small chance.
+    pub fn of_scatter(sigmas: f64) -> Self {
+        Self {
+            sigmas: Some(sigmas),
+            ..Self::STATED
+        }
+    }
+
+    /// Returns the sigmas from which a gauge is named where the others leave `excess` times their errors.
+    fn limit(&self, sigmas: f64, excess: f64) -> f64 {
+        self.named.min(sigmas * excess.max(1.0).sqrt())
+    }
+
+    fn explains(&self, fit: &Fitted, runs: usize) -> bool {
+        match self.sigmas {
+            None => {
+                let by_chance = chi_square_tail(fit.chi2, fit.dof as f64) > self.explained[1];
+                fit.dof == 0 || by_chance || fit.reduced() < self.explained[0]
+            }
+            // No gauge takes more than all.
+            Some(sigmas) => fit.chi2 / runs.max(1) as f64 <= self.limit(sigmas, 1.0).powi(2),
+        }
+    }
+
+    /// Returns whether the fault of `step` is one, of what `base` leaves.
+    fn accepts(&self, base: &Fitted, step: &Step) -> bool {
+        match step.found.sigmas {
+            Some(sigmas) => sigmas > step.found.limit,
+            None => step.after.reduced() < self.remains * base.reduced(),
+        }
+    }
+}
+
+/// A fault that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The fault.
+    pub fault: InputFault,
+    /// Share of the reduced sum of squares that is left, once it is undone.
+    pub share: f64,
+    /// Limit of `share`, or of `sigmas`.
+    pub limit: f64,
+    /// Sigmas by which the gauge contradicts the others, root mean square over the runs, where errors come from scatter.
+    pub sigmas: Option<f64>,
+    /// Size of its readings and of those that the others predict, strain.
+    pub sizes: [f64; 2],
+    /// Largest shift of a load over the half width of its interval; `None` where loads are known.
+    pub moves: Option<f64>,
+    /// Whether it shows only with the other faults undone as well.
+    pub together: bool,
+    /// Faults that explain the readings as well.
+    pub alternatives: Vec<InputFault>,
+}
+
+/// Returns the faults of the channels, the first that explains most; none where errors explain the readings, or nothing else does.
+///
+/// Gauges are left out one by one; of those without which the rest agrees best, each cause is tried, and their exchanges, and a fault of all
+/// gauges. A fault counts if the readings agree with it undone ([`Rules`]), or with up to three undone together. `alternatives` is asked only
+/// where readings are not explained.
+pub fn search_faults(
+    misfit: &dyn Misfit,
+    alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,
+    rules: &Rules,
+) -> Vec<Found> {
+    let mut inputs = misfit.inputs();
+    let runs = inputs.strain.len();
+    let mut now = misfit.fit(&inputs);
+    if rules.explains(&now, runs) {
+        return Vec::new();
+    }
+    let search = Search {
+        misfit,
+        rules,
+        alternatives: alternatives(),
+    };
+    let (mut found, mut pending): (Vec<Found>, Vec<Found>) = (Vec::new(), Vec::new());
+    let mut base = now.clone();
+    while found.len() + pending.len() < rules.most && !rules.explains(&now, runs) {
+        let Some(step) = search.step(&inputs, &now) else {
+            break;
+        };
+        let accepted = rules.accepts(&base, &step);
+        // Two faults hide each other: neither makes the rest agree by itself.
+        if !accepted && (rules.sigmas.is_some() || step.found.share > PROGRESS) {
+            break;
+        }
+        inputs = step.found.fault.undone(&inputs, &search.alternatives);
+        now = step.after;
+        pending.push(step.found);
+        if accepted {
+            let group = pending.len() > 1;
+            for f in &mut pending {
+                if group {
+                    (f.share, f.together) = (now.reduced() / base.reduced(), true);
+                }
+            }
+            found.append(&mut pending);
+            base.clone_from(&now);
+        }
+    }
+    found
+}
+
+/// Share of the reduced sum of squares that each of several faults which hide each other leaves at most.
+const PROGRESS: f64 = 0.8;
+
+struct Search<'a> {
+    misfit: &'a dyn Misfit,
+    rules: &'a Rules,
+    alternatives: Vec<AlternativeRows>,
+}
+
+/// One fault undone.
+struct Step {
+    found: Found,
+    after: Fitted,
+}
+
+/// A fault that may explain the readings.
+struct Tried {
+    fault: InputFault,
+    fit: Fitted,
+    /// 0: a fault with a definite correction; 1: one with a fitted size; 2: no cause.
+    rank: u8,
+}
+
+impl Search<'_> {
+    fn try_fault(&self, inputs: &Inputs, fault: InputFault, rank: u8) -> Tried {
+        let fit = self.misfit.fit(&fault.undone(inputs, &self.alternatives));
+        Tried { fault, fit, rank }
+    }
+
+    /// Returns the fault that explains most of what `now` leaves.
+    fn step(&self, inputs: &Inputs, now: &Fitted) -> Option<Step> {
+        let n = inputs.rows.nrows();
+        let reads = |g: &usize| inputs.strain.iter().any(|r| r[*g].is_finite());
+        let gauges: Vec<usize> = (0..n).filter(reads).collect();
+        let mut order: Vec<(usize, Fitted)> = gauges
+            .into_par_iter()
+            .map(|g| (g, self.try_fault(inputs, InputFault::Unlike(g), 2).fit))
+            .filter(|(_, fit)| fit.dof > 0)
+            .collect();
+        order.sort_by(|a, b| a.1.reduced().total_cmp(&b.1.reduced()));
+        order.truncate(self.rules.tried);
+        let (worst, least) = order.first().map(|(g, fit)| (*g, fit.clone()))?;
+        let scale = least.reduced().max(1.0);
+        let mut tried: Vec<Tried> = Vec::new();
+        for (i, (g, without)) in order.iter().enumerate() {
+            let best = tried.iter().filter(|t| t.rank < 2).map(|t| t.fit.chi2);
+            let best = best.fold(f64::INFINITY, f64::min).min(now.chi2);
+            if i > 0 && without.chi2 > best + self.rules.apart * scale {
+                break;
+            }
+            tried.extend(self.causes(inputs, now, *g, without));
+        }
+        tried.extend(self.of_all(inputs, now, scale, &least));
+        tried.extend(self.exchange(inputs, now, &order, &tried));
+        let best = (tried.iter()).min_by(|a, b| {
+            let by_rank = a.rank.cmp(&b.rank);
+            by_rank.then(a.fit.chi2.total_cmp(&b.fit.chi2))
+        })?;
+        let rivals = tried.iter().filter(|t| {
+            let same =
+                t.fault == best.fault || (t.rank > 0 && t.fault.gauges() == best.fault.gauges());
+            let close = t.fit.chi2 < best.fit.chi2 + self.rules.apart * scale;
+            !same && close && t.rank <= best.rank.max(1)
+        });
+        let of = best.fault.gauges();
+        let at = of.first().copied().unwrap_or(worst);
+        let without = order
+            .iter()
+            .find(|(g, _)| *g == at)
+            .map_or(&least, |o| &o.1);
+        let runs = inputs
+            .strain
+            .iter()
+            .filter(|r| r[at].is_finite())
+            .count()
+            .max(1);
+        let sigmas = ((now.chi2 - without.chi2.min(best.fit.chi2)) / runs as f64)
+            .max(0.0)
+            .sqrt();
+        let sizes = sizes_of(inputs, without, at);
+        let by_scatter = self.rules.sigmas.filter(|_| !of.is_empty());
+        Some(Step {
+            found: Found {
+                fault: best.fault,
+                share: best.fit.reduced() / now.reduced(),
+                limit: by_scatter.map_or(self.rules.remains, |s| {
+                    self.rules.limit(s, without.reduced())
+                }),
+                sigmas: by_scatter.map(|_| sigmas),
+                sizes,
+                moves: now.moved_by(&best.fit),
+                together: false,
+                alternatives: rivals.map(|t| t.fault).collect(),
+            },
+            after: best.fit.clone(),
+        })
+    }
+
+    /// Returns the causes that explain as much as leaving the gauge out; that it contradicts the others where there are none.
+    fn causes(&self, inputs: &Inputs, now: &Fitted, g: usize, without: &Fitted) -> Vec<Tried> {
+        let (rules, noise) = (self.rules, self.misfit.noise());
+        let pairs: Vec<[f64; 2]> = pairs_of(inputs, without, g);
+        let sum = |f: &dyn Fn(&[f64; 2]) -> f64| pairs.iter().map(f).sum::<f64>();
+        let gain = sum(&|[y, p]| y * p) / sum(&|[_, p]| p * p);
+        let offset = sum(&|[y, p]| y - p) / pairs.len() as f64;
+        let [reads, expected] = sizes_of(inputs, without, g);
+        let nothing = rules.dead[0] * noise;
+        let live = expected > rules.dead[1] * noise;
+        let without = |fault: InputFault, rank| Tried {
+            fault,
+            fit: without.clone(),
+            rank,
+        };
+        if live && reads < nothing.max(rules.nothing * expected) {
+            return vec![without(InputFault::Dead(g), 0)];
+        }
+        if pairs.len() > 2 && sd(&pairs, 0) < nothing && sd(&pairs, 1) > rules.dead[1] * noise {
+            return vec![without(InputFault::Stuck(g), 0)];
+        }
+        let one = Channels::One(g);
+        let mut faults = vec![(InputFault::Sign(one), 0)];
+        let installed = self.alternatives.iter().filter(|a| a.applies[g]);
+        faults.extend(installed.map(|a| ((a.fault)(one), 0)));
+        let power = |f: &&f64| (gain.abs() / **f - 1.0).abs() < rules.near;
+        if let Some(unit) = [1e3, 1e-3, 1e6, 1e-6].iter().find(power) {
+            faults.push((InputFault::Unit(one, unit.copysign(gain)), 0));
+        } else if gain.is_finite() && gain.abs() > rules.nothing {
+            faults.push((InputFault::Gain(g, gain), 1));
+        }
+        if pairs.len() > 2 {
+            faults.push((InputFault::Offset(g, offset), 1));
+        }
+        let left = without(InputFault::Unlike(g), 2);
+        let fall = now.chi2 - left.fit.chi2;
+        let own = 4.0 * pairs.len() as f64 * left.fit.reduced().max(1.0);
+        let limit = left.fit.chi2 + own.max(rules.cause_leaves * fall).min(0.5 * fall);
+        let tried = faults
+            .into_iter()
+            .map(|(f, rank)| self.try_fault(inputs, f, rank));
+        let mut out: Vec<Tried> = tried.filter(|t| t.fit.chi2 < limit).collect();
+        out.push(left);
+        out
+    }
+
+    /// Returns the faults of all gauges that explain the readings as well as a single one.
+    fn of_all(&self, inputs: &Inputs, now: &Fitted, scale: f64, least: &Fitted) -> Vec<Tried> {
+        let installed = self
+            .alternatives
+            .iter()
+            .filter(|a| a.applies.iter().all(|v| *v));
+        let mut faults: Vec<InputFault> = installed.map(|a| (a.fault)(Channels::All)).collect();
+        if self.misfit.knows_loads() {
+            faults.push(InputFault::Sign(Channels::All));
+        }
+        let tried = faults.into_iter().map(|f| self.try_fault(inputs, f, 0));
+        let limit = least.chi2 + self.rules.apart * scale;
+        let remains = self.rules.remains * now.reduced();
+        tried
+            .filter(|t| t.fit.chi2 < limit && t.fit.reduced() < remains)
+            .collect()
+    }
+
+    /// Returns the exchange of two gauges that explains more than any fault of one.
+    fn exchange(
+        &self,
+        inputs: &Inputs,
+        now: &Fitted,
+        order: &[(usize, Fitted)],
+        singles: &[Tried],
+    ) -> Option<Tried> {
+        let gauges: Vec<usize> = order.iter().map(|o| o.0).collect();
+        let pairs: Vec<(usize, usize)> = (gauges.iter().enumerate())
+            .flat_map(|(i, a)| gauges[i + 1..].iter().map(move |b| (*a.min(b), *a.max(b))))
+            .collect();
+        let tried = pairs
+            .into_par_iter()
+            .map(|(a, b)| self.try_fault(inputs, InputFault::Exchanged(a, b), 0));
+        let best = tried.min_by(|x, y| x.fit.chi2.total_cmp(&y.fit.chi2))?;
+        let InputFault::Exchanged(a, b) = best.fault else {
+            return None;
+        };
+        let silent = InputFault::Unlike(a).undone(inputs, &[]);
+        let both = self.misfit.fit(&InputFault::Unlike(b).undone(&silent, &[]));
+        let own = 8.0 * inputs.strain.len() as f64 * both.reduced().max(1.0);
+        let limit = both.chi2 + own.max(self.rules.cause_leaves * (now.chi2 - both.chi2));
+        let of_one = singles
+            .iter()
+            .map(|t| t.fit.chi2)
+            .fold(f64::INFINITY, f64::min);
+        (both.dof > 0 && best.fit.chi2 < limit && best.fit.chi2 < of_one.max(own)).then_some(best)
+    }
+}
+
+/// Returns reading and prediction of a gauge by run, where both are known.
+fn pairs_of(inputs: &Inputs, fit: &Fitted, g: usize) -> Vec<[f64; 2]> {
+    let runs = inputs.strain.iter().zip(&fit.predicted);
+    let pairs = runs.map(|(y, p)| [y[g], p[g]]);
+    pairs.filter(|p| p.iter().all(|v| v.is_finite())).collect()
+}
+
+/// Returns the median size of a gauge's readings and of the predictions, in the last half of the runs, where a gauge that failed on the way has
+/// failed.
+fn sizes_of(inputs: &Inputs, fit: &Fitted, g: usize) -> [f64; 2] {
+    let pairs = pairs_of(inputs, fit, g);
+    let last = &pairs[pairs.len() / 2..];
+    [0, 1].map(|i| median(last.iter().map(|p| p[i].abs()).collect()).unwrap_or(f64::NAN))
+}
+
+/// Returns the standard deviation of readings (0) or predictions (1).
+fn sd(pairs: &[[f64; 2]], i: usize) -> f64 {
+    let n = pairs.len() as f64;
+    let mean = pairs.iter().map(|p| p[i]).sum::<f64>() / n;
+    (pairs.iter().map(|p| (p[i] - mean).powi(2)).sum::<f64>() / n).sqrt()
+}
