@@ -1,7 +1,7 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
 use super::fault::{Fault, FaultList, Faults};
-use super::job::strain::record_fault;
+use super::measured::faults::record_fault;
 use super::job::suggest::closest;
 use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
 use super::words::short;
