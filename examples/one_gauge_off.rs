@@ -8,11 +8,11 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::error::Error;
+use strainbridge::estimate::NORMAL_95;
 use strainbridge::finding::Severity;
 use strainbridge::linalg::{Matrix, Vector};
 use strainbridge::recovery::{
-    ErrorModel, GAUGE_SUSPECT, Gain, NORMAL_95, Readings, Recovery, Shift, ShiftKind, Widening,
-    recover,
+    ErrorModel, GAUGE_SUSPECT, Gain, Readings, Recovery, Shift, ShiftKind, Widening, recover,
 };
 use strainbridge::sensitivity::{Load, Sensitivity};
 
