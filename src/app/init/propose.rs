@@ -4,7 +4,7 @@ use super::points::{LoadPoint, Rank, load_points};
 use super::round::round;
 use crate::app::deck::DeckModel;
 use crate::app::job::Component;
-use crate::model::{Load, Model};
+use crate::model::{Load, LoadSet, Model};
 use crate::units::{Quantity, UnitSystem, is_unit_load, typical_load};
 use std::collections::BTreeMap;
 
@@ -67,11 +67,16 @@ pub(super) fn proposals(
         stated: true,
     };
     let (results, solver) = (StrainFrom::Results, StrainFrom::Solver);
+    let own = of_results(deck, strained, system);
+    let unnamed = match own.0.is_empty() {
+        true => by_number(deck, strained, system),
+        false => Vec::new(),
+    };
     let mut all = vec![
-        stated(results, of_results(deck, strained, system)),
-        stated(results, (by_number(deck, strained, system), Vec::new())),
+        stated(results, own),
+        stated(results, (unnamed, Vec::new())),
         stated(solver, of_subcases(deck, system)),
-        stated(solver, (of_load_sets(&deck.model, system), Vec::new())),
+        stated(solver, of_load_sets(&deck.model, system)),
     ];
     all.retain(|p| !p.loads.is_empty());
     if let Some(first) = all.first() {
@@ -198,11 +203,18 @@ fn of_subcases(deck: &DeckModel, system: Option<UnitSystem>) -> (Vec<ProposedLoa
 }
 
 /// Load sets of a deck without subcases that select them.
-fn of_load_sets(model: &Model, system: Option<UnitSystem>) -> Vec<ProposedLoad> {
+fn of_load_sets(model: &Model, system: Option<UnitSystem>) -> (Vec<ProposedLoad>, Vec<LeftOut>) {
     let mut used = BTreeMap::new();
     let sets = model.load_sets.iter().filter(|s| !s.loads.is_empty());
-    sets.map(|s| of_set(model, s.sid, None, &mut used, system))
-        .collect()
+    let of = |s: &LoadSet| of_set(model, s.sid, None, &mut used, system);
+    let mut loads: Vec<ProposedLoad> = sets.map(of).collect();
+    let others = loads.split_off(loads.len().min(MOST_GRIDS));
+    let left_out = |l: ProposedLoad| LeftOut {
+        name: l.name.clone(),
+        load: Some(l),
+        why: format!("only the first {MOST_GRIDS} load sets are proposed"),
+    };
+    (loads, others.into_iter().map(left_out).collect())
 }
 
 /// A load of its own at each point: at wheels, else at hubs, else at grids of the mesh. The others are left out, to be chosen from.
