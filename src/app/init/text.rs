@@ -124,21 +124,18 @@ impl JobPlan<'_> {
         if self.loads.is_empty() {
             t.push_str("\n[[load]]\nname = \"LF.FZ\"\ngrid = 1                              # fill in: the grid where it acts\ncomponent = \"FZ\"\nexpected = 10000.0\n");
         }
-        let mut last = "";
-        for l in &self.left_out {
-            if l.why != last {
-                let _ = writeln!(t, "\n# Left out: {}.", l.why);
-                last = &l.why;
-            }
-            match &l.load {
-                Some(load) => {
-                    let text = self.load(load);
-                    text.trim()
-                        .lines()
-                        .for_each(|line| t.push_str(&format!("# {line}\n")));
-                }
-                None => {
-                    let _ = writeln!(t, "# `{}`", l.name);
+        for of_one in self.left_out.chunk_by(|a, b| a.why == b.why) {
+            /// Sections that are written for one reason at most; the others are listed by name.
+            const MOST: usize = 24;
+            let _ = writeln!(t, "\n# Left out: {}.", of_one[0].why);
+            for (i, l) in of_one.iter().enumerate() {
+                match l.load.as_ref().filter(|_| i < MOST) {
+                    Some(load) => {
+                        let text = self.load(load);
+                        let lines = text.trim().lines();
+                        lines.for_each(|line| t.push_str(&format!("# {line}\n")));
+                    }
+                    None => t.push_str(&format!("# {}\n", l.name)),
                 }
             }
         }
