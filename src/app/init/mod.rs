@@ -24,7 +24,7 @@ use crate::finding::{Finding, Severity};
 use crate::model::{Model, Shell};
 use crate::units::likely_system;
 use nastran::results::ResultsFile;
-use propose::{LeftOut, StrainFrom, Strained, proposals};
+use propose::{LeftOutLoad, StrainFrom, Strained, proposals};
 pub use purpose::{Purpose, init_for};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -139,7 +139,7 @@ pub fn init(
     Ok(work.finish(StatedUnits::default(), answer))
 }
 
-fn not_proposed(left_out: LeftOut) -> NotProposed {
+fn not_proposed(left_out: LeftOutLoad) -> NotProposed {
     NotProposed {
         name: left_out.name,
         reason: left_out.why,

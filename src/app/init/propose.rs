@@ -27,7 +27,7 @@ pub(super) struct ProposedLoad {
 
 /// A load or subcase that a job does not propose.
 #[derive(Clone)]
-pub(super) struct LeftOut {
+pub(super) struct LeftOutLoad {
     pub name: String,
     /// Its section of the job; `None` where it has no load.
     pub load: Option<ProposedLoad>,
@@ -45,7 +45,7 @@ pub(super) enum StrainFrom {
 #[derive(Clone)]
 pub(super) struct Proposal {
     pub loads: Vec<ProposedLoad>,
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<LeftOutLoad>,
     pub from: StrainFrom,
     /// Whether the loads are those of the user's files, all of which a job must have.
     pub stated: bool,
@@ -93,7 +93,7 @@ fn of_results(
     deck: &DeckModel,
     strained: &[Strained],
     system: Option<UnitSystem>,
-) -> (Vec<ProposedLoad>, Vec<LeftOut>) {
+) -> (Vec<ProposedLoad>, Vec<LeftOutLoad>) {
     let (all, mut left_out) = of_subcases(deck, system);
     let mut loads = Vec::new();
     for mut l in all {
@@ -103,7 +103,7 @@ fn of_results(
                 l.result = (strained.len() > 1).then(|| source.0.clone());
                 loads.push(l);
             }
-            None => left_out.push(LeftOut {
+            None => left_out.push(LeftOutLoad {
                 name: l.name.clone(),
                 load: Some(l),
                 why: "the results have no strain of shells for its subcase".to_owned(),
@@ -164,7 +164,10 @@ fn by_number(
 }
 
 /// Subcases of the deck, each load set once, with those that have no load of their own.
-fn of_subcases(deck: &DeckModel, system: Option<UnitSystem>) -> (Vec<ProposedLoad>, Vec<LeftOut>) {
+fn of_subcases(
+    deck: &DeckModel,
+    system: Option<UnitSystem>,
+) -> (Vec<ProposedLoad>, Vec<LeftOutLoad>) {
     let mut used = BTreeMap::new();
     let mut sets: BTreeMap<u32, u32> = BTreeMap::new();
     let (mut loads, mut left_out) = (Vec::new(), Vec::new());
@@ -176,7 +179,7 @@ fn of_subcases(deck: &DeckModel, system: Option<UnitSystem>) -> (Vec<ProposedLoa
             .map(|l| clean(l));
         let mut leave = |why: String| {
             let name = label.clone().unwrap_or_else(|| format!("subcase{}", sc.id));
-            left_out.push(LeftOut {
+            left_out.push(LeftOutLoad {
                 name,
                 load: None,
                 why,
@@ -203,13 +206,16 @@ fn of_subcases(deck: &DeckModel, system: Option<UnitSystem>) -> (Vec<ProposedLoa
 }
 
 /// Load sets of a deck without subcases that select them.
-fn of_load_sets(model: &Model, system: Option<UnitSystem>) -> (Vec<ProposedLoad>, Vec<LeftOut>) {
+fn of_load_sets(
+    model: &Model,
+    system: Option<UnitSystem>,
+) -> (Vec<ProposedLoad>, Vec<LeftOutLoad>) {
     let mut used = BTreeMap::new();
     let sets = model.load_sets.iter().filter(|s| !s.loads.is_empty());
     let of = |s: &LoadSet| of_set(model, s.sid, None, &mut used, system);
     let mut loads: Vec<ProposedLoad> = sets.map(of).collect();
     let others = loads.split_off(loads.len().min(MOST_GRIDS));
-    let left_out = |l: ProposedLoad| LeftOut {
+    let left_out = |l: ProposedLoad| LeftOutLoad {
         name: l.name.clone(),
         load: Some(l),
         why: format!("only the first {MOST_GRIDS} load sets are proposed"),
@@ -242,7 +248,7 @@ fn at_points(deck: &DeckModel, system: Option<UnitSystem>) -> Vec<Proposal> {
                 true => format!("only the first {MOST_GRIDS} points are proposed"),
                 false => "other points where a load may act".to_owned(),
             };
-            left_out.push(LeftOut {
+            left_out.push(LeftOutLoad {
                 name: format!("{}.FZ", p.name),
                 load: Some(load(p)),
                 why,

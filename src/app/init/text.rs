@@ -1,7 +1,7 @@
 //! The text of a job, commented for whoever corrects it.
 
 use super::mesh::{extent, shell_side};
-use super::propose::{LeftOut, ProposedLoad, StrainFrom, clean};
+use super::propose::{LeftOutLoad, ProposedLoad, StrainFrom, clean};
 use super::round::round;
 use crate::app::cases::from_folder;
 use crate::app::deck::DeckModel;
@@ -34,7 +34,7 @@ pub(super) struct JobPlan<'a> {
     pub without_results: &'a str,
     pub loads: &'a [ProposedLoad],
     /// Loads and subcases that are not proposed.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<LeftOutLoad>,
     /// Least distance between gauges.
     pub spacing: f64,
     /// Degrees between the angles of candidates.

@@ -1,6 +1,6 @@
 //! `place` tried on proposed jobs, so that `init` recommends only what works.
 
-use super::propose::{LeftOut, Proposal, ProposedLoad};
+use super::propose::{LeftOutLoad, Proposal, ProposedLoad};
 use super::round::round;
 use super::text::{JOB, JobPlan};
 use crate::app::context::{Context, Files};
@@ -24,7 +24,7 @@ pub(super) struct Verdict {
     /// Names of its loads.
     pub loads: Vec<String>,
     /// Loads and subcases that are left out.
-    pub left_out: Vec<LeftOut>,
+    pub left_out: Vec<LeftOutLoad>,
     /// Whether `place` can be recommended.
     pub places: bool,
     /// What is to be said of it.
@@ -97,7 +97,7 @@ fn trials<'a>(
 ) -> impl Iterator<Item = JobPlan<'a>> {
     let with = move |p: &'a Proposal, n: usize, spacing: f64| {
         let (loads, fewer) = p.loads.split_at(n.min(p.loads.len()));
-        let fewer = fewer.iter().map(|l| LeftOut {
+        let fewer = fewer.iter().map(|l| LeftOutLoad {
             name: l.name.clone(),
             load: Some(l.clone()),
             why: "gauges on these shells do not separate them from the loads above".to_owned(),

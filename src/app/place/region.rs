@@ -20,14 +20,14 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
 }
 
 /// What the rule of `clear_of` that excludes the most shells leaves.
-pub(super) struct Cleared {
+pub(super) struct ClearRule {
     /// The rule, as in `joints = 110`.
     pub rule: String,
     pub left: usize,
     pub of: usize,
 }
 
-impl Cleared {
+impl ClearRule {
     /// Whether the rule, not the spacing, is what most places are lost to.
     pub(super) fn takes_most(&self) -> bool {
         2 * self.left < self.of
@@ -45,7 +45,7 @@ pub(super) fn allowed(
     job: &Job,
     fields: &Fields,
     common: &[ShellIx],
-) -> Result<(Vec<Site>, Option<Cleared>), Faults> {
+) -> Result<(Vec<Site>, Option<ClearRule>), Faults> {
     let rule = &job.candidates;
     let model = fields.model();
     check_ids(job, model)?;
@@ -96,7 +96,7 @@ pub(super) fn allowed(
         ("loads", clear.loads, &|| load_points(job, fields)),
         ("attachments", clear.attachments, &|| attachments(model)),
     ];
-    let mut most: Option<Cleared> = None;
+    let mut most: Option<ClearRule> = None;
     for (key, distance, segments) in limits.into_iter().filter(|l| l.1 > 0.0) {
         let of = shells.len();
         let points: Vec<Vec3> = shells.iter().map(|s| s.1).collect();
@@ -106,7 +106,7 @@ pub(super) fn allowed(
         let left = shells.len();
         if most.as_ref().is_none_or(|m| of - left > m.of - m.left) {
             let rule = format!("{key} = {distance}");
-            most = Some(Cleared { rule, left, of });
+            most = Some(ClearRule { rule, left, of });
         }
     }
     let sites: Vec<Site> = shells
@@ -115,7 +115,7 @@ pub(super) fn allowed(
         .collect();
     if sites.is_empty() {
         let wrong = "no shell with strain in every load's subcase is among the candidates";
-        let wrong = match most.filter(Cleared::takes_most) {
+        let wrong = match most.filter(ClearRule::takes_most) {
             Some(cleared) => format!("{wrong}: {}", cleared.words()),
             None => wrong.to_owned(),
         };

@@ -1,7 +1,7 @@
 //! What is to be placed: the job resolved on its model.
 
 use super::pool::column_order;
-use super::region::Cleared;
+use super::region::ClearRule;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Keep, LoadRole, Optimality};
 use crate::app::strain::{Fields, lay_gauges, left_in_reading, without_strain};
@@ -31,7 +31,7 @@ pub(super) struct Task<'a> {
     /// Where gauges can go.
     pub sites: Vec<Site>,
     /// What `clear_of` leaves of the places.
-    pub cleared: Option<Cleared>,
+    pub cleared: Option<ClearRule>,
     /// Gauges that stay.
     pub kept: Vec<Gauge>,
     /// Their rows, columns in the candidates' order, made independent and of unit variance.
