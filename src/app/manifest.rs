@@ -57,6 +57,12 @@ impl Manifest {
         self.entries.iter().any(|e| e.1 == name)
     }
 
+    /// Returns the command that wrote a file.
+    pub(super) fn writer(&self, name: &str) -> Option<&str> {
+        let found = self.entries.iter().find(|e| e.1 == name);
+        found.map(|e| e.0.as_str())
+    }
+
     /// The files of every other command. What a command writes before its answer stands under its name, a blank and a word.
     pub(super) fn of_others(&self, command: &str) -> BTreeMap<&str, Vec<&str>> {
         let of_other = |by: &str| by.split(' ').next() != Some(command);

@@ -208,6 +208,9 @@ impl Output {
         let mut written = Manifest::read(&self.folder);
         let before = written.clone();
         let gone = written.replace(command, &self.names());
+        for (other, kept) in self.keep_answers_of_others(command, &before)? {
+            written.add(&other, &[kept]);
+        }
         self.list_first(&mut written)?;
         self.rename_all()?;
         for name in gone {
@@ -220,6 +223,29 @@ impl Output {
             }
         }
         Ok(())
+    }
+
+    /// Copies the answer and the report of another command, which this one writes over, to names that begin with that command: the writer and
+    /// the name of each.
+    fn keep_answers_of_others(
+        &mut self,
+        command: &str,
+        before: &Manifest,
+    ) -> Result<Vec<(String, String)>, Fault> {
+        let mut kept = Vec::new();
+        for name in ["result.json", "report.html"] {
+            let other = before.writer(name).filter(|w| *w != command);
+            let Some(other) = other.filter(|_| self.holds(name)) else {
+                continue;
+            };
+            let copy = format!("{other}.{name}");
+            let is_free = before.holds(&copy) || !self.folder.join(&copy).exists();
+            if let (true, Ok(bytes)) = (is_free, load(&self.folder.join(name))) {
+                self.write_bytes(&copy, &bytes)?;
+                kept.push((other.to_owned(), copy));
+            }
+        }
+        Ok(kept)
     }
 
     /// Renames every file to its name beside what the command wrote before: for one that writes a folder bit by bit.
@@ -392,6 +418,27 @@ mod tests {
         let mut out = Output::begin(folder)?;
         out.write_bytes("gauges.csv", text.as_bytes())?;
         out.commit("place", &[])
+    }
+
+    #[test]
+    fn a_later_command_keeps_the_report_of_an_earlier_one_until_that_runs_again() {
+        let folder = std::env::temp_dir().join(format!("strainbridge-kept-{}", std::process::id()));
+        let run = |command: &str| {
+            let mut out = Output::begin(&folder).unwrap();
+            out.write_bytes("report.html", command.as_bytes()).unwrap();
+            out.commit(command, &[]).unwrap();
+        };
+        let text = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+        run("place");
+        run("recover");
+        run("recover");
+        assert_eq!(text("report.html").as_deref(), Some("recover"));
+        assert_eq!(text("place.report.html").as_deref(), Some("place"));
+        run("place");
+        assert_eq!(text("report.html").as_deref(), Some("place"));
+        assert_eq!(text("recover.report.html").as_deref(), Some("recover"));
+        assert_eq!(text("place.report.html"), None);
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

@@ -69,7 +69,8 @@ pub enum Command {
     #[command(
         after_help = "Example:\n  strainbridge init truck.bdf truck.op2 --out .    # then read job.toml and correct it\n  \
                       strainbridge init truck.bdf --for payload    # with the sections that `payload` needs\n  \
-                      strainbridge init --for identify"
+                      strainbridge init --for identify",
+        mut_arg("out", |a| a.help("Folder for job.toml and result.json (default: job.toml alone, in the current folder)"))
     )]
     Init(InitArguments),
     /// Write unit_loads.bdf: the job's deck with one unit-load subcase a load, ready for Nastran
@@ -138,7 +139,7 @@ pub enum Command {
     )]
     Verify(VerifyArguments),
     /// Remove kept solutions of the built-in solver
-    #[command(after_help = "Example:\n  strainbridge clean")]
+    #[command(after_help = "Example:\n  strainbridge clean --yes")]
     Clean(CleanArguments),
     /// What a finding means: cause, limit, remedy, an example
     #[command(
@@ -245,6 +246,9 @@ pub struct CleanArguments {
     /// The folder with kept solutions (default: the user's folder for caches)
     #[arg(value_name = "FOLDER")]
     pub folder: Option<PathBuf>,
+    /// Remove them without a question
+    #[arg(short, long)]
+    pub yes: bool,
     /// What every command takes.
     #[command(flatten)]
     pub common: CommonArguments,

@@ -6,6 +6,7 @@ use super::voice::print;
 use crate::app::fault::{Fault, Faults};
 use crate::app::store::Folder;
 use crate::app::verify::Made;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
@@ -66,10 +67,40 @@ impl Drop for Scratch {
     }
 }
 
-/// Removes kept solutions.
+/// Whether a person at the terminal agrees; `None` where no person is there to ask.
+fn agrees(question: &str) -> Option<bool> {
+    if !(std::io::stdin().is_terminal() && std::io::stderr().is_terminal()) {
+        return None;
+    }
+    let mut terminal = std::io::stderr();
+    write!(terminal, "{question} [y/N] ").ok()?;
+    terminal.flush().ok()?;
+    let mut answer = String::new();
+    std::io::stdin().read_line(&mut answer).ok()?;
+    Some(matches!(answer.trim(), "y" | "Y" | "yes"))
+}
+
+/// Removes kept solutions, after a question or with `--yes`.
 pub(super) fn clean(a: &CleanArguments) -> ExitCode {
     let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
     let shown = folder.path().display().to_string();
+    let (n, bytes) = folder.size();
+    let what = format!(
+        "{n} kept solutions in `{shown}`, {:.1} MB",
+        bytes as f64 / 1e6
+    );
+    if n > 0 && !a.yes {
+        match agrees(&format!("Remove {what}?")) {
+            Some(true) => {}
+            Some(false) => return print(b"nothing is removed\n"),
+            None => {
+                let wrong =
+                    format!("{what}: nobody is at a terminal to agree that they are removed");
+                let fault = Fault::of(shown, "clean", wrong, "call it with `--yes`");
+                return refuse(&fault.into(), &a.common);
+            }
+        }
+    }
     match folder.clean() {
         Ok((n, bytes)) if a.common.json => {
             let json = serde_json::json!({ "command": "clean", "folder": shown, "removed": n, "bytes": bytes });

@@ -223,3 +223,25 @@ pub fn likely_system(
         .filter(accepted)
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))
 }
+
+/// A typical size of a load on a structure whose loads are not known yet, SI units: a wheel of a light truck, and that on an arm of 0.2 m.
+const TYPICAL_FORCE_N: f64 = 1e4;
+const TYPICAL_MOMENT_N_M: f64 = 2e3;
+
+/// Returns the typical size of a force or moment in the units of a deck, where nothing is known of it; `None` for other quantities.
+pub fn typical_load(system: UnitSystem, quantity: Quantity) -> Option<f64> {
+    let si = match quantity {
+        Quantity::Force => TYPICAL_FORCE_N,
+        Quantity::Moment => TYPICAL_MOMENT_N_M,
+        _ => return None,
+    };
+    Some(si / system.si(quantity))
+}
+
+/// Returns whether a force or moment has the size of a unit load: a power of ten in the units of the deck, and at most a hundredth of
+/// [`typical_load`]. Such loads scale an influence coefficient and say nothing about the loads of a vehicle.
+pub fn is_unit_load(system: UnitSystem, quantity: Quantity, size: f64) -> bool {
+    let exponent = size.abs().log10();
+    let is_power = (exponent - exponent.round()).abs() < 1e-9;
+    is_power && typical_load(system, quantity).is_some_and(|t| size.abs() <= t / 100.0)
+}

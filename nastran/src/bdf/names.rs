@@ -12,6 +12,8 @@ pub enum Named {
     /// A group of elements (HyperMesh component).
     Component,
     Material,
+    /// A grid at which a component acts.
+    Grid,
 }
 
 /// A name out of a comment.
@@ -62,6 +64,7 @@ impl NameReader {
             b'F' | b'S' if starts(body, b"FEMAP") || starts(body, b"Simcenter") => {
                 labels.extend(femap(body, at));
             }
+            b'C' => labels.extend(component_at_grid(body, at)),
             b'*' => self.star(trim(body.get(1..).unwrap_or_default()), at),
             b'E' => self.after(
                 body,
@@ -174,6 +177,23 @@ impl NameReader {
             _ => {}
         }
     }
+}
+
+/// `Component: wheel LF, grid 900001`.
+fn component_at_grid(body: &[u8], at: Place) -> Option<Label> {
+    const HEAD: &[u8] = b"Component";
+    let rest = body.get(HEAD.len()..).filter(|_| starts(body, HEAD))?;
+    let rest = trim(rest).strip_prefix(b":")?;
+    let comma = memchr::memrchr(b',', rest)?;
+    let (name, tail) = (trim(rest.get(..comma)?), trim(rest.get(comma + 1..)?));
+    let id = number(tail.get(4..).filter(|_| starts(tail, b"grid"))?)?;
+    (!name.is_empty()).then(|| Label {
+        kind: Named::Grid,
+        id,
+        property: None,
+        name: text_of(name),
+        at,
+    })
 }
 
 fn starts(body: &[u8], head: &[u8]) -> bool {

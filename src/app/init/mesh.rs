@@ -14,3 +14,17 @@ pub(super) fn shell_side(model: &Model) -> Option<f64> {
     sides.sort_by(f64::total_cmp);
     sides.get(sides.len() / 2).copied()
 }
+
+/// Returns the diagonal of the box around the shells; 0 without shells.
+pub(super) fn extent(model: &Model) -> f64 {
+    let grids = model
+        .shells
+        .iter()
+        .flat_map(|s| &s.grids[..s.shape.n_grids()]);
+    let mut places = grids.filter_map(|g| model.grids.get(g.us())).map(|g| g.x);
+    let Some(first) = places.next() else {
+        return 0.0;
+    };
+    let (low, high) = places.fold((first, first), |(low, high), x| (low.inf(&x), high.sup(&x)));
+    (high - low).norm()
+}

@@ -24,7 +24,7 @@ use crate::finding::{Finding, Severity};
 use crate::model::{Model, Shell};
 use crate::units::likely_system;
 use nastran::results::ResultsFile;
-use propose::{StrainFrom, Strained, proposals};
+use propose::{LeftOutLoad, StrainFrom, Strained, proposals};
 pub use purpose::{Purpose, init_for};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,6 +40,8 @@ pub struct Proposal {
     pub job: &'static str,
     /// Names of the loads proposed.
     pub loads: Vec<String>,
+    /// Loads and subcases of the files that are not proposed.
+    pub left_out: Vec<NotProposed>,
     /// Whether `place` answers it.
     pub placeable: bool,
     /// Shell properties by their names in the deck.
@@ -51,6 +53,18 @@ pub struct Proposal {
     /// Where it is to stand.
     #[serde(skip)]
     pub path: PathBuf,
+    /// The command that it is written for, where that is not `place`.
+    #[serde(skip)]
+    pub purpose: Option<&'static str>,
+}
+
+/// A load or subcase that is not proposed.
+#[derive(Serialize)]
+pub struct NotProposed {
+    /// Its name.
+    pub name: String,
+    /// Why it is left out.
+    pub reason: String,
 }
 
 impl Answer for Proposal {
@@ -97,10 +111,10 @@ pub fn init(
         from: found.first().map_or(StrainFrom::Solver, |p| p.from),
         without_results: match strained.iter().all(|s| s.1.is_empty()) {
             true => "no static subcase of them has strain of shells",
-            false => "their subcases aren't the loads below",
+            false => "`place` finds no gauges with them",
         },
         loads: found.first().map_or(&[], |p| &p.loads),
-        left_out: &[],
+        left_out: found.first().map_or(Vec::new(), |p| p.left_out.clone()),
         spacing: usual_spacing(&deck),
         angle_step_deg: 15,
     };
@@ -115,12 +129,21 @@ pub fn init(
     let answer = Proposal {
         job: JOB,
         loads: verdict.loads,
+        left_out: verdict.left_out.into_iter().map(not_proposed).collect(),
         placeable: verdict.places,
         zones: named_zones(&deck.model),
         text: verdict.text,
         path: target,
+        purpose: None,
     };
     Ok(work.finish(StatedUnits::default(), answer))
+}
+
+fn not_proposed(left_out: LeftOutLoad) -> NotProposed {
+    NotProposed {
+        name: left_out.name,
+        reason: left_out.why,
+    }
 }
 
 /// Returns the shell properties that elements use, by their names in comments of the deck.
@@ -201,10 +224,10 @@ fn read_strained(
         let read = work.stage("read results", |_| {
             ResultsFile::read(&bytes, &name).map(|f| {
                 let solution = solution_from_file(&deck.model, &name, &f, &options);
-                (solution, repeated(&[&f], None))
+                (solution, repeated(&[&f], None), labels(&f))
             })
         });
-        let (solution, repeated) =
+        let (solution, repeated, labels) =
             read.map_err(|e| Fault::of(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
         if let Some(twice) = repeated.iter().find(|r| r.is_of_strain()) {
             return Err(Fault::of(&*name, "results", twice.words(&[&name]), HOLD_ONCE).into());
@@ -221,7 +244,21 @@ fn read_strained(
             .cases
             .iter()
             .filter(|c| !c.shells.elements.is_empty());
-        strained.push((name, with_strain.map(|c| c.subcase).collect()));
+        let named = with_strain.map(|c| {
+            let label = labels.get(&c.subcase).cloned().unwrap_or_default();
+            (c.subcase, label)
+        });
+        strained.push((name, named.collect()));
     }
     Ok(strained)
+}
+
+/// LABEL of each subcase of a results file, else its SUBTITLE.
+fn labels(file: &ResultsFile) -> BTreeMap<u32, String> {
+    let named = file.blocks().iter().filter_map(|b| {
+        let [_, subtitle, label] = &b.titles;
+        let name = [label, subtitle].into_iter().find(|t| !t.is_empty())?;
+        Some((b.subcase, name.clone()))
+    });
+    named.collect()
 }

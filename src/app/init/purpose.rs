@@ -51,9 +51,6 @@ use = ["strain", "reactions"]         # or one of them
 # region = [[1000.0, 3000.0], [-300.0, 300.0]]   # where it can be, job units of length
 "#;
 
-/// Zones of [`RECONCILE`], as an example.
-const ZONES: &str = "# zones = { left = [1], right = [2] }";
-
 const RECONCILE: &str = r#"
 [payload]
 # grid = 901                          # fill in: the grid through which the payload acts
@@ -62,7 +59,6 @@ position = "known"
 [reconcile]
 path = "static"                       # strain of runs; "dynamic": accelerations, with a [vehicle]
 effects = "all"                       # or a list of ids
-# zones = { left = [1], right = [2] } # properties whose stiffness may be wrong together
 # places = { rear = 9204 }            # grids where a mass may sit
 # thermal_microstrain_per_degC = { quarter = 1.4 }
 # Hold runs out in [measured]: hold_out = ["R10", "R11"]. They prove what was named.
@@ -124,6 +120,12 @@ impl Purpose {
         ("calibrate", Self::Calibrate),
     ];
 
+    /// The command.
+    fn command(self) -> &'static str {
+        let found = Self::ALL.into_iter().find(|p| p.1 == self);
+        found.map_or("check", |p| p.0)
+    }
+
     /// The job of a deck with the sections of this purpose.
     pub fn put_into(self, job: &str, zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
         let head = job.split(LATER).next().unwrap_or(job);
@@ -133,8 +135,11 @@ impl Purpose {
             Self::Calibrate => &[GAUGES, RUNS, CALIBRATION],
             Self::Identify => return IDENTIFY.to_owned(),
         };
-        let sections = sections.concat();
-        head.to_owned() + &sections.replace(ZONES, &zones_line(zones))
+        let zones = match self {
+            Self::Reconcile => zones_text(zones),
+            _ => String::new(),
+        };
+        [head, &sections.concat(), &zones].concat()
     }
 
     /// A whole job, where the purpose needs no deck.
@@ -147,19 +152,21 @@ impl Purpose {
     }
 }
 
-/// Returns the commented key of zones with the names of the deck, or its example where the deck has none, or more than fit.
-fn zones_line(zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
-    /// Zones that one line lists at most: a line of the job is to be read without scrolling.
-    const MOST: usize = 12;
-    if zones.is_empty() || zones.len() > MOST {
-        return ZONES.to_owned();
-    }
+/// Returns the zones of the deck's named properties, a line each, or an example where the deck names none.
+fn zones_text(zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
+    const HEAD: &str =
+        "[reconcile.zones]                     # properties whose stiffness may be wrong together";
     let zone = |(name, ids): (&String, &BTreeSet<u32>)| {
         let ids: Vec<String> = ids.iter().map(u32::to_string).collect();
-        format!("{name:?} = [{}]", ids.join(", "))
+        format!("{name:?} = [{}]\n", ids.join(", "))
     };
     let listed: Vec<String> = zones.iter().map(zone).collect();
-    format!("# zones = {{ {} }}", listed.join(", "))
+    match listed.is_empty() {
+        true => format!(
+            "\n# {HEAD}; left out: each property with gauges\n# left = [1]\n# right = [2]\n"
+        ),
+        false => format!("\n{HEAD}; check\n{}", listed.concat()),
+    }
 }
 
 /// A commented job for a purpose, from a deck where one is given, to stand in `folder`.
@@ -173,8 +180,10 @@ pub fn init_for(
     folder: &Path,
     cx: &Context,
 ) -> Result<Outcome<Proposal>, Faults> {
-    if let Some(deck) = deck {
+    let mut work = Work::new(cx);
+    if let (Some(deck), false) = (deck, purpose == Purpose::Identify) {
         let mut proposed = super::init(deck, results, folder, cx)?;
+        proposed.answer.purpose = Some(purpose.command());
         proposed.answer.text = purpose.put_into(&proposed.answer.text, &proposed.answer.zones);
         return Ok(proposed);
     }
@@ -186,10 +195,16 @@ pub fn init_for(
     let answer = Proposal {
         job: JOB,
         loads: Vec::new(),
+        left_out: Vec::new(),
         placeable: false,
         zones: BTreeMap::new(),
         text,
         path,
+        purpose: Some(purpose.command()),
     };
-    Ok(Work::new(cx).finish(StatedUnits::default(), answer))
+    if deck.is_some() {
+        let note = "`identify` compares accelerations with a [vehicle]: the deck is not read";
+        work.notes.push(note.to_owned());
+    }
+    Ok(work.finish(StatedUnits::default(), answer))
 }

@@ -1,7 +1,7 @@
 //! The text of a job, commented for whoever corrects it.
 
-use super::mesh::shell_side;
-use super::propose::{ProposedLoad, StrainFrom, clean};
+use super::mesh::{extent, shell_side};
+use super::propose::{LeftOutLoad, ProposedLoad, StrainFrom, clean};
 use super::round::round;
 use crate::app::cases::from_folder;
 use crate::app::deck::DeckModel;
@@ -33,17 +33,18 @@ pub(super) struct JobPlan<'a> {
     /// Why results that were given are left out.
     pub without_results: &'a str,
     pub loads: &'a [ProposedLoad],
-    /// Loads that the structure doesn't tell from those above.
-    pub left_out: &'a [ProposedLoad],
+    /// Loads and subcases that are not proposed.
+    pub left_out: Vec<LeftOutLoad>,
     /// Least distance between gauges.
     pub spacing: f64,
     /// Degrees between the angles of candidates.
     pub angle_step_deg: u32,
 }
 
-/// The least distance between gauges that suits a mesh: two sides of a shell.
+/// Returns the least distance between gauges that suits a model: two sides of a shell, and a hundredth of the model.
 pub(super) fn usual_spacing(deck: &DeckModel) -> f64 {
-    round(2.0 * shell_side(&deck.model).unwrap_or(0.0))
+    let sides = 2.0 * shell_side(&deck.model).unwrap_or(0.0);
+    round(sides.max(extent(&deck.model) / 100.0))
 }
 
 impl JobPlan<'_> {
@@ -123,14 +124,18 @@ impl JobPlan<'_> {
         if self.loads.is_empty() {
             t.push_str("\n[[load]]\nname = \"LF.FZ\"\ngrid = 1                              # fill in: the grid where it acts\ncomponent = \"FZ\"\nexpected = 10000.0\n");
         }
-        if !self.left_out.is_empty() {
-            t.push_str(
-                "\n# Left out: gauges on these shells don't tell them from the loads above.\n",
-            );
-            for l in self.left_out {
-                let text = self.load(l);
-                for line in text.trim().lines() {
-                    let _ = writeln!(t, "# {line}");
+        for of_one in self.left_out.chunk_by(|a, b| a.why == b.why) {
+            /// Sections that are written for one reason at most; the others are listed by name.
+            const MOST: usize = 24;
+            let _ = writeln!(t, "\n# Left out: {}.", of_one[0].why);
+            for (i, l) in of_one.iter().enumerate() {
+                match l.load.as_ref().filter(|_| i < MOST) {
+                    Some(load) => {
+                        let text = self.load(load);
+                        let lines = text.trim().lines();
+                        lines.for_each(|line| t.push_str(&format!("# {line}\n")));
+                    }
+                    None => t.push_str(&format!("# {}\n", l.name)),
                 }
             }
         }
@@ -154,8 +159,8 @@ impl JobPlan<'_> {
         }
         let _ = writeln!(
             t,
-            "expected = {:?}                     # check: how large it gets, 1 sd",
-            l.expected
+            "expected = {:?}                     # check: typical size{}, about a third of the largest",
+            l.expected, l.expected_is
         );
         t
     }
@@ -199,7 +204,9 @@ impl JobPlan<'_> {
 
     fn placement(&self) -> String {
         let (n, more) = (self.loads.len().max(1), 2 * self.loads.len().max(1));
-        let shift = round(0.05 * shell_side(&self.deck.model).unwrap_or(0.0));
+        // What a technician keeps with a rule is 2 mm; on a small part less.
+        let rule = self.system.map_or(f64::INFINITY, |s| 2e-3 / s.length_m());
+        let shift = round(rule.min(extent(&self.deck.model) / 500.0));
         format!(
             "\n[placement]\n\
              gauges = {more}                           # twice the number of loads: some may fail\n\
@@ -207,7 +214,7 @@ impl JobPlan<'_> {
              noise_microstrain = 1.0\n\
              model_uncertainty_rel = 0.02         # of the predicted strain, 1 sd; [measured] states the same\n\
              angle_tolerance_deg = 2.0\n\
-             # position_tolerance = {shift:?}         # 1 sd\n\
+             position_tolerance = {shift:?}             # check: how well a gauge is glued at its place, 1 sd\n\
              # curve = [{n}, {more}]                     # what each of these numbers of gauges gives\n\
              # reserve = 2                        # gauges kept for validation\n\
              # loss = \"optimise\"                  # for what is left after the loss of any one gauge\n",

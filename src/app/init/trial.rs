@@ -1,6 +1,6 @@
 //! `place` tried on proposed jobs, so that `init` recommends only what works.
 
-use super::propose::{Proposal, ProposedLoad};
+use super::propose::{LeftOutLoad, Proposal, ProposedLoad};
 use super::round::round;
 use super::text::{JOB, JobPlan};
 use crate::app::context::{Context, Files};
@@ -23,6 +23,8 @@ pub(super) struct Verdict {
     pub text: String,
     /// Names of its loads.
     pub loads: Vec<String>,
+    /// Loads and subcases that are left out.
+    pub left_out: Vec<LeftOutLoad>,
     /// Whether `place` can be recommended.
     pub places: bool,
     /// What is to be said of it.
@@ -35,6 +37,7 @@ impl Verdict {
         Self {
             text: plan.text(),
             loads: names(plan.loads),
+            left_out: plan.left_out.clone(),
             places: false,
             finding: None,
         }
@@ -69,8 +72,8 @@ pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Propo
             Severity::Warning,
             "no-placement-found",
             plan.deck.given.clone(),
-            format!("none of the proposed loads gives gauges: {why}"),
-            "write the [[load]]s that you mean, or give results with strain of shells",
+            format!("`place` finds no gauges for the proposed loads: {why}"),
+            "correct the [[load]]s and [candidates], or give results with strain of shells",
         )),
         ..Verdict::hopeless(plan)
     }
@@ -87,17 +90,22 @@ fn answer(trial: &JobPlan) -> Verdict {
     }
 }
 
-/// The proposals in turn, each with less spacing and then with fewer loads.
+/// The proposals in turn, each with less spacing; then those that the files do not state with fewer loads.
 fn trials<'a>(
     plan: &'a JobPlan<'a>,
     proposals: &'a [Proposal],
 ) -> impl Iterator<Item = JobPlan<'a>> {
     let with = move |p: &'a Proposal, n: usize, spacing: f64| {
-        let (loads, left_out) = p.loads.split_at(n.min(p.loads.len()));
+        let (loads, fewer) = p.loads.split_at(n.min(p.loads.len()));
+        let fewer = fewer.iter().map(|l| LeftOutLoad {
+            name: l.name.clone(),
+            load: Some(l.clone()),
+            why: "gauges on these shells do not separate them from the loads above".to_owned(),
+        });
         JobPlan {
             from: p.from,
             loads,
-            left_out,
+            left_out: fewer.chain(p.left_out.iter().cloned()).collect(),
             spacing,
             ..plan.clone()
         }
@@ -108,7 +116,8 @@ fn trials<'a>(
             .into_iter()
             .map(move |spacing| with(p, p.loads.len(), spacing))
     });
-    let fewer = proposals.iter().flat_map(move |p| {
+    let invented = proposals.iter().filter(|p| !p.stated);
+    let fewer = invented.flat_map(move |p| {
         let halves = std::iter::successors(Some(p.loads.len() / 2), |n| Some(n / 2));
         halves.take_while(|n| *n > 0).map(move |n| with(p, n, 0.0))
     });

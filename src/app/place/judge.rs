@@ -3,7 +3,7 @@
 use super::choose::{Channel, Chosen};
 use super::outcome::PlacedGauge;
 use super::task::Task;
-use crate::app::job::Job;
+use crate::app::job::{Job, LoadRole};
 use crate::app::recover::Listed;
 use crate::app::strain::{LoadSigma, LoadUnits};
 use crate::app::words::short;
@@ -12,7 +12,7 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
 use crate::placement::quality::Quality;
 use crate::placement::{Loss, Spec};
-use crate::units::{Quantity, Unit};
+use crate::units::{Quantity, Unit, is_unit_load};
 
 /// The standard deviations in job order.
 pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
@@ -128,6 +128,23 @@ pub(super) fn sigma_rows(
         .zip(named)
         .map(one)
         .collect()
+}
+
+/// The finding on loads that gauges will not determine, with the cause where `expected` is the size of a unit load of the deck.
+pub(super) fn with_unit_loads(job: &Job, mut finding: Finding) -> Finding {
+    let unit_load = job.loads.iter().find_map(|l| {
+        let (size, quantity) = (l.expected?, l.quantity()?);
+        let unit = job.units.unit(quantity);
+        let is_unit = l.role == LoadRole::Wanted && is_unit_load(job.units, quantity, size);
+        is_unit.then(|| (&l.name, format!("{} {}", short(size), unit.name)))
+    });
+    if let Some((name, size)) = unit_load {
+        finding.message = format!(
+            "`expected` of `{name}` is {size}, the size of a unit load, and the gauges do not resolve loads that small"
+        );
+        finding.remedy = "state how large it gets (`expected` in [[load]])".to_owned();
+    }
+    finding
 }
 
 /// Strain, microstrain, beyond which foil gauges tire within a test (makers rate their fatigue life at 1,500 to 2,000) and steel yields.

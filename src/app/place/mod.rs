@@ -54,11 +54,12 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);
-    let sites = allowed_sites(job, fields, &common)?;
+    let (sites, cleared) = region::allowed(job, fields, &common)?;
     let k = cases.len();
     let scales = scales(work, &cases, &common);
     let given = known::given(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
+    task.cleared = cleared;
     task.keep(work)?;
     let (ordered, scales) = task.nuisance_first();
     let errors = task.errors_nuisance_first();
@@ -120,13 +121,15 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         Some(kind) => installed::installed(work, &task, &kind.candidates, &spec)?,
         None => None,
     };
-    work.findings.extend(check_separability(&s));
+    work.findings.extend(check_separability(&s.unconditioned()));
     judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
     let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
     let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &quality, &task.scales);
     let in_job_units = load_sigma.iter().zip(units);
     let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
-    work.findings.extend(check_planned(&s, &planned));
+    let planned = check_planned(&s, &planned);
+    work.findings
+        .extend(planned.map(|f| judge::with_unit_loads(job, f)));
     let how_many = if job.placement.curve.is_empty() {
         Vec::new()
     } else {

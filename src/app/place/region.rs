@@ -16,6 +16,36 @@ use std::collections::BTreeSet;
 /// # Errors
 /// No surface is left, or the deck lacks a SET, an element or a property.
 pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
+    allowed(job, fields, common).map(|(sites, _)| sites)
+}
+
+/// What the rule of `clear_of` that excludes the most shells leaves.
+pub(super) struct ClearRule {
+    /// The rule, as in `joints = 110`.
+    pub rule: String,
+    pub left: usize,
+    pub of: usize,
+}
+
+impl ClearRule {
+    /// Whether the rule, not the spacing, is what most places are lost to.
+    pub(super) fn takes_most(&self) -> bool {
+        2 * self.left < self.of
+    }
+
+    /// What the rule leaves, in words.
+    pub(super) fn words(&self) -> String {
+        let Self { rule, left, of } = self;
+        format!("`clear_of` {rule} leaves {left} of {of} shells")
+    }
+}
+
+/// [`allowed_sites`] with the rule of `clear_of` that excludes the most.
+pub(super) fn allowed(
+    job: &Job,
+    fields: &Fields,
+    common: &[ShellIx],
+) -> Result<(Vec<Site>, Option<ClearRule>), Faults> {
     let rule = &job.candidates;
     let model = fields.model();
     check_ids(job, model)?;
@@ -51,32 +81,44 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
     let clear = rule.clear;
     let rims = clear.holes.unwrap_or(clear.edges);
     let apart = rims != clear.edges;
-    let limits: [(f64, &dyn Fn() -> Vec<Segment>); 5] = [
-        (clear.edges, &|| {
+    let limits: [(&str, f64, &dyn Fn() -> Vec<Segment>); 5] = [
+        ("edges", clear.edges, &|| {
             if apart {
                 borders(model)
             } else {
                 free_edges(model)
             }
         }),
-        (if apart { rims } else { 0.0 }, &|| hole_rims(model)),
-        (clear.joints, &|| joints(model)),
-        (clear.loads, &|| load_points(job, fields)),
-        (clear.attachments, &|| attachments(model)),
+        ("holes", if apart { rims } else { 0.0 }, &|| {
+            hole_rims(model)
+        }),
+        ("joints", clear.joints, &|| joints(model)),
+        ("loads", clear.loads, &|| load_points(job, fields)),
+        ("attachments", clear.attachments, &|| attachments(model)),
     ];
-    for (distance, segments) in limits.into_iter().filter(|l| l.0 > 0.0) {
+    let mut most: Option<ClearRule> = None;
+    for (key, distance, segments) in limits.into_iter().filter(|l| l.1 > 0.0) {
+        let of = shells.len();
         let points: Vec<Vec3> = shells.iter().map(|s| s.1).collect();
         let clear = clear_of(&points, &segments(), distance);
         let mut flags = clear.into_iter();
         shells.retain(|_| flags.next().unwrap_or(false));
+        let left = shells.len();
+        if most.as_ref().is_none_or(|m| of - left > m.of - m.left) {
+            let rule = format!("{key} = {distance}");
+            most = Some(ClearRule { rule, left, of });
+        }
     }
     let sites: Vec<Site> = shells
         .iter()
         .flat_map(|(ix, _)| rule.surfaces.iter().map(|s| (*ix, *s)))
         .collect();
     if sites.is_empty() {
-        let wrong =
-            "no shell with strain in every load's subcase is among the candidates".to_owned();
+        let wrong = "no shell with strain in every load's subcase is among the candidates";
+        let wrong = match most.filter(ClearRule::takes_most) {
+            Some(cleared) => format!("{wrong}: {}", cleared.words()),
+            None => wrong.to_owned(),
+        };
         return Err(Faults::from(Fault::at(
             &*job.file,
             rule.line,
@@ -85,7 +127,7 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
             "widen `properties`, `elements` or `boxes`, reduce `clear_of`, or ask for STRAIN of more elements",
         )));
     }
-    Ok(sites)
+    Ok((sites, most))
 }
 
 /// Refuses ids of properties, elements and reference grids that the model lacks: a misspelt exclusion would leave its place open for gauges.

@@ -1,6 +1,7 @@
 //! What is to be placed: the job resolved on its model.
 
 use super::pool::column_order;
+use super::region::ClearRule;
 use crate::app::fault::{Fault, Faults};
 use crate::app::job::{Job, Keep, LoadRole, Optimality};
 use crate::app::strain::{Fields, lay_gauges, left_in_reading, without_strain};
@@ -29,6 +30,8 @@ pub(super) struct Task<'a> {
     pub order: Vec<usize>,
     /// Where gauges can go.
     pub sites: Vec<Site>,
+    /// What `clear_of` leaves of the places.
+    pub cleared: Option<ClearRule>,
     /// Gauges that stay.
     pub kept: Vec<Gauge>,
     /// Their rows, columns in the candidates' order, made independent and of unit variance.
@@ -199,7 +202,12 @@ impl<'a> Task<'a> {
 
     /// The refusal of a placement as a fault of the job.
     pub fn refusal(&self, e: &PlaceError) -> Fault {
-        let (wrong, remedy) = e.parts();
+        let (mut wrong, mut remedy) = e.parts();
+        let too_few = !matches!(e, PlaceError::Singular { .. });
+        if let Some(cleared) = self.cleared.as_ref().filter(|c| too_few && c.takes_most()) {
+            wrong = format!("{wrong}: {}", cleared.words());
+            remedy = format!("reduce `clear_of` {} first; else {remedy}", cleared.rule);
+        }
         let line = self.job.placement.line;
         Fault::at(&*self.job.file, line, "placement", wrong, remedy)
     }
@@ -257,6 +265,7 @@ pub(super) fn task<'a>(
         scales,
         order: column_order(job),
         sites,
+        cleared: None,
         kept: Vec::new(),
         kept_rows: Vec::new(),
         kept_recovered: Vec::new(),

@@ -251,8 +251,7 @@ impl Held<'_> {
         let edit = effect_of(self.job, place).map(|e| &e.source);
         match (of, edit) {
             (StiffnessOf::Zone, _) => {
-                let zones = self.job.reconcile.as_ref().map(|r| &r.zones);
-                let ids = zones.and_then(|z| z.get(place));
+                let ids = deck.zones.get(place);
                 thicknesses(deck, |id| ids.is_some_and(|i| i.contains(id)), factor)
             }
             (StiffnessOf::Described, Some(EffectSource::Thickness { property, .. })) => {

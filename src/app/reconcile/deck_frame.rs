@@ -11,7 +11,7 @@ use super::model_part::{ModelPart, facts};
 use super::region::Region;
 use super::signature_table::TableColumn;
 use crate::app::fault::{Fault, FaultList, Faults};
-use crate::app::job::{Job, JobLoad, LoadActs, LoadRole};
+use crate::app::job::{Ids, Job, JobLoad, LoadActs, LoadRole};
 use crate::app::solved::{support_of_job, unit_loads_kept};
 use crate::app::strain::{Fields, Prepared, lay_gauges, prepare_beside};
 use crate::app::work::Work;
@@ -22,6 +22,7 @@ use crate::model::Model;
 use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
 use crate::stop::Stop;
 use crate::units::KILO;
+use std::collections::BTreeMap;
 
 /// The model with everything needed to solve it again.
 pub(super) struct DeckFrame {
@@ -32,6 +33,8 @@ pub(super) struct DeckFrame {
     pub(super) base: Vec<f64>,
     /// Small regions whose stiffness is tried.
     pub(super) regions: Vec<Region>,
+    /// Properties whose stiffness may be wrong together, by the name of the zone.
+    pub(super) zones: BTreeMap<String, Ids>,
     /// Stops the solutions of changed models between two of them.
     pub(super) stop: Stop,
 }
@@ -122,6 +125,7 @@ pub(super) fn read(
     part.per_mm = Some(along);
     part.as_modelled = finer.is_some().then_some(base);
     let deck = DeckFrame {
+        zones: super::stiffness::zones(job, fields.model(), &gauges),
         fields,
         gauges,
         columns: asked.columns,

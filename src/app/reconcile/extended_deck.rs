@@ -38,7 +38,7 @@ impl DeckFrame {
             match of {
                 StiffnessOf::Joint => self.change_joint(&mut edits, place, factor)?,
                 StiffnessOf::Zone => {
-                    let ids = job.reconcile.as_ref()?.zones.get(place)?;
+                    let ids = self.zones.get(place)?;
                     let words = format!("zone {place}");
                     self.change_thickness(&mut edits, &words, |id| ids.contains(id), factor)?;
                 }

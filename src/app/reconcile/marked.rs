@@ -57,8 +57,7 @@ impl DeckFrame {
         };
         match of {
             StiffnessOf::Zone => {
-                let zones = job.reconcile.as_ref().map(|r| &r.zones);
-                let ids = zones.and_then(|z| z.get(place));
+                let ids = self.zones.get(place);
                 let own = |id: u32| ids.is_some_and(|i| i.contains(id));
                 (self.shells_of(own), None)
             }

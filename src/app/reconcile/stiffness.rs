@@ -4,9 +4,11 @@ use super::changed::Changed;
 use super::deck_frame::DeckFrame;
 use super::described::{effect_of, factor_at};
 use crate::app::fault::{Fault, Faults};
-use crate::app::job::Job;
+use crate::app::job::{Ids, Job};
+use crate::gauge::Gauge;
 use crate::model::Model;
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
+use std::collections::BTreeMap;
 
 /// Thickness change at which a zone's signature is computed first, percent.
 const ZONE_PERCENT: f64 = 10.0;
@@ -47,11 +49,34 @@ fn joints(job: &Job, model: &Model) -> Vec<u32> {
     chosen
 }
 
+/// Returns the zones that the job states, else each shell property with gauges, by its name in the deck.
+pub(super) fn zones(job: &Job, model: &Model, gauges: &[Gauge]) -> BTreeMap<String, Ids> {
+    if let Some(r) = job.reconcile.as_ref().filter(|r| !r.zones.is_empty()) {
+        return r.zones.clone();
+    }
+    let mut zones: BTreeMap<String, Ids> = BTreeMap::new();
+    for gauge in gauges {
+        let shell = model.shell_ix(gauge.element);
+        let shell = shell.and_then(|ix| model.shells.get(ix.us()));
+        let Some(property) = shell.and_then(|s| model.shell_properties.get(s.property.us())) else {
+            continue;
+        };
+        let named = model.property_names.iter().find(|n| n.0 == property.id);
+        let name = named.map_or_else(|| format!("property{}", property.id), |n| n.1.clone());
+        let ids = zones.entry(name).or_insert_with(|| Ids(Vec::new()));
+        if !ids.contains(property.id) {
+            ids.0.push([property.id; 2]);
+        }
+    }
+    zones
+}
+
 impl DeckFrame {
     /// Signatures of all zones and joints.
     pub(super) fn signatures(&self, job: &Job) -> Result<Vec<StiffnessSignature>, Faults> {
-        let zones = job.reconcile.iter().flat_map(|r| r.zones.keys());
-        let mut wanted: Vec<(StiffnessOf, String, Vec<f64>, f64)> = zones
+        let mut wanted: Vec<(StiffnessOf, String, Vec<f64>, f64)> = self
+            .zones
+            .keys()
             .map(|z| (StiffnessOf::Zone, z.clone(), vec![ZONE_PERCENT], ZONE_PRIOR))
             .collect();
         let joints = joints(job, self.fields.model());
@@ -118,7 +143,7 @@ impl DeckFrame {
         let fault = |wrong: String, remedy: &str| {
             Faults::from(Fault::of(&*job.file, "reconcile.zones", wrong, remedy))
         };
-        let Some(ids) = job.reconcile.as_ref().and_then(|r| r.zones.get(zone)) else {
+        let Some(ids) = self.zones.get(zone) else {
             return Err(fault(format!("no zone `{zone}`"), "name its properties"));
         };
         let found = self.shell_properties(|id| ids.contains(id));

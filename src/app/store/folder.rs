@@ -54,6 +54,12 @@ impl Folder {
         &self.0
     }
 
+    /// Returns how many solutions are kept in the folder, and their bytes.
+    pub fn size(&self) -> (usize, u64) {
+        let kept = self.kept();
+        (kept.len(), kept.iter().map(|k| k.1).sum())
+    }
+
     /// Removes every kept solution of the folder, and the folder where that leaves it empty: how many, and their bytes.
     ///
     /// # Errors

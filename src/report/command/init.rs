@@ -48,19 +48,43 @@ impl Report for Outcome<Proposal> {
     }
 
     fn words(&self) -> String {
+        let path = self.path.display();
         if self.loads.is_empty() && !self.placeable && self.inputs.is_empty() {
-            return format!("{}: read it, and name your files in it\n", self.job);
+            let command = self.purpose.unwrap_or("check");
+            return format!(
+                "{}: read it, name your files in it, then run `{command} {path}`\n",
+                self.job
+            );
         }
         let n = self.loads.len();
         let plural = if n == 1 { "" } else { "s" };
         let what = format!("{}: {n} load{plural} proposed", self.job);
-        match self.placeable {
-            true => format!(
-                "{what}; read it, correct units and loads, then run `place {}`\n",
-                self.path.display()
+        let mut words = match (self.placeable, self.purpose) {
+            (true, None) => {
+                format!("{what}; read it, correct units and loads, then run `place {path}`\n")
+            }
+            (_, Some(command)) => format!(
+                "{what}; read it, correct units and loads, name your files, then run `{command} {path}`\n"
             ),
-            false => format!("{what}; gauges can't be placed by it as it is: see the findings\n"),
+            (false, None) => {
+                format!("{what}; gauges can't be placed by it as it is: see the findings\n")
+            }
+        };
+        for of_one in self.left_out.chunk_by(|a, b| a.reason == b.reason) {
+            /// Names listed at most: the job has all.
+            const MOST: usize = 5;
+            let names: Vec<&str> = of_one.iter().take(MOST).map(|l| l.name.as_str()).collect();
+            let more = match of_one.len().saturating_sub(MOST) {
+                0 => String::new(),
+                n => format!(" and {n} more"),
+            };
+            words.push_str(&format!(
+                "Left out: {}{more}: {}\n",
+                names.join(", "),
+                of_one[0].reason
+            ));
         }
+        words
     }
 }
 
@@ -84,10 +108,12 @@ mod tests {
             answer: Proposal {
                 job: "job.toml",
                 loads: vec!["LF.FZ".into(), "RF.FZ".into()],
+                left_out: Vec::new(),
                 placeable: true,
                 text: format!("{open}\n{}\n", rows.join("\n")),
                 path: "job.toml".into(),
                 zones: Default::default(),
+                purpose: None,
             },
         };
         let html = piece(&outcome);
