@@ -54,7 +54,10 @@ pub fn codes() -> &'static [Code] {
 }
 
 /// Former codes, each with the one that means the same today.
-const RENAMED: [(&str, &str); 2] = [
+const RENAMED: [(&str, &str); 5] = [
+    ("dead_channel", "gauge-silent"),
+    ("gauge-missing", "gauge-without-strain"),
+    ("gauge_swap", "gauges-exchanged"),
     ("known-loads-sign", "input-sign-reversed"),
     ("known-loads-unit", "input-unit"),
 ];

@@ -31,13 +31,18 @@ pub use answer::{
 };
 pub(super) use combined::{Listed, listed};
 pub use damage::LoadDamage;
+pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
-pub(super) use task::{gauges_without_strain, reference_strain, strain_without_gauge, zero_of};
+pub(super) use speaking::silent_throughout;
+pub(super) use task::{
+    gauge_without_column, gauges_without_strain, reference_strain, strain_without_gauge,
+    unknown_columns, zero_of,
+};
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
 
