@@ -39,7 +39,7 @@ pub struct Finding {
     /// The limit it is held against.
     pub limit: Option<f64>,
     /// Chance that right data make as much of it, where that decided.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip)]
     pub chance: Option<f64>,
     /// What the reader can do.
     pub remedy: String,
@@ -167,8 +167,9 @@ mod tests {
             .with_chance(1e-7);
         let text = serde_json::to_string(&written).unwrap();
         let expected = Finding {
-            // JSON has no infinite numbers.
+            // JSON has no infinite numbers, and results have no chances.
             limit: None,
+            chance: None,
             ..written
         };
         assert_eq!(serde_json::from_str::<Finding>(&text).unwrap(), expected);

@@ -1,8 +1,8 @@
 //! The rules of the house as tests: layers, who may print, open files or be unsafe, what must have a README, what the
 //! library alone builds.
 
-mod dependencies;
 mod declared_words;
+mod dependencies;
 mod english;
 mod imports;
 mod size;

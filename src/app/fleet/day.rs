@@ -72,6 +72,22 @@ impl GaugeDay {
     }
 }
 
+/// Findings with their chances, which results leave out and a merge needs.
+mod with_chances {
+    use crate::finding::Finding;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(findings: &[Finding], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(findings.iter().map(|f| (f, f.chance)))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Finding>, D::Error> {
+        let kept: Vec<(Finding, Option<f64>)> = Deserialize::deserialize(from)?;
+        let finding = |(f, chance)| Finding { chance, ..f };
+        Ok(kept.into_iter().map(finding).collect())
+    }
+}
+
 /// What a record came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Day {
@@ -86,6 +102,7 @@ pub struct Day {
     /// Gauges, in the order of the job.
     pub gauges: Vec<GaugeDay>,
     /// Findings of the record.
+    #[serde(with = "with_chances")]
     pub findings: Vec<Finding>,
 }
 
@@ -131,6 +148,7 @@ pub struct DayHead {
     /// Samples missing in gaps.
     pub missing: usize,
     /// Findings of the record.
+    #[serde(deserialize_with = "with_chances::deserialize")]
     pub findings: Vec<Finding>,
 }
 
