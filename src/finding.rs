@@ -2,22 +2,12 @@
 
 mod bounded;
 pub mod explain;
+mod severity;
 
 pub use bounded::bounded;
 use serde::{Deserialize, Deserializer, Serialize};
+pub use severity::Severity;
 use std::fmt::Display;
-
-/// How much a finding matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Severity {
-    /// Worth knowing.
-    Info,
-    /// Look before you trust.
-    Warning,
-    /// The answer can't be relied on: exit code 1.
-    Error,
-}
 
 /// Name of a finding's code.
 pub type CodeName = &'static str;
@@ -50,32 +40,6 @@ fn read_code<'de, D: Deserializer<'de>>(from: D) -> Result<CodeName, D::Error> {
     let name = String::deserialize(from)?;
     let known = explain::code(&name).map(|c| c.code);
     known.ok_or_else(|| serde::de::Error::custom(format!("`{name}` is not a code of a finding")))
-}
-
-impl Severity {
-    /// Its name in files and in the reference.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Info => "info",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
-
-    /// That of a name in files; `None` where none is called so.
-    pub fn named(name: &str) -> Option<Self> {
-        let all = [Self::Info, Self::Warning, Self::Error];
-        all.into_iter().find(|s| s.name() == name)
-    }
-
-    /// The word of it in messages.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Info => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
 }
 
 impl Finding {

@@ -3,7 +3,7 @@
 //! The tables stand in `codes/*.txt`, four fields a code under its head `code | severities | who says it`. A test compares them with the codes
 //! that the program gives: one without an entry fails it, so does an entry that nothing gives.
 
-use super::Severity;
+use super::severity::Severity;
 use serde::Serialize;
 use std::sync::LazyLock;
 
