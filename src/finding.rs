@@ -2,30 +2,24 @@
 
 mod bounded;
 pub mod explain;
+mod severity;
 
 pub use bounded::bounded;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
+pub use severity::Severity;
 use std::fmt::Display;
 
-/// How much a finding matters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Severity {
-    /// Worth knowing.
-    Info,
-    /// Look before you trust.
-    Warning,
-    /// The answer can't be relied on: exit code 1.
-    Error,
-}
+/// Name of a finding's code.
+pub type CodeName = &'static str;
 
 /// A measured fact about a result, its limit, and what to do.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// How much it matters.
     pub severity: Severity,
     /// Stable code, such as `loads-not-separable`; [`explain`] has an entry for each.
-    pub code: &'static str,
+    #[serde(deserialize_with = "read_code")]
+    pub code: CodeName,
     /// What it is about: a gauge, a load, a file, an element.
     pub subject: String,
     /// A plain sentence with the consequence.
@@ -41,30 +35,11 @@ pub struct Finding {
     pub remedy: String,
 }
 
-impl Severity {
-    /// Its name in files and in the reference.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Info => "info",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
-
-    /// That of a name in files; `None` where none is called so.
-    pub fn named(name: &str) -> Option<Self> {
-        let all = [Self::Info, Self::Warning, Self::Error];
-        all.into_iter().find(|s| s.name() == name)
-    }
-
-    /// The word of it in messages.
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Info => "note",
-            Self::Warning => "warning",
-            Self::Error => "error",
-        }
-    }
+/// Reads a code that [`explain`] has an entry for.
+fn read_code<'de, D: Deserializer<'de>>(from: D) -> Result<CodeName, D::Error> {
+    let name = String::deserialize(from)?;
+    let known = explain::code(&name).map(|c| c.code);
+    known.ok_or_else(|| serde::de::Error::custom(format!("`{name}` is not a code of a finding")))
 }
 
 impl Finding {
@@ -147,5 +122,22 @@ mod tests {
         assert!(text.ends_with(" and 1592 more"), "{text}");
         assert_eq!(few(&[11, 12]), "11, 12");
         assert_eq!(few_of(&["A", "B"], 5), "A, B and 3 more");
+    }
+
+    #[test]
+    fn a_finding_is_read_as_it_was_written_and_an_unknown_code_is_refused() {
+        let written = Finding::new(Severity::Warning, "gauge-silent", "G1", "message", "remedy")
+            .with_numbers(0.1, f64::INFINITY)
+            .with_chance(1e-7);
+        let text = serde_json::to_string(&written).unwrap();
+        let expected = Finding {
+            // JSON has no infinite numbers, and results have no chances.
+            limit: None,
+            chance: None,
+            ..written
+        };
+        assert_eq!(serde_json::from_str::<Finding>(&text).unwrap(), expected);
+        let other = text.replace("gauge-silent", "gauge-of-no-entry");
+        assert!(serde_json::from_str::<Finding>(&other).is_err());
     }
 }

@@ -196,7 +196,7 @@ def test_what_is_broken_is_reported_on_workers_too(sixty, cluster, tmp_path):
     status = {Path(f.path).name: f.status for f in spread.files}
     assert status.pop(cut.name) == "failed" and status.pop("T2_06b.csv") == "copy"
     assert set(status.values()) == {"done"} and len(status) == 59
-    assert any(f.code == "gauge-missing" and "G4" in f.subject for f in spread.findings)
+    assert any(f.code == "gauge-without-strain" and "G4" in f.subject for f in spread.findings)
     assert not spread.is_reliable
     assert [v.files for v in spread.vehicles] == [19, 20, 20]
     here = sb.fleet.run(tmp_path / "job.toml", names, tmp_path / "here")

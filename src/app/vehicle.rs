@@ -1,9 +1,9 @@
 //! The vehicle of a job and its records, in the job's units: what `identify` and `reconcile` start from.
 
 use super::fault::{Fault, FaultList, Faults};
-use super::measured::faults::record_fault;
 use super::job::suggest::closest;
 use super::job::{ChannelCorrection, Job, NamedFile, Vehicle as VehicleJob};
+use super::measured::faults::record_fault;
 use super::words::short;
 use super::work::Work;
 use crate::finding::{Finding, Severity};

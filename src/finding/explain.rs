@@ -3,7 +3,7 @@
 //! The tables stand in `codes/*.txt`, four fields a code under its head `code | severities | who says it`. A test compares them with the codes
 //! that the program gives: one without an entry fails it, so does an entry that nothing gives.
 
-use super::Severity;
+use super::severity::Severity;
 use serde::Serialize;
 use std::sync::LazyLock;
 
@@ -54,7 +54,10 @@ pub fn codes() -> &'static [Code] {
 }
 
 /// Former codes, each with the one that means the same today.
-const RENAMED: [(&str, &str); 4] = [
+const RENAMED: [(&str, &str); 7] = [
+    ("dead_channel", "gauge-silent"),
+    ("gauge-missing", "gauge-without-strain"),
+    ("gauge_swap", "inputs-exchanged"),
     ("gauge-wired-backwards", "input-sign-reversed"),
     ("gauges-exchanged", "inputs-exchanged"),
     ("known-loads-sign", "input-sign-reversed"),

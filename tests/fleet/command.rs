@@ -207,9 +207,9 @@ fn what_is_broken_is_said_and_nothing_else_is_lost() {
         list.iter()
             .any(|f| f["code"] == code && f["subject"].as_str().unwrap().contains(subject))
     };
-    assert!(has("gauge-missing", "G4"));
+    assert!(has("gauge-without-strain", "G4"));
     assert!(has("fleet-second-copy", "T1_7b.csv"));
-    assert!(has("dead_channel", "T2 G1"));
+    assert!(has("gauge-silent", "T2 G1"));
     let gauge = &result["vehicles"][2]["gauges"][1];
     assert_eq!(gauge["dead_days"][0], "15");
     // Loads from the gauges that are left are the same but for rounding; the vehicle with a cut day has one day less.
@@ -453,7 +453,7 @@ fn a_gauge_that_is_stuck_on_every_day_is_told_with_all_its_days() {
     let [[code, subject, message]] = found.as_slice() else {
         panic!("{found:?}");
     };
-    assert_eq!((code.as_str(), subject.as_str()), ("dead_channel", "T2 G1"));
+    assert_eq!((code.as_str(), subject.as_str()), ("gauge-silent", "T2 G1"));
     assert!(message.contains("20 of 20 days"), "{message}");
     let gauges = result["vehicles"][2]["gauges"].as_array().unwrap();
     assert_eq!(gauges.len(), GAUGES);
@@ -569,7 +569,7 @@ fn a_gauge_named_with_what_looks_like_a_unit_is_read_as_any_other() {
     assert!(
         findings_of(&named, &["warning"])
             .iter()
-            .all(|f| f[0] != "gauge-missing"),
+            .all(|f| f[0] != "gauge-without-strain"),
         "{named}"
     );
     // But for the digests of the records, which are other files.

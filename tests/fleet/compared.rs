@@ -371,7 +371,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
     let moved: f64 = moved.split(' ').next().unwrap().parse().unwrap();
     assert!((moved - 16.5).abs() < 1.0, "{message}");
     assert!(message.contains("from 1 to 12"), "{message}");
-    let swaps = found(&result, "gauge_swap");
+    let swaps = found(&result, "inputs-exchanged");
     let [[subject, message]] = swaps.as_slice() else {
         panic!("{swaps:?}");
     };
@@ -403,7 +403,7 @@ fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
     let dir = folder("one_name", "", &records);
     let files: Vec<&str> = records.iter().map(|r| r.0).collect();
     let (_, result) = fleet(&dir, &files, &[]);
-    let swaps = found(&result, "gauge_swap");
+    let swaps = found(&result, "inputs-exchanged");
     assert_eq!(swaps.len(), 1, "{swaps:?}");
     assert_eq!(swaps[0][0], "T1 G0, G3");
     let gains = found(&result, "gauge_gain");

@@ -201,7 +201,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     }
     let (_, result) = fleet(&dir, "out", &files, &[]);
     let found = findings_of(&result, &["warning", "error"]);
-    let named = ["dead_channel", "gauge_gain", "fleet-day-unit", "zero_drift"];
+    let named = ["gauge-silent", "gauge_gain", "fleet-day-unit", "zero_drift"];
     assert!(
         found.iter().all(|f| !named.contains(&f[0].as_str())),
         "{found:?}"
@@ -217,7 +217,7 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     write(&dir, &files[2], &contradicted);
     let (_, result) = fleet(&dir, "contradicted", &files, &[]);
     let found = findings_of(&result, &["warning"]);
-    let dead = found.iter().find(|f| f[0] == "dead_channel");
+    let dead = found.iter().find(|f| f[0] == "gauge-silent");
     assert_eq!(dead.unwrap_or_else(|| panic!("{found:?}"))[1], "A G2");
     // A gauge that is dead while it drives is named, on the day that it stands as well as not.
     for (day, file) in files.iter().enumerate() {
@@ -228,12 +228,70 @@ fn a_day_that_the_vehicle_stands_names_no_gauge() {
     }
     let (_, result) = fleet(&dir, "dead", &files, &[]);
     let found = findings_of(&result, &["warning"]);
-    let dead: Vec<_> = found.iter().filter(|f| f[0] == "dead_channel").collect();
+    let dead: Vec<_> = found.iter().filter(|f| f[0] == "gauge-silent").collect();
     let [[_, subject, message]] = dead.as_slice() else {
         panic!("{found:?}");
     };
     assert_eq!(subject, "A G2");
     assert!(message.contains("on 3 of 5 days, the first 3"), "{message}");
+}
+
+/// Two days of other sizes, and the same samples as one record.
+#[test]
+fn days_and_the_undivided_record_give_the_same_damage_with_model_uncertainty() {
+    let dir = noisy("undivided");
+    // Loads, and with them the model's error, are three times as large on the second day.
+    let day = |day: usize, size: f64| table(day, |_, y| y.iter_mut().for_each(|v| *v *= size));
+    let days = [day(1, 1.0), day(2, 3.0)];
+    let mut files = vec![write(&dir, "A_1.csv", &days[0])];
+    files.push(write(&dir, "A_2.csv", &days[1]));
+    let rows = days.iter().flat_map(|text| text.lines().skip(1));
+    let mut whole = days[0].lines().next().unwrap().to_owned();
+    for (i, row) in rows.enumerate() {
+        let (_, readings) = row.split_once(',').unwrap();
+        write!(whole, "\n{:.2},{readings}", i as f64 * 0.01).unwrap();
+    }
+    let whole = [write(&dir, "A_9.csv", &(whole + "\n"))];
+    let [(_, days), (_, whole)] = [("days", &files[..]), ("whole", &whole[..])]
+        .map(|(out, files)| fleet(&dir, out, files, &[]));
+    for load in 0..2 {
+        for key in [
+            "damage_counted",
+            "noise_bias",
+            "damage",
+            "cycles",
+            "max",
+            "min",
+        ] {
+            let [a, b] = [&days, &whole].map(|r| number(&r["vehicles"][0]["loads"][load][key]));
+            assert!((a - b).abs() <= 1e-9 * b.abs(), "{load} {key}: {a} {b}");
+        }
+    }
+}
+
+/// Of two days neither is the typical one: the other gauges show which of them is wrong.
+#[test]
+fn of_two_days_the_spiked_one_is_named() {
+    let dir = noisy("two_days");
+    for spiked in [1, 2] {
+        let files: Vec<String> = (1..=2)
+            .map(|day| {
+                let text = table(day, |i, y| {
+                    if day == spiked && i % 25 == 7 {
+                        y[2] = 1e9;
+                    }
+                });
+                write(&dir, &format!("A_{day}.csv"), &text)
+            })
+            .collect();
+        let (code, result) = fleet(&dir, &format!("spiked_{spiked}"), &files, &[]);
+        assert_eq!(code, 1, "{result}");
+        let found = findings_of(&result, &["warning", "error"]);
+        assert!(found.iter().all(|f| f[0] != "gauge-silent"), "{found:?}");
+        let [names, right] = [spiked, 3 - spiked].map(|day| format!("A_{day}.csv"));
+        assert!(found.iter().any(|f| f[2].contains(&names)), "{found:?}");
+        assert!(found.iter().all(|f| !f[2].contains(&right)), "{found:?}");
+    }
 }
 
 #[test]
@@ -266,7 +324,10 @@ fn days_of_other_rates_and_with_a_renamed_gauge_are_counted_alike() {
     let (code, result) = fleet(&dir, "renamed", &files, &[]);
     assert_eq!(code, 0, "{result}");
     let found = findings_of(&result, &["warning"]);
-    for (code, subject) in [("gauge-missing", "G4"), ("strain-without-gauge", "SG4")] {
+    for (code, subject) in [
+        ("gauge-without-strain", "G4"),
+        ("strain-without-gauge", "SG4"),
+    ] {
         assert!(
             found.iter().any(|f| f[0] == code && f[1].contains(subject)),
             "{code}: {found:?}"

@@ -68,7 +68,7 @@ fn a_gauge_that_dies_within_a_day_is_left_out_from_there_on() {
             );
         }
         let found = findings_of(&result, &["warning", "error"]);
-        let dead = found.iter().find(|f| f[0] == "dead_channel");
+        let dead = found.iter().find(|f| f[0] == "gauge-silent");
         let [_, subject, message] = dead.unwrap_or_else(|| panic!("{found:?}"));
         assert_eq!(subject, "T1 G0");
         assert!(
@@ -94,7 +94,7 @@ fn a_vehicle_that_stands_for_half_a_day_has_no_dead_gauge() {
     write(&dir, "T1_4.csv", text);
     let (_, result) = fleet(&dir, "out", &files, &[]);
     let found = findings_of(&result, &["warning", "error"]);
-    assert!(found.iter().all(|f| f[0] != "dead_channel"), "{found:?}");
+    assert!(found.iter().all(|f| f[0] != "gauge-silent"), "{found:?}");
 }
 
 /// The first second is all that is looked at beforehand.
@@ -209,7 +209,7 @@ fn a_load_that_is_known_in_a_part_of_the_hours_has_the_damage_of_that_part() {
         let found = findings_of(&result, &["warning"]);
         let part = found.iter().find(|f| f[0] == "load-known-in-part");
         assert_eq!(part.unwrap_or_else(|| panic!("{found:?}"))[1], "T1 B.FZ");
-        let dead = found.iter().find(|f| f[0] == "dead_channel");
+        let dead = found.iter().find(|f| f[0] == "gauge-silent");
         assert_eq!(dead.unwrap_or_else(|| panic!("{found:?}"))[1], "T1 G3");
         all.push(damage);
     }
@@ -223,7 +223,7 @@ fn a_gauge_that_is_missing_is_told_with_its_vehicles() {
         let found = findings_of(result, &["warning"]);
         let [[_, subject, message]] = found
             .iter()
-            .filter(|f| f[0] == "gauge-missing")
+            .filter(|f| f[0] == "gauge-without-strain")
             .collect::<Vec<_>>()[..]
         else {
             panic!("{found:?}");

@@ -54,43 +54,6 @@ pub struct GaugeDay {
     pub dead: Vec<[f64; 2]>,
 }
 
-/// A finding of the record.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DayFinding {
-    /// `error`, `warning` or `info`.
-    pub severity: String,
-    /// Its code.
-    pub code: String,
-    /// What it is about.
-    pub subject: String,
-    /// What was found.
-    pub message: String,
-    /// The measured number, where there is one.
-    pub measured: Option<f64>,
-    /// The limit it is held against.
-    pub limit: Option<f64>,
-    /// Chance that a right record makes as much of it, where that decided.
-    pub chance: Option<f64>,
-    /// What the reader can do.
-    pub remedy: String,
-}
-
-impl From<Finding> for DayFinding {
-    fn from(f: Finding) -> Self {
-        let finite = |v: &f64| v.is_finite();
-        Self {
-            severity: f.severity.name().to_owned(),
-            code: f.code.to_owned(),
-            subject: f.subject,
-            message: f.message,
-            measured: f.measured.filter(finite),
-            limit: f.limit.filter(finite),
-            chance: f.chance.filter(finite),
-            remedy: f.remedy,
-        }
-    }
-}
-
 impl GaugeDay {
     /// That of a gauge that gives nothing, or one and the same value: neither tells anything.
     pub fn silent(name: &str) -> Self {
@@ -109,6 +72,22 @@ impl GaugeDay {
     }
 }
 
+/// Findings with their chances, which results leave out and a merge needs.
+mod with_chances {
+    use crate::finding::Finding;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(findings: &[Finding], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(findings.iter().map(|f| (f, f.chance)))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Finding>, D::Error> {
+        let kept: Vec<(Finding, Option<f64>)> = Deserialize::deserialize(from)?;
+        let finding = |(f, chance)| Finding { chance, ..f };
+        Ok(kept.into_iter().map(finding).collect())
+    }
+}
+
 /// What a record came to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Day {
@@ -123,7 +102,8 @@ pub struct Day {
     /// Gauges, in the order of the job.
     pub gauges: Vec<GaugeDay>,
     /// Findings of the record.
-    pub findings: Vec<DayFinding>,
+    #[serde(with = "with_chances")]
+    pub findings: Vec<Finding>,
 }
 
 impl Day {
@@ -168,7 +148,8 @@ pub struct DayHead {
     /// Samples missing in gaps.
     pub missing: usize,
     /// Findings of the record.
-    pub findings: Vec<DayFinding>,
+    #[serde(deserialize_with = "with_chances::deserialize")]
+    pub findings: Vec<Finding>,
 }
 
 /// A file and what became of it, in a few hundred bytes: all files of a fleet are in memory as these.

@@ -1,12 +1,15 @@
 //! Gauges that are dead in a part of a record: their readings are left out there, and their days say so.
 
-use super::day::{DayFinding, GaugeDay};
+use super::day::GaugeDay;
 use super::judged::Judged;
 use super::recovering::Recovering;
-use crate::finding::{Finding, Severity};
+use crate::app::fault::Fault;
+use crate::app::measured::faults::record_fault;
+use crate::app::recover::silent_in_part;
+use crate::finding::Finding;
 use crate::recovery::ErrorModel;
 use crate::recovery::stuck::check;
-use crate::series::record::Record;
+use crate::series::record::{Clock, Record};
 use crate::series::still::{Gives, extent};
 use std::ops::Range;
 
@@ -23,14 +26,14 @@ pub(super) fn dead_parts(
     judged: &Judged,
     errors: ErrorModel,
     noise_factor: f64,
-) -> Result<Vec<DeadPart>, String> {
+) -> Result<Vec<DeadPart>, Fault> {
     let samples: Vec<(usize, &[f64])> = judged.numbered().collect();
     check(&r.sensitivity, &samples, errors, noise_factor)
         .into_iter()
         .map(|stuck| {
             let column = r.columns.get(stuck.gauge).copied().flatten();
             let span = extent(record, column, stuck.gives, stuck.span, stuck.within);
-            let span = span.map_err(|e| e.to_string())?;
+            let span = span.map_err(|e| record_fault("record", &e))?;
             Ok((stuck.gauge, stuck.gives, span))
         })
         .collect()
@@ -44,35 +47,17 @@ pub(super) fn blank_of(dead: &[DeadPart]) -> Vec<(usize, Range<usize>)> {
         .collect()
 }
 
-/// Findings of the record, one a part, noted with the gauges as well; `hours` turns samples into hours.
-pub(super) fn told_dead(
-    dead: &[DeadPart],
-    gauges: &mut [GaugeDay],
-    hours: impl Fn(f64) -> f64,
-) -> Vec<DayFinding> {
+/// Findings of the record, one a part, noted with the gauges as well.
+pub(super) fn told_dead(dead: &[DeadPart], gauges: &mut [GaugeDay], clock: &Clock) -> Vec<Finding> {
     let mut out = Vec::new();
     for (g, gives, span) in dead {
         let Some(gauge) = gauges.get_mut(*g) else {
             continue;
         };
-        let part = [span.start, span.end].map(|at| hours(at as f64));
-        gauge.dead.push(part);
-        let what = match gives {
-            Gives::Nothing => "it gives nothing",
-            Gives::OneValue | Gives::Signal => "it reads one and the same value",
-        };
-        let [from, to] = part;
-        let message = format!(
-            "{what} from hour {from:.3} to hour {to:.3} of the record: there the loads are those of the others"
-        );
-        let found = Finding::new(
-            Severity::Warning,
-            "dead_channel",
-            &gauge.name,
-            message,
-            "look at the logger",
-        );
-        out.push(found.with_numbers(to - from, 0.0).into());
+        let hours = |at: usize| at as f64 / clock.rate_hz / 3600.0;
+        gauge.dead.push([hours(span.start), hours(span.end)]);
+        let times = [span.start, span.end - 1].map(|at| clock.time_s(at));
+        out.push(silent_in_part(&gauge.name, *gives, times));
     }
     out
 }

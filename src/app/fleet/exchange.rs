@@ -1,4 +1,4 @@
-//! `gauge_swap`: two gauges that read each other's strain, in a record that the loads don't explain.
+//! `inputs-exchanged`: two gauges that read each other's strain, in a record that the loads don't explain.
 
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
@@ -29,7 +29,7 @@ impl Exchange {
         let [before, after] = [self.before, self.after].map(|v| v / MICROSTRAIN);
         Finding::new(
             Severity::Warning,
-            "gauge_swap",
+            "inputs-exchanged",
             format!("{a}, {b}"),
             format!(
                 "`{a}` and `{b}` read each other's strain: with their readings exchanged the loads leave {after:.1} microstrain unexplained instead of {before:.1}"

@@ -1,11 +1,10 @@
 //! Findings of single records, one for all records of a vehicle that say the same of the same subject.
 
-use super::day::{DayFinding, FileHead};
+use super::day::FileHead;
 use super::days::DayOrder;
 use super::judged::OF_SAMPLES;
 use super::merge::Status;
-use crate::finding::explain::code;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, few};
 use crate::recovery::{ALARM, GAUGE_SUSPECT, UNEXPLAINED};
 use statrs::distribution::{Binomial, DiscreteCDF};
 use std::collections::{BTreeMap, BTreeSet};
@@ -20,7 +19,7 @@ const OF_STANDING: [&str; 3] = [
 ];
 /// Said of what all vehicles have in common: logger, number of gauges, stated errors, sizes of loads.
 const OF_ALL: [&str; 7] = [
-    "gauge-missing",
+    "gauge-without-strain",
     "load-beyond-expected",
     "no-redundancy",
     "record-gaps",
@@ -38,7 +37,7 @@ struct Alike<'a> {
     chance: f64,
     day: &'a str,
     path: &'a str,
-    first: &'a DayFinding,
+    first: &'a Finding,
     /// Vehicles whose records they are.
     vehicles: BTreeSet<&'a str>,
 }
@@ -56,11 +55,11 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
             *records.entry(vehicle).or_insert(0) += 1;
         }
         // The gauges' histories tell of dead ones.
-        for f in day.findings.iter().filter(|f| f.code != "dead_channel") {
-            let is_of = |list: &[&str]| list.contains(&f.code.as_str());
+        for f in day.findings.iter().filter(|f| f.code != "gauge-silent") {
+            let is_of = |list: &[&str]| list.contains(&f.code);
             let vehicle = if is_of(&OF_ALL) { "" } else { &file.vehicle };
             let subject = if is_of(&OF_SAMPLES) { "" } else { &f.subject };
-            let alike = grouped.entry((&f.code, vehicle, subject)).or_insert(Alike {
+            let alike = grouped.entry((f.code, vehicle, subject)).or_insert(Alike {
                 n: 0,
                 certain: false,
                 chance: 1.0,
@@ -87,35 +86,41 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
                 Some(one) if alike.vehicles.len() == 1 => one,
                 _ => vehicle,
             };
-            let of = records.get(vehicle).copied().unwrap_or(0);
-            is_told(&alike, of).then(|| told(vehicle, subject, &alike, of))?
+            let [of, all] = [vehicle, ""].map(|v| records.get(v).copied().unwrap_or(0));
+            is_told(&alike, of, all).then(|| told(vehicle, subject, &alike, of))
         })
         .collect()
 }
 
-/// Whether that many of `of` records say something of them.
-fn is_told(alike: &Alike, of: usize) -> bool {
-    let is_of = |list: &[&str]| list.contains(&alike.first.code.as_str());
+/// Whether so many of `of` records, out of `all` records of the fleet, say something of them. A fleet of right records gives an alarm with the
+/// same chance as one right record, however many vehicles it has.
+fn is_told(alike: &Alike, of: usize, all: usize) -> bool {
+    let is_of = |list: &[&str]| list.contains(&alike.first.code);
     if is_of(&BY_CHANCE) && !alike.certain {
         // Many that say it, or one that says it louder than chance makes the loudest of all.
-        let loudest = alike.chance * of as f64;
-        return alike.n >= of || by_chance(alike.n, of) <= ALARM || loudest <= ALARM;
+        let groups = all as f64 / of.max(1) as f64;
+        let many = by_chance(alike.n, of) * groups;
+        let loudest = alike.chance * all as f64;
+        return many.min(loudest) <= ALARM;
     }
     !is_of(&OF_STANDING) || 2 * alike.n > of
 }
 
 /// Chance that so many of `of` right records say what each says with a chance of [`ALARM`].
 fn by_chance(n: usize, of: usize) -> f64 {
+    if of == 1 {
+        return ALARM;
+    }
     let binomial = Binomial::new(ALARM, of as u64);
     binomial.map_or(1.0, |b| b.sf(n.saturating_sub(1) as u64))
 }
 
-/// `None` for a code that has no entry.
-fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Option<Finding> {
+/// Returns the finding of records that say the same, with their number and the first of them.
+fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Finding {
     let f = alike.first;
     let subject = [vehicle, subject].map(str::to_owned);
     let subject: Vec<String> = subject.into_iter().filter(|s| !s.is_empty()).collect();
-    let samples = match OF_SAMPLES.contains(&f.code.as_str()) {
+    let samples = match OF_SAMPLES.contains(&f.code) {
         true => format!(" ({})", f.subject),
         false => String::new(),
     };
@@ -126,57 +131,68 @@ fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Option<Findin
         }
         _ => String::new(),
     };
-    Some(Finding {
-        severity: Severity::named(&f.severity)?,
-        code: code(&f.code)?.code,
+    Finding {
         subject: subject.join(" "),
         message: format!(
             "{} of {of} records{of_vehicles}, the first {}{samples}: {}",
             alike.n, alike.path, f.message
         ),
-        measured: f.measured,
-        limit: f.limit,
-        chance: f.chance,
-        remedy: f.remedy.clone(),
-    })
+        ..f.clone()
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::finding::Severity;
+
+    fn is_told_of(n: usize, certain: bool, chance: f64, [of, all]: [usize; 2]) -> bool {
+        let first = Finding::new(Severity::Error, GAUGE_SUSPECT, "G", "", "");
+        let alike = Alike {
+            n,
+            certain,
+            chance,
+            day: "",
+            path: "",
+            first: &first,
+            vehicles: BTreeSet::new(),
+        };
+        is_told(&alike, of, all)
+    }
 
     /// As many right records as a year has raise the alarm as seldom as one does; a gauge that is off shows in more of them.
     #[test]
     fn a_suspect_on_a_few_of_many_days_is_chance_and_on_more_is_told() {
-        let first = DayFinding {
-            severity: "error".into(),
-            code: GAUGE_SUSPECT.into(),
-            subject: "G".into(),
-            message: String::new(),
-            measured: None,
-            limit: None,
-            chance: None,
-            remedy: String::new(),
-        };
-        let told = |n, certain, chance, of| {
-            let alike = Alike {
-                n,
-                certain,
-                chance,
-                day: "",
-                path: "",
-                first: &first,
-                vehicles: BTreeSet::new(),
-            };
-            is_told(&alike, of)
-        };
+        let told = |n, certain, chance, of| is_told_of(n, certain, chance, [of, of]);
         assert!(told(1, false, 1.0, 1));
         // 1.8 are expected of 365.
         assert!(!told(4, false, 1.0, 365));
-        assert!(told(10, false, 1.0, 365));
+        assert!(!told(10, false, 1.0, 365));
         assert!(told(1, true, 1.0, 365));
         // One day on which it is off by ten sigmas, and one by less than four.
         assert!(told(1, false, 1e-20, 365));
         assert!(!told(1, false, 1e-4, 365));
+    }
+
+    /// The chance of an alarm over all vehicles of right records, by the counts that are told: at most that of one record.
+    #[test]
+    fn a_fleet_of_right_vehicles_alarms_as_seldom_as_one() {
+        for (vehicles, days) in [(1, 1), (1000, 1), (1000, 2), (1000, 20), (100, 365)] {
+            let all = vehicles * days;
+            let told = |n: &usize| is_told_of(*n, false, 1.0, [days, all]);
+            let chance = (1..=days).find(told).map_or(0.0, |n| {
+                let binomial = Binomial::new(ALARM, days as u64).unwrap();
+                binomial.sf(n as u64 - 1) * vehicles as f64
+            });
+            assert!(
+                chance <= ALARM * (1.0 + 1e-9),
+                "{vehicles} {days}: {chance}"
+            );
+            // One vehicle whose gauge is off on most days is told among a thousand.
+            assert!(days < 20 || told(&days), "{vehicles} {days}");
+        }
+        // A chance that one record in a hundred thousand has, seen once in twenty thousand.
+        assert!(!is_told_of(1, false, 3e-5, [20, 20_000]));
+        assert!(is_told_of(1, false, 1e-8, [20, 20_000]));
     }
 }

@@ -1,6 +1,6 @@
 //! A gauge of a vehicle over its days: where it was dead, and a gain that changed.
 
-use super::day::{DayFinding, GaugeDay};
+use super::day::GaugeDay;
 use crate::estimate::median;
 use crate::finding::{Finding, Severity};
 use serde::Serialize;
@@ -10,15 +10,11 @@ const DEAD: f64 = 0.01;
 /// A vehicle moves on a day when most of its gauges read more than this many times what they read on their typical day; on others a gauge that reads
 /// little tells nothing.
 const MOVES: f64 = 0.1;
-/// From which a gain is another one: glue, wires and amplifiers of a sound gauge stay well within.
+/// From which a gain is another one: glue, wires and amplifiers of a sound gauge stay well within. A gauge with less than this share of what the
+/// others predict for it gives no signal.
 const OFF: f64 = 0.1;
 /// What is named of a record by its cause, and makes of the gains and zeros of that day what they are not.
-const CAUSES: [&str; 4] = [
-    "gauge_swap",
-    "inputs-exchanged",
-    "input-sign-reversed",
-    "gauge-dead",
-];
+const CAUSES: [&str; 3] = ["inputs-exchanged", "input-sign-reversed", "gauge-dead"];
 
 /// A gauge of a vehicle over its days.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -90,7 +86,10 @@ impl GaugeHistory {
         let typical = typical(days);
         let finite = |x: f64| x.is_finite().then_some(x);
         let is_dead = |(d, moves): (&GaugeDay, &bool)| {
-            !d.sd.is_finite() || (*moves && d.sd <= DEAD * typical) || !d.dead.is_empty()
+            // Where spikes make the typical day, a gauge that follows the others is not dead.
+            let follows = d.gain.abs() > OFF;
+            let quiet = *moves && d.sd <= DEAD * typical && !follows;
+            !d.sd.is_finite() || quiet || !d.dead.is_empty()
         };
         let dead: Vec<bool> = days.iter().zip(moves).map(is_dead).collect();
         let parts = days.iter().zip(names).flat_map(|(d, day)| {
@@ -138,7 +137,7 @@ impl GaugeHistory {
         );
         let remedy = "repair it; while it was dead the loads are those of the other gauges where they can tell them";
         let subject = format!("{vehicle} {}", self.name);
-        let found = Finding::new(Severity::Warning, "dead_channel", subject, message, remedy);
+        let found = Finding::new(Severity::Warning, "gauge-silent", subject, message, remedy);
         Some(found.with_numbers(n as f64, 0.0))
     }
 
@@ -193,6 +192,6 @@ impl GaugeHistory {
 }
 
 /// Whether the findings of a record name a cause that makes gains and zeros of its day what they are not.
-pub(super) fn is_misread(findings: &[DayFinding]) -> bool {
-    findings.iter().any(|f| CAUSES.contains(&f.code.as_str()))
+pub(super) fn is_misread(findings: &[Finding]) -> bool {
+    findings.iter().any(|f| CAUSES.contains(&f.code))
 }

@@ -1,8 +1,7 @@
 //! Samples of a record by which recovery's own judge tells whether the loads explain its strain: some spread evenly over it, and those of each
 //! load's extremes, since a range to the power of the S-N slope comes from them and a single wrong sample makes one.
 
-use super::day::DayFinding;
-use crate::finding::{Severity, few};
+use crate::finding::{Finding, Severity, few};
 use crate::recovery::{
     ErrorModel, NOT_SOLVABLE, Readings, Recovery, UNEXPLAINED, recover_samples, unlike,
 };
@@ -146,12 +145,12 @@ impl Judged {
 }
 
 /// Findings of the record: those on all samples, and what the extremes alone add.
-pub fn findings_of(recoveries: Vec<Recovery>) -> Vec<DayFinding> {
-    let mut out: Vec<DayFinding> = Vec::new();
+pub fn findings_of(recoveries: Vec<Recovery>) -> Vec<Finding> {
+    let mut out: Vec<Finding> = Vec::new();
     for recovery in recoveries {
         for f in findings_of_one(recovery) {
             let said =
-                |o: &DayFinding| o.code == f.code && (o.subject == f.subject || is_of_samples(&f));
+                |o: &Finding| o.code == f.code && (o.subject == f.subject || is_of_samples(&f));
             if !out.iter().any(said) {
                 out.push(f);
             }
@@ -163,13 +162,13 @@ pub fn findings_of(recoveries: Vec<Recovery>) -> Vec<DayFinding> {
 /// Codes of findings whose subjects are samples.
 pub const OF_SAMPLES: [&str; 3] = [UNEXPLAINED, NOT_SOLVABLE, unlike::CODE];
 
-fn is_of_samples(f: &DayFinding) -> bool {
-    OF_SAMPLES.contains(&f.code.as_str())
+fn is_of_samples(f: &Finding) -> bool {
+    OF_SAMPLES.contains(&f.code)
 }
 
 /// What recovery says of its samples as findings of the record. Notes are left out: by chance one right record in twenty has one.
-fn findings_of_one(recovery: Recovery) -> Vec<DayFinding> {
-    let mut out: Vec<DayFinding> = Vec::new();
+fn findings_of_one(recovery: Recovery) -> Vec<Finding> {
+    let mut out: Vec<Finding> = Vec::new();
     let mut subjects: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for f in recovery.findings {
         if f.severity == Severity::Info {
@@ -184,13 +183,13 @@ fn findings_of_one(recovery: Recovery) -> Vec<DayFinding> {
                 continue;
             }
         }
-        out.push(f.into());
+        out.push(f);
     }
     let enough = (UNLIKE * recovery.runs.len() as f64).max(2.0);
     let n_unlike = subjects.get(unlike::CODE).map_or(0, Vec::len);
     out.retain(|f| f.code != unlike::CODE || n_unlike as f64 >= enough);
     for f in &mut out {
-        if let Some(list) = subjects.get(f.code.as_str()) {
+        if let Some(list) = subjects.get(f.code) {
             f.subject = few(list);
         }
     }

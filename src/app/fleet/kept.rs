@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// Folder of the kept results within the output folder.
 pub const FOLDER: &str = "days";
 /// Counts up when what is kept changes its meaning.
-const FORM: u32 = 9;
+const FORM: u32 = 10;
 /// What stands before the digest of a kept result, which ends its file.
 const SEAL: &[u8] = b",\"content\":\"";
 

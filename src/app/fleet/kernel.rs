@@ -1,19 +1,21 @@
 //! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
 
-use super::day::{Day, DayFinding, GaugeDay, LoadDay};
+use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, told_dead};
 use super::exchange::exchanged;
 use super::health::Health;
 use super::judged::{Judged, findings_of};
 use super::recovering::{Part, Recovering, UnderWay, counted};
 use super::scale::{noise_of, scales};
+use crate::app::fault::{Fault, Faults};
 use crate::app::files::may_be_cut;
 use crate::app::job::StrainCorrection;
 use crate::app::job::correct::{Channel, channel_of, column_of, columns_wanted};
-use crate::app::measured::columns::strain_without_gauge;
+use crate::app::measured::columns::{gauge_without_column, strain_without_gauge, unknown_columns};
+use crate::app::measured::faults::record_fault;
 use crate::app::measured::gauge_columns::find_gauge_columns;
-use crate::app::recover::Listed;
-use crate::finding::Severity;
+use crate::app::recover::{Listed, silent_throughout};
+use crate::finding::{Finding, Severity, few};
 use crate::linalg::Matrix;
 use crate::recovery::ErrorModel;
 use crate::recovery::clock;
@@ -78,14 +80,14 @@ impl Kernel {
     ///
     /// # Errors
     /// Why loads can't be had of it.
-    pub fn day(&self, record: &Record) -> Result<Day, String> {
+    pub fn day(&self, record: &Record) -> Result<Day, Faults> {
         let mut findings = Vec::new();
         let irregular = clock::irregular("time", &record.clock);
-        findings.extend(irregular.into_iter().map(DayFinding::from));
+        findings.extend(irregular);
         let cut = record
             .left_out()
             .map(|_| may_be_cut("last line", Severity::Warning));
-        findings.extend(cut.map(DayFinding::from));
+        findings.extend(cut);
         let mut r = self.prepared(record, &mut findings)?;
         let mut pass = self.pass(record, &r)?;
         let dead = dead_parts(record, &r, &pass.judged, self.errors, self.noise_factor)?;
@@ -95,7 +97,7 @@ impl Kernel {
             pass = self.pass(record, &r)?;
         }
         let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
-        findings.extend(gaps.into_iter().map(DayFinding::from));
+        findings.extend(gaps);
         let judged = std::mem::take(&mut pass.judged);
         let widened = self.judge(&r, judged, |i| record.clock.time_s(i), &mut findings);
         let filter = widened.as_ref().unwrap_or(&r.filter);
@@ -117,7 +119,7 @@ impl Kernel {
         let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
         let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
         let hours = |samples: f64| samples / record.clock.rate_hz / 3600.0;
-        findings.extend(told_dead(&dead, &mut gauges, hours));
+        findings.extend(told_dead(&dead, &mut gauges, &record.clock));
         gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
         let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
         gauges.sort_by_key(place);
@@ -132,7 +134,7 @@ impl Kernel {
     }
 
     /// The record, recovered and counted.
-    fn pass(&self, record: &Record, r: &Recovering) -> Result<Pass, String> {
+    fn pass(&self, record: &Record, r: &Recovering) -> Result<Pass, Fault> {
         let k = self.listed.names.len();
         let noise = noise_of(r);
         let counter = |l: usize| {
@@ -159,7 +161,7 @@ impl Kernel {
                 || decode().collect::<Result<_, _>>(),
                 || counted(&mut pass.counters, &parts),
             );
-            parts = next.map_err(|e: SeriesError| e.to_string())?;
+            parts = next.map_err(|e: SeriesError| record_fault("record", &e))?;
             for part in &mut parts {
                 pass.health.merge(&part.health);
                 pass.missing.merge(&part.missing);
@@ -180,18 +182,18 @@ impl Kernel {
         r: &Recovering,
         judged: Judged,
         time_s: impl Fn(usize) -> f64,
-        findings: &mut Vec<DayFinding>,
+        findings: &mut Vec<Finding>,
     ) -> Option<Filter> {
         let samples = judged.spread();
         let judgements = judged.recovered(&r.sensitivity, self.errors, self.noise_factor, time_s);
         let widening = judgements.first()?.widening.clone();
         let found = findings_of(judgements);
         let explained = found.iter().all(|f| f.code != UNEXPLAINED);
-        let named = |f: &DayFinding| f.code == "inputs-exchanged";
+        let named = |f: &Finding| f.code == "inputs-exchanged";
         if !explained && !found.iter().any(named) {
             let rows = samples.iter().map(Vec::as_slice);
             let pair = exchanged(&r.sensitivity, rows, self.errors.noise);
-            findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges).into()));
+            findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges)));
         }
         findings.extend(found);
         if !explained || widening == Widening::none() {
@@ -216,18 +218,9 @@ impl Kernel {
     }
 
     /// The gauges that read, and the filter from them.
-    fn prepared(
-        &self,
-        record: &Record,
-        findings: &mut Vec<DayFinding>,
-    ) -> Result<Recovering, String> {
+    fn prepared(&self, record: &Record, findings: &mut Vec<Finding>) -> Result<Recovering, Faults> {
         let all = &self.sensitivity;
-        let columns =
-            find_gauge_columns("record", record.columns(), &self.wanted()).map_err(|e| {
-                let list = e.into_list();
-                let each = list.iter().map(|f| format!("`{}`: {}", f.field, f.wrong));
-                each.collect::<Vec<_>>().join("; ")
-            })?;
+        let columns = find_gauge_columns("record", record.columns(), &self.wanted())?;
         let names: Vec<String> = columns
             .iter()
             .map(|c| column_of(&self.corrections, &c.name).to_owned())
@@ -235,7 +228,8 @@ impl Kernel {
         let others = names.iter().filter(|n| !self.reserved.contains(n));
         let others: Vec<String> = others.cloned().collect();
         let unknown = strain_without_gauge("", &others, &all.gauges);
-        findings.extend(unknown.map(DayFinding::from));
+        findings.extend(unknown);
+        let unknown = unknown_columns(&others, &all.gauges);
         let named = columns.iter().enumerate();
         let places: HashMap<&str, (usize, f64)> = named
             .filter_map(|(i, c)| Some((c.name.as_str(), (i, c.microstrain?))))
@@ -248,19 +242,14 @@ impl Kernel {
             }
             match places.get(column_of(&self.corrections, name)) {
                 Some(&(c, micro)) => found.push((g, c, line_of(micro, channel))),
-                None => findings.push(said(
-                    Severity::Warning,
-                    "gauge-missing",
-                    name,
-                    "the record has no such column".into(),
-                )),
+                None => findings.push(gauge_without_column("", &[name], &unknown)),
             }
         }
         let sampled = sampled(record, &found)?;
         if !record.is_time_unit_stated() {
             let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
             if let Some(f) = wrong {
-                return Err(format!("{}: {}", f.message, f.remedy));
+                return Err(Fault::of("record", "time", f.message, f.remedy).into());
             }
         }
         let n = found.len();
@@ -270,24 +259,15 @@ impl Kernel {
         // What one gives in a part alone is told by those who read there.
         let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
         let given = looked.throughout(record, &columns);
-        let mut given = given.map_err(|e| e.to_string())?;
+        let mut given = given.map_err(|e| record_fault("record", &e))?;
         self.wake(&found, &sampled, &mut given);
         for (&(g, c, scale), gives) in found.iter().zip(given) {
             let name = all.gauges.get(g).map_or("", String::as_str);
             match gives {
                 Gives::Signal => alive.push((g, c, scale)),
-                Gives::OneValue => findings.push(said(
-                    Severity::Warning,
-                    "dead_channel",
-                    name,
-                    "it reads one and the same value".into(),
-                )),
-                Gives::Nothing => findings.push(said(
-                    Severity::Warning,
-                    "dead_channel",
-                    name,
-                    "it gives nothing".into(),
-                )),
+                Gives::OneValue | Gives::Nothing => {
+                    findings.extend(silent_throughout(&[name], gives));
+                }
             }
         }
         let alive_values = kept_columns(&sampled, &found, &alive);
@@ -340,14 +320,17 @@ impl Kernel {
         &self,
         alive: &[(usize, usize, [f64; 2])],
         sampled: &[f64],
-    ) -> Result<Recovering, String> {
+    ) -> Result<Recovering, Fault> {
         let all = &self.sensitivity;
         let k = all.loads.len();
         let used: Vec<usize> = alive.iter().map(|a| a.0).collect();
         if used.is_empty() {
-            return Err(
-                "no column is named after a gauge of the job, or none of them reads".to_owned(),
-            );
+            return Err(Fault::of(
+                "record",
+                "gauge",
+                "no column is named after a gauge of the job, or none of them reads",
+                "name the columns after the gauges, and check the export of the record",
+            ));
         }
         let s = Sensitivity {
             gauges: used
@@ -363,7 +346,10 @@ impl Kernel {
             .iter()
             .map(|g| self.zero.get(*g).copied().unwrap_or(0.0))
             .collect();
-        let singular = || "S holds numbers that are not finite".to_owned();
+        let singular = || {
+            let wrong = "S holds numbers that are not finite";
+            Fault::of("record", "sensitivity", wrong, "check the table of S")
+        };
         let plain = Filter::new(
             &s,
             zero.clone(),
@@ -375,19 +361,27 @@ impl Kernel {
         .ok_or_else(singular)?;
         if plain.whole().rank < k {
             let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
-            return Err(format!(
+            let wrong = format!(
                 "its gauges don't separate the loads: only {} read",
-                names.join(", ")
+                few(&names)
+            );
+            return Err(Fault::of(
+                "record",
+                "gauge",
+                wrong,
+                "repair the other gauges",
             ));
         }
-        // Typical loads weigh the model's error.
+        // Typical loads weigh the model's error: those of the job, so that the loads of a sample do not depend on where its record is cut.
         let scaled: Vec<f64> = sampled.to_vec();
         let (mut loads, mut sums) = (SampleLoads::default(), Sums::new(used.len(), k));
         plain.apply(&scaled, 1.0, &mut loads, &mut sums);
         let mean = |sum: f64, count: u64| (sum / count.max(1) as f64).sqrt();
-        let typical: Vec<f64> = (0..k)
-            .map(|l| mean(sums.sum_of_squares[l], sums.known(l)))
-            .collect();
+        let expected = s.loads.iter().map(|l| l.expected.filter(|e| *e > 0.0));
+        let typical = expected.collect::<Option<Vec<f64>>>().unwrap_or_else(|| {
+            let of_record = |l| mean(sums.sum_of_squares[l], sums.known(l));
+            (0..k).map(of_record).collect()
+        });
         let noise = self.errors.noise;
         if noise > 0.0
             && sums.missing.whole > 0
@@ -397,7 +391,12 @@ impl Kernel {
                 .enumerate()
                 .all(|(g, q)| mean(*q, sums.read(g)) < 1e-3 * noise)
         {
-            return Err("every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?".to_owned());
+            return Err(Fault::of(
+                "record",
+                "readings-below-noise",
+                "every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?",
+                "state readings in microstrain (strain times 1e6)",
+            ));
         }
         let mut filter = Filter::new(
             &s,
@@ -438,7 +437,7 @@ fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
 }
 
 /// Readings of the first block of some pieces spread over the record, strain.
-fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, String> {
+fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, Fault> {
     let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
     let n = record.n_pieces();
     let taken = n.min(LOOKED_AT);
@@ -455,7 +454,7 @@ fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f6
             Ok(out)
         })
         .collect::<Result<_, SeriesError>>()
-        .map_err(|e| e.to_string())?;
+        .map_err(|e| record_fault("record", &e))?;
     Ok(looked_at.concat())
 }
 
@@ -472,17 +471,4 @@ fn kept_columns(
     let rows = values.chunks_exact(found.len().max(1));
     rows.flat_map(|row| row.iter().zip(&keep).filter(|k| *k.1).map(|k| *k.0))
         .collect()
-}
-
-fn said(severity: Severity, code: &str, subject: &str, message: String) -> DayFinding {
-    DayFinding {
-        severity: severity.name().to_owned(),
-        code: code.to_owned(),
-        subject: subject.to_owned(),
-        message,
-        measured: None,
-        limit: None,
-        chance: None,
-        remedy: "look at the logger".to_owned(),
-    }
 }

@@ -39,6 +39,7 @@ use super::context::{Context, Files};
 use super::fault::{Fault, Faults};
 use super::files::Opened;
 use super::job::{Fleet as FleetKeys, Job};
+use super::measured::faults::record_fault;
 use super::outcome::{Outcome, StatedUnits};
 use super::work::{Work, stopped};
 use crate::finding::{Finding, Severity, few};
@@ -383,7 +384,10 @@ fn one(
         (Some(_), Some(_)) => (opened.sha256(), None),
         // Nothing is kept of it, so that it is done whatever its digest is: while that is formed.
         (Some(_), None) => {
-            let (hash, day) = rayon::join(|| opened.sha256(), || day_of(kernel, &opened));
+            let (hash, day) = rayon::join(
+                || opened.sha256(),
+                || day_of(kernel, &opened).map_err(reason),
+            );
             (hash, Some(day))
         }
     };
@@ -397,7 +401,7 @@ fn one(
         Some(before) if before.result.is_ok() => return Ok((before, Came::Kept)),
         _ => Came::New,
     };
-    file.result = result.unwrap_or_else(|| day_of(kernel, &opened));
+    file.result = result.unwrap_or_else(|| day_of(kernel, &opened).map_err(reason));
     if named.is_none() {
         return Ok((file.into(), Came::New));
     }
@@ -418,17 +422,27 @@ fn not_kept(path: &str, e: &std::io::Error) -> Fault {
     Fault::of(path, "output", wrong, "choose another folder with --out")
 }
 
+/// Returns why a record comes to nothing in words: every fault with its line, its field and its remedy.
+fn reason(faults: Faults) -> String {
+    let words = |f: Fault| {
+        let line = f.line.map_or(String::new(), |l| format!("line {l}: "));
+        format!("{line}{}: {}: {}", f.field, f.wrong, f.remedy)
+    };
+    let each: Vec<String> = faults.into_iter().map(words).collect();
+    each.join("; ")
+}
+
 /// What a record comes to.
 ///
 /// # Errors
 /// Why they come to nothing.
-pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, String> {
+pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
     let options = Options {
         declared_hz: None,
         time_unit_s: kernel.time_unit_s,
         wanted: kernel.wanted(),
     };
-    let record = open_source(opened.source(), &options).map_err(|e| e.to_string())?;
+    let record = open_source(opened.source(), &options).map_err(|e| record_fault("record", &e))?;
     let day = kernel.day(&record)?;
     let is_number = |l: &&day::LoadDay| {
         let sums = &l.tally.sums;
@@ -437,9 +451,10 @@ pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, String> {
     };
     match day.loads.iter().find(|l| !is_number(l)) {
         None => Ok(day),
-        Some(l) => Err(format!(
-            "the damage of load {} is larger than numbers can be: report it in a larger unit, or state a lower slope",
-            l.name
-        )),
+        Some(l) => {
+            let wrong = "its damage is larger than numbers can be";
+            let remedy = "report it in a larger unit, or state a lower slope";
+            Err(Fault::of("record", &*l.name, wrong, remedy).into())
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The answer of `fleet`.
 
 use super::compared::{Compared, ReferenceAnswer};
-use super::day::{DayFinding, FileHead};
+use super::day::FileHead;
 use super::days::DayOrder;
 use super::found::of_records;
 use super::gauge_history::{GainChange, GaugeHistory, moving_days};
@@ -124,19 +124,19 @@ pub struct FileAnswer {
     /// Samples missing in gaps.
     pub missing: Option<usize>,
     /// What was found in the record.
-    pub findings: Vec<DayFinding>,
+    pub findings: Vec<Finding>,
 }
 
 impl FileAnswer {
     /// Whether it counts though its loads can't be relied on.
     pub fn is_doubtful(&self) -> bool {
-        let error = Severity::Error.name();
-        self.status == Status::Done.word() && self.findings.iter().any(|f| f.severity == error)
+        let is_error = |f: &Finding| f.severity == Severity::Error;
+        self.status == Status::Done.word() && self.findings.iter().any(is_error)
     }
 
     /// Why it does not count, or else the codes of what was found in it.
     pub fn words(&self) -> String {
-        let codes: BTreeSet<&str> = self.findings.iter().map(|f| f.code.as_str()).collect();
+        let codes: BTreeSet<&str> = self.findings.iter().map(|f| f.code).collect();
         match self.message.is_empty() {
             true => codes.into_iter().collect::<Vec<_>>().join(", "),
             false => self.message.clone(),

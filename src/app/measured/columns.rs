@@ -40,18 +40,27 @@ pub(in crate::app) fn gauges_without_strain(
     silent: &[&str],
     unknown: &[&str],
 ) -> Option<Finding> {
-    (!silent.is_empty()).then(|| {
-        Finding::new(
-            Severity::Warning,
-            "gauge-without-strain",
-            few(silent),
-            format!("`{}`: gauges without a column are left out", named.given),
-            suggest::column_remedy(silent, unknown),
-        )
-    })
+    let of_file = format!("`{}`: ", named.given);
+    (!silent.is_empty()).then(|| gauge_without_column(&of_file, silent, unknown))
 }
 
-fn unknown_columns<'a>(header: &'a [String], gauges: &[String]) -> Vec<&'a str> {
+/// Returns the warning of gauges without a column; `of_file` goes before its message.
+pub(in crate::app) fn gauge_without_column(
+    of_file: &str,
+    silent: &[&str],
+    unknown: &[&str],
+) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "gauge-without-strain",
+        few(silent),
+        format!("{of_file}gauges without a column are left out"),
+        suggest::column_remedy(silent, unknown),
+    )
+}
+
+/// Returns the columns that belong to no gauge.
+pub(in crate::app) fn unknown_columns<'a>(header: &'a [String], gauges: &[String]) -> Vec<&'a str> {
     let known: HashSet<&String> = gauges.iter().collect();
     let unknown = header.iter().filter(|h| !known.contains(h));
     unknown.map(String::as_str).collect()

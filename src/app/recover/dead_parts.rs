@@ -44,26 +44,9 @@ pub(super) fn without_dead_parts(
     let (mut parts, mut blanked) = (Vec::new(), Vec::new());
     for dead in &stuck {
         let span = record.extent(dead)?;
-        let [what, why] = match dead.gives {
-            Gives::Nothing => ["nothing", "read"],
-            Gives::OneValue | Gives::Signal => {
-                ["one and the same value", "say that its strain changes"]
-            }
-        };
-        let [from, to] = [span.start, span.end - 1].map(|i| record.time_s(i));
-        work.findings.push(
-            Finding::new(
-                Severity::Warning,
-                "gauge-silent",
-                &s.gauges[dead.gauge],
-                format!(
-                    "it gives {what} from t = {from:.6} s to t = {to:.6} s, while the others {why}: there the loads are those of the others, with wider \
-                     intervals"
-                ),
-                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
-            )
-            .with_numbers(to - from, 0.0),
-        );
+        let times = [span.start, span.end - 1].map(|i| record.time_s(i));
+        let gauge = &s.gauges[dead.gauge];
+        work.findings.push(silent_in_part(gauge, dead.gives, times));
         if dead.gives == Gives::OneValue {
             blanked.push((dead.gauge, span.clone()));
         }
@@ -79,6 +62,27 @@ pub(super) fn without_dead_parts(
         readings,
         dead: parts,
     })
+}
+
+/// Returns the warning of a gauge that is dead from one time to another, s.
+pub(in crate::app) fn silent_in_part(gauge: &str, gives: Gives, [from, to]: [f64; 2]) -> Finding {
+    let [what, why] = match gives {
+        Gives::Nothing => ["nothing", "read"],
+        Gives::OneValue | Gives::Signal => {
+            ["one and the same value", "say that its strain changes"]
+        }
+    };
+    Finding::new(
+        Severity::Warning,
+        "gauge-silent",
+        gauge,
+        format!(
+            "it gives {what} from t = {from:.6} s to t = {to:.6} s, while the others {why}: there the loads are those of the others, with wider \
+             intervals"
+        ),
+        "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+    )
+    .with_numbers(to - from, 0.0)
 }
 
 /// The warning of parts in which no gauge changes: whether it stands still there, or its logger gave nothing, the record does not say.

@@ -30,12 +30,14 @@ pub use answer::{
 };
 pub(super) use combined::{Listed, listed};
 pub use damage::LoadDamage;
+pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
+pub(super) use speaking::silent_throughout;
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
 

@@ -46,22 +46,10 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
         .with_columns(used.iter().map(|&g| channel(g)).collect());
     let given = columns_of_record(&record)?;
     if given.iter().any(|g| *g != Gives::Signal) {
-        for (gives, what) in [
-            (Gives::Nothing, "nothing"),
-            (Gives::OneValue, "one and the same value"),
-        ] {
+        for gives in [Gives::Nothing, Gives::OneValue] {
             let those = used.iter().zip(&given).filter(|(_, g)| **g == gives);
             let names: Vec<&str> = those.map(|(g, _)| all.gauges[*g].as_str()).collect();
-            if names.is_empty() {
-                continue;
-            }
-            work.findings.push(Finding::new(
-                Severity::Warning,
-                "gauge-silent",
-                few(&names),
-                format!("these gauges give {what}: the loads are those of the others, with wider intervals"),
-                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
-            ));
+            work.findings.extend(silent_throughout(&names, gives));
         }
         let mut speaks = given.iter().map(|g| *g == Gives::Signal);
         used.retain(|_| speaks.next().unwrap_or(true));
@@ -79,6 +67,26 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
         sensitivity: all.of_gauges(&used),
         zero: used.iter().map(|&g| task.zero[g]).collect(),
         record,
+    })
+}
+
+/// Returns the warning of gauges that give nothing, or one and the same value, in the whole record.
+pub(in crate::app) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding> {
+    let what = match gives {
+        Gives::Signal => return None,
+        Gives::Nothing => "nothing",
+        Gives::OneValue => "one and the same value",
+    };
+    (!names.is_empty()).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "gauge-silent",
+            few(names),
+            format!(
+                "these gauges give {what}: the loads are those of the others, with wider intervals"
+            ),
+            "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+        )
     })
 }
 
