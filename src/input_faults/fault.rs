@@ -1,6 +1,5 @@
 //! Faults of measured channels: what each one changes, and the finding that reports it.
 
-use super::search::Found;
 use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::units::{MICROSTRAIN, number};
@@ -239,6 +238,27 @@ impl InputFault {
             ),
         }
     }
+}
+
+/// A fault that was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The fault.
+    pub fault: InputFault,
+    /// Share of the reduced sum of squares that is left, once it is undone.
+    pub share: f64,
+    /// Limit of `share`, or of `sigmas`.
+    pub limit: f64,
+    /// Sigmas by which the gauge contradicts the others, root mean square over the runs, where errors come from scatter.
+    pub sigmas: Option<f64>,
+    /// Size of its readings and of those that the others predict, strain.
+    pub sizes: [f64; 2],
+    /// Largest shift of a load over the half width of its interval; `None` where loads are known.
+    pub moves: Option<f64>,
+    /// Whether it shows only with the other faults undone as well.
+    pub together: bool,
+    /// Faults that explain the readings as well.
+    pub alternatives: Vec<InputFault>,
 }
 
 /// What the command does with the gauges of a fault.

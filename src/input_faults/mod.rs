@@ -13,7 +13,7 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub use fault::{AlternativeRows, Channels, Handling, InputFault, Inputs, not_explained_by};
+pub use fault::{AlternativeRows, Channels, Found, Handling, InputFault, Inputs, not_explained_by};
 pub use known_loads::KnownLoads;
 pub use motion::{
     ChannelKind, ChannelSource, ExplainedFault, MotionChannel, MotionFault, MotionRecord,
@@ -24,4 +24,4 @@ pub use recorded_loads::{
     RecordFault, RecordedRuns, faults_of_recorded_loads, findings_of_recorded_loads,
     recorded_mass_contradicted,
 };
-pub use search::{Fitted, Found, Misfit, Rules, search_faults};
+pub use search::{Fitted, Misfit, Rules, search_faults};

@@ -1,6 +1,6 @@
 //! The search for faults of measured channels: each is undone in turn, and the one named that makes the rest agree.
 
-use super::fault::{AlternativeRows, Channels, InputFault, Inputs};
+use super::fault::{AlternativeRows, Channels, Found, InputFault, Inputs};
 use crate::estimate::{chi_square_tail, median};
 use rayon::prelude::*;
 
@@ -125,27 +125,6 @@ impl Rules {
             None => step.after.reduced() < self.remains * base.reduced(),
         }
     }
-}
-
-/// A fault that was found.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Found {
-    /// The fault.
-    pub fault: InputFault,
-    /// Share of the reduced sum of squares that is left, once it is undone.
-    pub share: f64,
-    /// Limit of `share`, or of `sigmas`.
-    pub limit: f64,
-    /// Sigmas by which the gauge contradicts the others, root mean square over the runs, where errors come from scatter.
-    pub sigmas: Option<f64>,
-    /// Size of its readings and of those that the others predict, strain.
-    pub sizes: [f64; 2],
-    /// Largest shift of a load over the half width of its interval; `None` where loads are known.
-    pub moves: Option<f64>,
-    /// Whether it shows only with the other faults undone as well.
-    pub together: bool,
-    /// Faults that explain the readings as well.
-    pub alternatives: Vec<InputFault>,
 }
 
 /// Returns the faults of the channels, the first that explains most; none where errors explain the readings, or nothing else does.

@@ -3,7 +3,7 @@
 
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
-use super::runs::Alternatives;
+use super::misfit::Alternatives;
 use super::types::{Readings, RunEstimate};
 use super::verdict::NOT_SOLVABLE;
 use super::{misfit, taught, unlike};

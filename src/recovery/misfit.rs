@@ -13,6 +13,9 @@ use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
+/// Asked for the rows of S that gauges would have if they were installed otherwise, where the readings are not explained.
+pub type Alternatives<'a> = dyn FnMut() -> Vec<AlternativeRows> + 'a;
+
 /// Runs that are tried at most, spread over all: more say no more of a gauge.
 const TRIED: usize = 200;
 /// The same with a calibrated S, whose covariance is solved run by run.

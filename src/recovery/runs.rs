@@ -2,12 +2,13 @@
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
+use super::misfit::Alternatives;
 use super::solved::{Solved, root_mean_squares, solve_beyond};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
 use super::{by_calibration, determined, misfit, plausible, verdict};
 use crate::estimate::student_95;
 use crate::finding::Finding;
-use crate::input_faults::{AlternativeRows, Handling};
+use crate::input_faults::Handling;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
 /// Loads of every run with intervals, and findings on what the residuals say.
@@ -20,9 +21,6 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
     recover_beside(s, readings, errors, &mut Vec::new)
 }
-
-/// Asked for the rows of S that gauges would have if they were installed otherwise, where the readings are not explained.
-pub type Alternatives<'a> = dyn FnMut() -> Vec<AlternativeRows> + 'a;
 
 /// Loads of every run as [`recover`] has them; faults of the installation are searched for as well.
 pub fn recover_beside(

@@ -3,9 +3,10 @@
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::gain::Gain;
+use super::misfit::Alternatives;
 use super::missing::Missing;
 use super::plausible;
-use super::runs::{Alternatives, recover_beyond};
+use super::runs::recover_beyond;
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
 use crate::finding::{Finding, Severity, few};
