@@ -4,6 +4,7 @@
 //! [`trial`]: `place` on it. The first proposal that `place` answers is written.
 
 mod mesh;
+mod plain_name;
 mod points;
 mod propose;
 mod purpose;

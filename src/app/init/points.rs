@@ -1,6 +1,6 @@
 //! Grids where loads are likely to enter a structure of which nothing else is known.
 
-use super::propose::clean;
+use super::plain_name::plain_name;
 use crate::app::deck::DeckModel;
 use crate::model::{GridIx, Model, RigidKind, Vec3};
 use nastran::bdf::Named;
@@ -99,8 +99,8 @@ fn wheel_name(name: &str) -> (String, bool) {
     let words: Vec<&str> = name.split([' ', '_', '-', '.']).collect();
     let others: Vec<&str> = words.iter().filter(|w| !is_wheel(w)).copied().collect();
     match others.len() {
-        0 => (clean(name), true),
-        n => (clean(&others.join("_")), n < words.len()),
+        0 => (plain_name(name), true),
+        n => (plain_name(&others.join("_")), n < words.len()),
     }
 }
 

@@ -1,5 +1,6 @@
 //! Loads for a job: of the results' subcases, else of the deck's, else at points where loads are likely to enter.
 
+use super::plain_name::plain_name;
 use super::points::{LoadPoint, Rank, load_points};
 use super::round::round;
 use crate::app::deck::DeckModel;
@@ -132,7 +133,7 @@ fn by_number(
             let label = label.and_then(|s| s.label.as_deref()).unwrap_or(title);
             let name = match label.trim() {
                 "" => format!("subcase{id}"),
-                label => clean(label),
+                label => plain_name(label),
             };
             let (point, component) = name.rsplit_once('.').unwrap_or((&name, ""));
             let quantity = quantity_of(component);
@@ -176,7 +177,7 @@ fn of_subcases(
             .into_iter()
             .flatten()
             .find(|l| !l.trim().is_empty())
-            .map(|l| clean(l));
+            .map(|l| plain_name(l));
         let mut leave = |why: String| {
             let name = label.clone().unwrap_or_else(|| format!("subcase{}", sc.id));
             left_out.push(LeftOutLoad {
@@ -365,18 +366,6 @@ fn single(model: &Model, sid: u32) -> Option<(String, String, f64)> {
         format!("{id}.{component}"),
         size,
     ))
-}
-
-/// A name that needs no care in a job or a table.
-pub(super) fn clean(name: &str) -> String {
-    name.trim()
-        .chars()
-        .map(|c| match c {
-            '"' | '\\' | ',' => '_',
-            c if c.is_control() => '_',
-            c => c,
-        })
-        .collect()
 }
 
 fn unique(used: &mut BTreeMap<String, usize>, name: String) -> String {

@@ -1,7 +1,8 @@
 //! The text of a job, commented for whoever corrects it.
 
 use super::mesh::{extent, shell_side};
-use super::propose::{LeftOutLoad, ProposedLoad, StrainFrom, clean};
+use super::plain_name::plain_name;
+use super::propose::{LeftOutLoad, ProposedLoad, StrainFrom};
 use super::round::round;
 use crate::app::cases::from_folder;
 use crate::app::deck::DeckModel;
@@ -99,7 +100,7 @@ impl JobPlan<'_> {
              {units}\n\
              report_units = {{ force = \"{force}\", moment = \"{moment}\" }}\n\n\
              [model]\ndeck = \"{}\"\n{results}\n{}\n",
-            clean(&title.to_string_lossy()),
+            plain_name(&title.to_string_lossy()),
             path(self.deck_path),
             self.support()
         )

@@ -40,6 +40,7 @@ mod strain_findings;
 mod strain_job;
 mod strain_path;
 mod words;
+mod zones;
 
 pub use added::Added;
 pub use answer::*;
