@@ -104,7 +104,9 @@ fn what_a_command_wrote_it_may_write_again_and_what_others_wrote_stays_and_is_sa
     let (code, said) = call(&dir, &["recover", "recover.toml"]);
     assert_eq!(code, 0, "{said}");
     assert!(
-        said.contains("also holds files of `sensitivity` (sensitivity.csv)"),
+        said.contains(
+            "also holds files of `sensitivity` (sensitivity.csv, sensitivity.report.html, sensitivity.result.json)"
+        ),
         "{said}"
     );
     let after = std::fs::read(dir.join("recover.out/sensitivity.csv")).unwrap();

@@ -142,7 +142,10 @@ fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
         store: cx.store.clone(),
         progress: cx.progress,
     };
-    let placed = Job::read(&path, &files).and_then(|job| place(&job, &cx));
+    let placed = Job::read(&path, &files).and_then(|mut job| {
+        job.placement.proof = false;
+        place(&job, &cx)
+    });
     let said = |wrong: &str, remedy: &str| format!("{wrong}: {remedy}");
     match placed {
         Err(faults) => Err(faults

@@ -127,7 +127,7 @@ impl<'a> Task<'a> {
         spec.effort.seed = job.placement.seed;
         spec.loss = job.placement.loss;
         spec.stop = work.cx.progress.stop();
-        spec.proof = PROOF;
+        spec.proof = if job.placement.proof { PROOF } else { 0.0 };
         spec.criterion = self.criterion();
         for (l, &from) in self.order.iter().enumerate() {
             // What is known of a load: its expected size, 1 in these columns.

@@ -161,6 +161,7 @@ pub(super) fn placement(
     let noise = measured.map_or(DEFAULT_NOISE_MICROSTRAIN, |m| m.noise_microstrain);
     let model = measured.map_or(0.0, |m| m.model_uncertainty_rel);
     let mut out = Placement {
+        proof: true,
         gauges: None,
         criterion,
         spacing: 0.0,

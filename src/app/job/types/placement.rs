@@ -53,6 +53,8 @@ pub struct Placement {
     pub gauges: Option<usize>,
     /// Criterion; default `Ds` with nuisance loads, else `D`.
     pub criterion: Optimality,
+    /// Whether to try a proof that no layout is better. No key of a job: `init` tries its proposals without.
+    pub proof: bool,
     /// Smallest distance between gauges; default 0.
     pub spacing: f64,
     /// Noise, microstrain; default: that of `[measured]`, else 1.
