@@ -153,7 +153,7 @@ def check(*files: Path, threads: int | None = None, progress: Progress = None) -
 def init(deck: Path, *results: Path, folder: Path = ".", threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """A job proposed from a deck and its results, to stand in `folder`, where :meth:`Outcome.save` writes it as ``job.toml``.
 
-    The outcome holds ``job``, ``loads``, ``placeable``.
+    The outcome holds ``job``, ``loads``, ``left_out``, ``placeable``.
 
     Raises:
         Faults: files that can't be read; a job that stands in the folder already.
