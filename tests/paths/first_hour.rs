@@ -247,16 +247,6 @@ fn boom() -> String {
 }
 
 #[test]
-fn a_crane_boom_held_at_its_root_gives_its_loads_within_their_intervals() {
-    walk(
-        "first_hour_boom",
-        &boom(),
-        &boom_units(),
-        &["expected = 10000.0", "expected = 2000000.0"],
-    );
-}
-
-#[test]
 fn fewer_gauges_than_loads_are_a_layout_where_the_other_loads_are_nuisance_of_known_size() {
     let folder = scratch("first_hour_nuisance");
     std::fs::write(folder.join("boom.bdf"), boom()).unwrap();
@@ -282,29 +272,6 @@ fn fewer_gauges_than_loads_are_a_layout_where_the_other_loads_are_nuisance_of_kn
         placed.stderr
     );
     assert_eq!(placed.code, 0);
-}
-
-#[test]
-fn a_rule_that_excludes_most_places_is_named_and_not_the_spacing() {
-    let folder = scratch("first_hour_clear");
-    std::fs::write(folder.join("boom.bdf"), boom()).unwrap();
-    let deck = folder.join("boom.bdf").display().to_string();
-    assert_eq!(run(&["init", &deck], &folder).code, 0);
-    let path = folder.join("job.toml");
-    let job = std::fs::read_to_string(&path).unwrap();
-    // Of twenty stations of 250 along the boom, those within 2,300 of a load are lost: all but the first few.
-    let close = job.replace(
-        "[placement]",
-        "clear_of = { loads = 2300.0 }\n\n[placement]",
-    );
-    std::fs::write(&path, close).unwrap();
-    let refused = run(&["place", path.to_str().unwrap()], &folder.join("out"));
-    assert_eq!(refused.code, 2, "{}", refused.stderr);
-    assert!(
-        refused.stderr.contains("`clear_of` loads = 2300 leaves"),
-        "{}",
-        refused.stderr
-    );
 }
 
 #[test]
