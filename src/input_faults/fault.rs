@@ -18,8 +18,8 @@ pub enum Channels {
 pub enum InputFault {
     /// Readings have the opposite sign.
     Sign(Channels),
-    /// Readings are this multiple of the strain: their unit is another.
-    Unit(Channels, f64),
+    /// A gauge reads this multiple of the strain: its unit is another.
+    Unit(usize, f64),
     /// A gauge reads this share of the strain.
     Gain(usize, f64),
     /// A gauge reads so much more than the strain in all runs.
@@ -58,15 +58,19 @@ pub struct AlternativeRows {
     pub applies: Vec<bool>,
 }
 
+/// Remedy where all readings have the opposite sign.
+pub const SIGN_OF_ALL: &str =
+    "check the sign of the channels; if so, write a [[correction]] with sign = -1 for each gauge";
+
 impl InputFault {
     /// Returns the gauges that it is of; none where it is of all.
     pub fn gauges(&self) -> Vec<usize> {
         match *self {
-            Self::Sign(c) | Self::Unit(c, _) | Self::OtherSide(c) | Self::Radians(c) => match c {
+            Self::Sign(c) | Self::OtherSide(c) | Self::Radians(c) => match c {
                 Channels::One(g) => vec![g],
                 Channels::All => Vec::new(),
             },
-            Self::Gain(g, _) | Self::Offset(g, _) => vec![g],
+            Self::Unit(g, _) | Self::Gain(g, _) | Self::Offset(g, _) => vec![g],
             Self::Dead(g) | Self::Stuck(g) | Self::Unlike(g) => vec![g],
             Self::Exchanged(a, b) => vec![a, b],
         }
@@ -143,16 +147,11 @@ impl InputFault {
         match *self {
             Self::Sign(Channels::One(g)) => format!("gauge `{}` has the opposite sign", name(g)),
             Self::Sign(Channels::All) => "all readings have the opposite sign".to_owned(),
-            Self::Unit(c, factor) => {
-                let of = match c {
-                    Channels::One(g) => format!("gauge `{}` reads", name(g)),
-                    Channels::All => "all gauges read".to_owned(),
-                };
-                format!(
-                    "{of} {} times the strain, as in another unit",
-                    number(factor)
-                )
-            }
+            Self::Unit(g, factor) => format!(
+                "gauge `{}` reads {} times the strain, as in another unit",
+                name(g),
+                number(factor)
+            ),
             Self::Gain(g, gain) => format!(
                 "gauge `{}` reads {} of the strain that the others predict",
                 name(g),
@@ -191,40 +190,38 @@ impl InputFault {
 
     /// Returns what corrects it: the line of the job where there is one.
     fn remedy(&self, names: &[String]) -> String {
-        let key = |c: Channels| match c {
-            Channels::One(g) => {
-                format!("gauge = \"{}\", ", names.get(g).map_or("", String::as_str))
-            }
-            Channels::All => String::new(),
+        let line = |g: usize, value: String| {
+            let name = names.get(g).map_or("", String::as_str);
+            format!("[[correction]] gauge = \"{name}\", {value}")
         };
-        let line = |c: Channels, value: String| format!("[[correction]] {}{value}", key(c));
         match *self {
-            Self::Sign(c) => format!(
+            Self::Sign(Channels::One(g)) => format!(
                 "check the wiring; if so, state it: {}",
-                line(c, "sign = -1".to_owned())
+                line(g, "sign = -1".to_owned())
             ),
-            Self::Unit(c, factor) => format!(
+            Self::Sign(Channels::All) => SIGN_OF_ALL.to_owned(),
+            Self::Unit(g, factor) => format!(
                 "check the unit of the channel; if so, state it: {}",
-                line(c, format!("gain = {}", number(factor)))
+                line(g, format!("gain = {}", number(factor)))
             ),
             Self::Gain(g, gain) => format!(
                 "check gauge factor, bridge factor, position and direction; state a known gain: {}, or leave the gauge out: ignore = true",
-                line(Channels::One(g), format!("gain = {}", number(gain)))
+                line(g, format!("gain = {}", number(gain)))
             ),
             Self::Offset(g, offset) => format!(
                 "check the zero of the gauge; state a known offset: {}, or leave the gauge out: ignore = true",
                 line(
-                    Channels::One(g),
+                    g,
                     format!("offset_microstrain = {}", number(offset / MICROSTRAIN))
                 )
             ),
             Self::Dead(g) | Self::Stuck(g) => format!(
                 "check wiring and channel, or leave the gauge out: {}",
-                line(Channels::One(g), "ignore = true".to_owned())
+                line(g, "ignore = true".to_owned())
             ),
             Self::Exchanged(a, b) => {
                 let other = names.get(b).map_or("", String::as_str);
-                let line = line(Channels::One(a), format!("exchanged_with = \"{other}\""));
+                let line = line(a, format!("exchanged_with = \"{other}\""));
                 format!("check columns and plugs; if so, state it: {line}")
             }
             Self::OtherSide(_) => {
@@ -234,7 +231,7 @@ impl InputFault {
             Self::Radians(_) => "state `angle_deg` in degrees".to_owned(),
             Self::Unlike(g) => format!(
                 "check its position, direction, bridge factor and wiring, or leave it out: {}",
-                line(Channels::One(g), "ignore = true".to_owned())
+                line(g, "ignore = true".to_owned())
             ),
         }
     }

@@ -13,7 +13,9 @@ mod search;
 #[cfg(test)]
 mod tests;
 
-pub use fault::{AlternativeRows, Channels, Found, Handling, InputFault, Inputs, not_explained_by};
+pub use fault::{
+    AlternativeRows, Channels, Found, Handling, InputFault, Inputs, SIGN_OF_ALL, not_explained_by,
+};
 pub use known_loads::KnownLoads;
 pub use motion::{
     ChannelKind, ChannelSource, ExplainedFault, MotionChannel, MotionFault, MotionRecord,

@@ -343,7 +343,7 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                     "the readings are about -1 times the strain that the model predicts from {file} (factors: {}): {what}",
                     factors(list)
                 ),
-                "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or of all gauges: [[correction]] sign = -1",
+                "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or write a [[correction]] with sign = -1 for each gauge",
             )
             .with_numbers(list.first().map_or(-1.0, |l| l.1), SIGN)
         }

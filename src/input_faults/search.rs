@@ -301,7 +301,7 @@ impl Search<'_> {
         faults.extend(installed.map(|a| ((a.fault)(one), 0)));
         let power = |f: &&f64| (gain.abs() / **f - 1.0).abs() < rules.near;
         if let Some(unit) = [1e3, 1e-3, 1e6, 1e-6].iter().find(power) {
-            faults.push((InputFault::Unit(one, unit.copysign(gain)), 0));
+            faults.push((InputFault::Unit(g, unit.copysign(gain)), 0));
         } else if gain.is_finite() && gain.abs() > rules.nothing {
             faults.push((InputFault::Gain(g, gain), 1));
         }

@@ -5,7 +5,7 @@ use super::task::Task;
 use crate::app::strain::alternatives_of;
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity};
-use crate::input_faults::Handling;
+use crate::input_faults::{Handling, SIGN_OF_ALL};
 use crate::payload::{PayloadRun, Refusal, WeighSpec, Weighing, faults_of_gauges, payload_rows};
 
 /// Reports faults of gauges that the strain of all runs shows, and readings that all have the opposite sign.
@@ -60,7 +60,7 @@ fn all_reversed(weighing: &Weighing) -> Option<Finding> {
             "input-sign-reversed",
             "all",
             "the readings mean a payload below zero in every run: all readings have the opposite sign, or the zero was taken under the payload",
-            "check the sign of the channels; if so, state it: [[correction]] sign = -1. Else name the unloaded run or file as the zero",
+            format!("{SIGN_OF_ALL}. Else name the unloaded run or file as the zero"),
         )
         .with_numbers(told.len() as f64, 0.0)
     })
