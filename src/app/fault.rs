@@ -105,11 +105,15 @@ impl Faults {
     }
 }
 
-/// Returns the faults with one for all that have the file, field and remedy in common, where they are many.
+/// Returns the faults with one for all of a file and field whose sentences differ in quoted values alone, where they are many.
 fn fold_alike(list: FaultList) -> FaultList {
     /// Faults up to which each is listed.
     const FEW: usize = 3;
-    let key = |f: &Fault| (f.file.clone(), f.field.clone(), f.remedy.clone());
+    let key = |f: &Fault| {
+        let unquoted: Vec<&str> = f.wrong.split('`').step_by(2).collect();
+        let place = (f.file.clone(), f.field.clone());
+        (place, unquoted.join("``"), f.remedy.clone())
+    };
     let mut lines: HashMap<_, Vec<u32>> = HashMap::new();
     for fault in list.iter().filter(|f| f.line.is_some()) {
         lines.entry(key(fault)).or_default().extend(fault.line);
@@ -168,3 +172,36 @@ impl fmt::Display for Faults {
 }
 
 impl std::error::Error for Faults {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faults_that_differ_in_quoted_values_alone_are_one_and_others_are_kept() {
+        let cell = |line, text: &str| {
+            Fault::at(
+                "runs.csv",
+                line,
+                "G1",
+                format!("`{text}` is no number"),
+                "write a number",
+            )
+        };
+        let grid = |line| {
+            Fault::at(
+                "a.bdf",
+                line,
+                "GRID",
+                format!("grid {line} is missing"),
+                "add it",
+            )
+        };
+        let cells = (2..92).map(|line| cell(line, &line.to_string()));
+        let folded = Faults::check(cells.collect()).unwrap_err().into_list();
+        assert_eq!(folded.len(), 1);
+        assert!(folded[0].wrong.contains("89 more"), "{}", folded[0].wrong);
+        let kept = Faults::check((2..92).map(grid).collect()).unwrap_err();
+        assert_eq!(kept.into_list().len(), 90);
+    }
+}

@@ -3,6 +3,7 @@
 //! Three kinds of evidence are used in this order: gravity in the means of accelerometers, motion that the equations of the vehicle explain
 //! only once a channel is corrected, and the masses that the equations give.
 
+use crate::estimate::median;
 use crate::finding::{Finding, Severity, few};
 use crate::units::{Quantity, STANDARD_GRAVITY_M_S2, find_unit, number};
 use rayon::prelude::*;
@@ -216,7 +217,7 @@ impl MotionFault {
                     .join(", ")
             ),
             Self::Unit(_, unit, _) => {
-                format!("State the unit beside the name of the channel: `{first} [{unit}]`.")
+                format!("State the unit after the name of the channel: `{first} [{unit}]`.")
             }
             Self::Exchanged(_) => {
                 let second = own.get(1).copied().unwrap_or_default();
@@ -343,9 +344,7 @@ fn units_of_one(channels: &[MotionChannel]) -> Vec<MotionFault> {
     for list in kinds_of(channels).iter().filter(|k| k.len() > 1) {
         for &c in list {
             let others = list.iter().filter(|o| **o != c);
-            let mut sizes: Vec<f64> = others.map(|o| channels[*o].scatter).collect();
-            sizes.sort_by(f64::total_cmp);
-            let middle = sizes.get(sizes.len() / 2).copied().unwrap_or(0.0);
+            let middle = median(others.map(|o| channels[*o].scatter).collect()).unwrap_or(0.0);
             let possible = |(_, f): &(&str, f64)| {
                 let ratio = f * channels[c].scatter / middle;
                 (1.0 / RULES.apart..RULES.apart).contains(&ratio)

@@ -1,18 +1,17 @@
 //! The size of a mesh: what lengths in a job are measured by.
 
+use crate::estimate::median;
 use crate::model::Model;
 
 /// The usual side of a shell: the median distance of its first two grids; `None` without shells.
 pub(super) fn shell_side(model: &Model) -> Option<f64> {
     let place = |g: crate::model::GridIx| model.grids.get(g.us()).map(|g| g.x);
-    let mut sides: Vec<f64> = model
+    let sides = model
         .shells
         .iter()
         .filter_map(|s| Some((place(s.grids[1])? - place(s.grids[0])?).norm()))
-        .filter(|side| *side > 0.0)
-        .collect();
-    sides.sort_by(f64::total_cmp);
-    sides.get(sides.len() / 2).copied()
+        .filter(|side| *side > 0.0);
+    median(sides.collect())
 }
 
 /// Returns the diagonal of the box around the shells; 0 without shells.

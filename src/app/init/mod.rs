@@ -62,9 +62,9 @@ pub struct Proposal {
 /// A load or subcase that is not proposed.
 #[derive(Serialize)]
 pub struct NotProposed {
-    /// Its name.
+    /// Name of the load or subcase.
     pub name: String,
-    /// Why it is left out.
+    /// Reason why it is left out.
     pub reason: String,
 }
 

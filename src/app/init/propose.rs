@@ -22,7 +22,7 @@ pub(super) struct ProposedLoad {
     pub subcase: Option<u32>,
     pub result: Option<String>,
     pub expected: f64,
-    /// What `expected` is, for whoever corrects it.
+    /// Note on the unit and source of `expected`, for the comment of its line.
     pub expected_is: String,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct ProposedLoad {
 #[derive(Clone)]
 pub(super) struct LeftOutLoad {
     pub name: String,
-    /// Its section of the job; `None` where it has no load.
+    /// Load to write as a comment; `None` for a subcase without a load.
     pub load: Option<ProposedLoad>,
     pub why: String,
 }
@@ -148,8 +148,7 @@ fn by_number(
                 true => format!("{what}\ncomponent = \"{component}\""),
                 false => what,
             };
-            let (expected, expected_is) =
-                expected(system, quantity.unwrap_or(Quantity::Force), 1.0);
+            let (expected, expected_is) = typical(system, quantity.unwrap_or(Quantity::Force));
             loads.push(ProposedLoad {
                 name: unique(&mut used, name),
                 what,
@@ -226,7 +225,7 @@ fn of_load_sets(
 
 /// A load of its own at each point: at wheels, else at hubs, else at grids of the mesh. The others are left out, to be chosen from.
 fn at_points(deck: &DeckModel, system: Option<UnitSystem>) -> Vec<Proposal> {
-    let (expected, expected_is) = expected(system, Quantity::Force, 1.0);
+    let (expected, expected_is) = typical(system, Quantity::Force);
     let load = |p: &LoadPoint| ProposedLoad {
         name: format!("{}.FZ", p.name),
         what: format!("grid = {}\ncomponent = \"FZ\"", p.grid),
@@ -266,14 +265,20 @@ fn at_points(deck: &DeckModel, system: Option<UnitSystem>) -> Vec<Proposal> {
     all.filter(|p| !p.loads.is_empty()).collect()
 }
 
-/// Returns the typical size to propose for a load of the size `applied` in the deck, with what it is: a unit load says nothing about it.
-fn expected(system: Option<UnitSystem>, quantity: Quantity, applied: f64) -> (f64, String) {
-    // Where the units are open, those of SI: the line is to be corrected with them.
-    let units = system.unwrap_or(UnitSystem::MKgS);
+/// Returns the typical size to propose for a load whose size no file states, with its unit. Where the units are open, SI is taken: the line is to
+/// be corrected with them.
+fn typical(system: Option<UnitSystem>, quantity: Quantity) -> (f64, String) {
+    let size = typical_load(system.unwrap_or(UnitSystem::MKgS), quantity);
     let unit = system.map_or(String::new(), |s| format!(" in {}", s.unit(quantity).name));
-    match typical_load(units, quantity).filter(|_| is_unit_load(units, quantity, applied)) {
-        Some(typical) => (round(typical), format!("{unit} (the deck has a unit load)")),
-        None => (round(applied.abs()), unit),
+    (round(size.unwrap_or(1.0)), unit)
+}
+
+/// Returns the typical size to propose for a load of the size `applied` in the deck, with a note of its unit and source.
+fn expected(system: Option<UnitSystem>, quantity: Quantity, applied: f64) -> (f64, String) {
+    let (size, unit) = typical(system, quantity);
+    match is_unit_load(system.unwrap_or(UnitSystem::MKgS), quantity, applied) {
+        true => (size, format!("{unit} (the deck has a unit load)")),
+        false => (round(applied.abs()), unit),
     }
 }
 

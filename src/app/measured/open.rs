@@ -10,7 +10,7 @@ use crate::app::job::{Job, Measured, NamedFile};
 use crate::series::record::csv::{Layout, has_bare_returns};
 use crate::series::record::is_format;
 
-/// What a strain file contains.
+/// Runs or record of a strain file.
 pub(in crate::app) enum MeasuredStrain {
     /// Static states, a row each.
     Runs(StrainTable),

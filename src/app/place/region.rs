@@ -19,7 +19,7 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
     allowed(job, fields, common).map(|(sites, _)| sites)
 }
 
-/// What the rule of `clear_of` that excludes the most shells leaves.
+/// Rule of `clear_of` that excludes the most shells, with the number of shells before and after it.
 pub(super) struct ClearRule {
     /// The rule, as in `joints = 110`.
     pub rule: String,
@@ -33,7 +33,7 @@ impl ClearRule {
         2 * self.left < self.of
     }
 
-    /// What the rule leaves, in words.
+    /// Returns a clause on the rule: "`clear_of` loads = 200 leaves 3 of 80 shells".
     pub(super) fn words(&self) -> String {
         let Self { rule, left, of } = self;
         format!("`clear_of` {rule} leaves {left} of {of} shells")

@@ -36,7 +36,7 @@ pub fn finding_of_scale(
     };
     let state = |unit: &str| {
         format!(
-            "State the unit beside the name of each channel: `{} [{unit}]`.",
+            "State the unit after the name of each channel: `{} [{unit}]`.",
             first.name
         )
     };
@@ -95,7 +95,7 @@ pub fn finding_of_scale(
                 number(most),
                 words.join(", or ")
             );
-            let remedy = "State the units of accelerations and forces beside the names of the channels: `a_body [g]`, `f_wheel [kN]`.";
+            let remedy = "State the units of accelerations and forces after the names of the channels: `a_body [g]`, `f_wheel [kN]`.";
             let limit = if kg < least { least } else { most };
             return finding(severity, message, remedy.to_owned(), kg, limit);
         }
