@@ -3,7 +3,7 @@
 use crate::fault::{raise, wrong};
 use crate::files::Desk;
 use crate::job::CheckedJob;
-use crate::outcome::{Told, tell, tell_learnt, tell_loads, tell_sensitivity};
+use crate::outcome::{AnyOutcome, keep, keep_calibrated, keep_loads, keep_sensitivity};
 use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
@@ -15,25 +15,25 @@ use strainbridge::fe::{HeatedStrain, SolveOptions};
 use strainbridge::{Context, Faults, Job};
 
 /// A question of a job alone.
-type OnJob = fn(&Job, &Context) -> Result<Told, Faults>;
+type OnJob = fn(&Job, &Context) -> Result<AnyOutcome, Faults>;
 
 /// Commands that ask a job alone, and the question of the library behind each.
 const ON_JOB: [(&str, OnJob); 11] = [
-    ("ballast", |j, cx| tell(strainbridge::ballast(j, cx)?)),
+    ("ballast", |j, cx| keep(strainbridge::ballast(j, cx)?)),
     ("calibrate", |j, cx| {
-        tell_learnt(strainbridge::calibrate(j, cx)?)
+        keep_calibrated(strainbridge::calibrate(j, cx)?)
     }),
-    ("cases", |j, cx| tell(strainbridge::cases(j, cx)?)),
-    ("identify", |j, cx| tell(strainbridge::identify(j, cx)?)),
-    ("payload", |j, cx| tell(strainbridge::payload(j, cx)?)),
-    ("place", |j, cx| tell(strainbridge::place(j, cx)?)),
-    ("reconcile", |j, cx| tell(strainbridge::reconcile(j, cx)?)),
-    ("recover", |j, cx| tell_loads(strainbridge::recover(j, cx)?)),
-    ("respond", |j, cx| tell(strainbridge::respond(j, cx)?)),
+    ("cases", |j, cx| keep(strainbridge::cases(j, cx)?)),
+    ("identify", |j, cx| keep(strainbridge::identify(j, cx)?)),
+    ("payload", |j, cx| keep(strainbridge::payload(j, cx)?)),
+    ("place", |j, cx| keep(strainbridge::place(j, cx)?)),
+    ("reconcile", |j, cx| keep(strainbridge::reconcile(j, cx)?)),
+    ("recover", |j, cx| keep_loads(strainbridge::recover(j, cx)?)),
+    ("respond", |j, cx| keep(strainbridge::respond(j, cx)?)),
     ("sensitivity", |j, cx| {
-        tell_sensitivity(strainbridge::sensitivity(j, cx)?)
+        keep_sensitivity(strainbridge::sensitivity(j, cx)?)
     }),
-    ("study", |j, cx| tell(strainbridge::study(j, cx)?)),
+    ("study", |j, cx| keep(strainbridge::study(j, cx)?)),
 ];
 
 /// Commands that ask files, or a job with more.
@@ -82,7 +82,7 @@ pub(crate) fn ask(
     threads: Option<usize>,
     cache: bool,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Told> {
+) -> PyResult<AnyOutcome> {
     let shard = shard.map(|text| shard_of(py, text)).transpose()?;
     let more = More {
         files,
@@ -118,7 +118,12 @@ fn shard_of(py: Python, text: &str) -> PyResult<Shard> {
     })
 }
 
-fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result<Told, Faults> {
+fn answer(
+    command: &str,
+    job: Option<&Job>,
+    more: &More,
+    cx: &Context,
+) -> Result<AnyOutcome, Faults> {
     let none = PathBuf::new();
     let first: &Path = more.files.first().unwrap_or(&none);
     let rest = more.files.get(1..).unwrap_or_default();
@@ -128,18 +133,18 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
         ..SolveOptions::default()
     };
     match (command, job) {
-        ("check", _) => tell(strainbridge::check(&more.files, cx)?),
-        ("init", _) => tell(strainbridge::init(first, rest, &more.folder, cx)?),
-        ("verify", _) => tell(strainbridge::verify(
+        ("check", _) => keep(strainbridge::check(&more.files, cx)?),
+        ("init", _) => keep(strainbridge::init(first, rest, &more.folder, cx)?),
+        ("verify", _) => keep(strainbridge::verify(
             first,
             |_, _| Ok(more.folder.clone()),
             cx,
         )?),
-        ("strains", _) => tell(strainbridge::strains(first, rest, cx)?),
-        ("modes", Some(job)) => tell(strainbridge::modes(job, more.modes, cx)?),
-        ("modes", None) => tell(strainbridge::modes_of_deck(first, more.modes, cx)?),
-        ("solve", Some(job)) => tell(strainbridge::solve(job, options, cx)?),
-        ("solve", None) => tell(strainbridge::solve_deck(first, options, cx)?),
+        ("strains", _) => keep(strainbridge::strains(first, rest, cx)?),
+        ("modes", Some(job)) => keep(strainbridge::modes(job, more.modes, cx)?),
+        ("modes", None) => keep(strainbridge::modes_of_deck(first, more.modes, cx)?),
+        ("solve", Some(job)) => keep(strainbridge::solve(job, options, cx)?),
+        ("solve", None) => keep(strainbridge::solve_deck(first, options, cx)?),
         ("fleet", Some(job)) => {
             let spec = FleetSpec {
                 files: more.files.clone(),
@@ -147,7 +152,7 @@ fn answer(command: &str, job: Option<&Job>, more: &More, cx: &Context) -> Result
                 folder: more.folder.clone(),
                 digests: more.digests.clone(),
             };
-            tell(strainbridge::fleet(job, &spec, cx)?)
+            keep(strainbridge::fleet(job, &spec, cx)?)
         }
         (name, Some(job)) => match ON_JOB.iter().find(|c| c.0 == name) {
             Some((_, question)) => question(job, cx),

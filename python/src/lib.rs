@@ -47,7 +47,7 @@ mod _strainbridge {
     #[pymodule_export]
     use crate::job::{CheckedJob, job_to_json};
     #[pymodule_export]
-    use crate::outcome::Told;
+    use crate::outcome::AnyOutcome;
     #[pymodule_export]
     use crate::placing::place_rows;
     #[pymodule_export]

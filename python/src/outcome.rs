@@ -36,7 +36,7 @@ pub(crate) trait Kept: Send {
 }
 
 /// Calibrated S.
-struct Learnt(Outcome<Calibrated>);
+struct OfCalibration(Outcome<Calibrated>);
 
 /// S of gauges or candidates.
 struct OfModel(Outcome<Sensed>);
@@ -55,7 +55,7 @@ impl Kept for OfModel {
     }
 }
 
-impl Kept for Learnt {
+impl Kept for OfCalibration {
     fn save(&self, folder: &Path) -> Result<String, Faults> {
         save(&self.0, folder)
     }
@@ -117,7 +117,7 @@ where
 
 /// An outcome with the type of its answer left behind.
 #[pyclass(frozen, name = "_Outcome", module = "strainbridge._strainbridge")]
-pub(crate) struct Told {
+pub(crate) struct AnyOutcome {
     /// The text of `result.json`, without the tables that only files have.
     #[pyo3(get)]
     json: String,
@@ -130,38 +130,38 @@ pub(crate) struct Told {
     kept: Mutex<Box<dyn Kept>>,
 }
 
-/// An outcome for Python.
-pub(crate) fn tell<A>(outcome: Outcome<A>) -> Result<Told, Faults>
+/// Keeps an outcome for Python.
+pub(crate) fn keep<A>(outcome: Outcome<A>) -> Result<AnyOutcome, Faults>
 where
     A: Answer + Send + 'static,
     Outcome<A>: Report,
 {
-    tell_kept(outcome, |o| Box::new(o))
+    keep_as(outcome, |o| Box::new(o))
 }
 
-/// Loads for Python.
-pub(crate) fn tell_loads(outcome: Outcome<Recovered>) -> Result<Told, Faults> {
-    tell_kept(outcome, |o| Box::new(Measured(o)))
+/// Keeps recovered loads for Python.
+pub(crate) fn keep_loads(outcome: Outcome<Recovered>) -> Result<AnyOutcome, Faults> {
+    keep_as(outcome, |o| Box::new(Measured(o)))
 }
 
-/// A learnt S for Python.
-pub(crate) fn tell_learnt(outcome: Outcome<Calibrated>) -> Result<Told, Faults> {
-    tell_kept(outcome, |o| Box::new(Learnt(o)))
+/// Keeps the outcome of a calibration for Python.
+pub(crate) fn keep_calibrated(outcome: Outcome<Calibrated>) -> Result<AnyOutcome, Faults> {
+    keep_as(outcome, |o| Box::new(OfCalibration(o)))
 }
 
-/// S of gauges or candidates for Python.
-pub(crate) fn tell_sensitivity(outcome: Outcome<Sensed>) -> Result<Told, Faults> {
-    tell_kept(outcome, |o| Box::new(OfModel(o)))
+/// Keeps S of gauges or candidates for Python.
+pub(crate) fn keep_sensitivity(outcome: Outcome<Sensed>) -> Result<AnyOutcome, Faults> {
+    keep_as(outcome, |o| Box::new(OfModel(o)))
 }
 
-fn tell_kept<A: Answer>(
+fn keep_as<A: Answer>(
     outcome: Outcome<A>,
     keep: impl FnOnce(Outcome<A>) -> Box<dyn Kept>,
-) -> Result<Told, Faults>
+) -> Result<AnyOutcome, Faults>
 where
     Outcome<A>: Report,
 {
-    Ok(Told {
+    Ok(AnyOutcome {
         json: unsaved(&outcome)?,
         words: outcome.words(),
         notes: outcome.notes.clone(),
@@ -173,7 +173,7 @@ where
 type NamedMatrix<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<String>);
 
 #[pymethods]
-impl Told {
+impl AnyOutcome {
     /// Writes the files of the command into a folder; the text of `result.json`.
     fn save(&self, py: Python, folder: PathBuf) -> PyResult<String> {
         let done = run(py, &Asked::default(), |_| {

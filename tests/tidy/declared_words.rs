@@ -1,5 +1,6 @@
 //! Words that plain technical English replaces, in the texts that declare keys, columns, fields and findings.
 
+use super::english::{REPLACED, contains_word};
 use super::root;
 
 /// Declaration texts, with the columns that are prose; of findings, the lines `cause:`, `limit:`, `remedy:`, `example:`.
@@ -11,30 +12,6 @@ const TEXTS: [(&str, std::ops::Range<usize>); 7] = [
     ("src/finding/codes/model.txt", 0..0),
     ("src/finding/codes/strain.txt", 0..0),
     ("src/finding/codes/vehicle.txt", 0..0),
-];
-/// Words and phrases that have a plain replacement.
-const REPLACED: [&str; 21] = [
-    "told",
-    "tell",
-    "tells",
-    "anew",
-    "beside",
-    "judged",
-    "stranger",
-    "strangers",
-    "drawings",
-    "upheaval",
-    "is none",
-    "none that",
-    "by itself",
-    "by themselves",
-    "put right",
-    "speak",
-    "speaks",
-    "say",
-    "says",
-    "said",
-    "of its own",
 ];
 
 /// Prose of a line of a declaration text; quoted names and values are cut out.
@@ -56,15 +33,9 @@ fn prose(line: &str, columns: &std::ops::Range<usize>) -> String {
     unquoted.collect::<Vec<_>>().join("``")
 }
 
-/// Words and phrases of `REPLACED` that a text contains as whole words.
+/// Words and phrases of [`REPLACED`] that a text contains as whole words.
 fn replaced_words(text: &str) -> Vec<&'static str> {
-    let words: Vec<String> = text
-        .split(|c: char| !c.is_alphanumeric() && c != '_')
-        .filter(|w| !w.is_empty())
-        .map(str::to_lowercase)
-        .collect();
-    let text = format!(" {} ", words.join(" "));
-    let found = REPLACED.iter().filter(|w| text.contains(&format!(" {w} ")));
+    let found = REPLACED.iter().filter(|w| contains_word(text, w));
     found.copied().collect()
 }
 

@@ -20,24 +20,33 @@ const PAGES: [&str; 14] = [
     "docs/reference/limits.md",
 ];
 
-/// Words and phrases that no page contains.
-const REFUSED: [&str; 16] = [
-    "told",
-    "tells",
+/// Words and phrases that have a plain replacement.
+pub(super) const REPLACED: [&str; 25] = [
+    "aliases",
     "anew",
     "beside",
+    "by itself",
+    "by themselves",
+    "drawings",
+    "is none",
     "judged",
+    "none that",
+    "of its own",
+    "put right",
+    "said",
+    "say",
+    "says",
+    "speak",
+    "speaks",
     "stranger",
     "strangers",
-    "drawings",
-    "speaks",
-    "aliases",
     "taught",
+    "teaches",
+    "tell",
+    "tells",
+    "told",
     "upheaval",
-    "is none",
-    "none that",
-    "by itself",
-    "put right",
+    "upheavals",
 ];
 
 const LONGEST: usize = 25;
@@ -89,11 +98,17 @@ fn length(sentence: &str) -> usize {
         .count()
 }
 
-fn contains_word(text: &str, word: &str) -> bool {
+pub(super) fn contains_word(text: &str, word: &str) -> bool {
     let letters: String = text
         .to_lowercase()
         .chars()
-        .map(|c| if c.is_alphabetic() { c } else { ' ' })
+        .map(|c| {
+            if c.is_alphanumeric() || c == '_' {
+                c
+            } else {
+                ' '
+            }
+        })
         .collect();
     let words: Vec<&str> = letters.split_whitespace().collect();
     format!(" {} ", words.join(" ")).contains(&format!(" {word} "))
@@ -117,7 +132,7 @@ fn pages_have_short_sentences_and_the_words_of_the_field() {
                 if length(&sentence) > LONGEST {
                     wrong += &format!("{page}: {} words: {sentence}\n", length(&sentence));
                 }
-                for word in REFUSED.iter().filter(|w| contains_word(&sentence, w)) {
+                for word in REPLACED.iter().filter(|w| contains_word(&sentence, w)) {
                     wrong += &format!("{page}: \"{word}\": {sentence}\n");
                 }
             }
@@ -173,7 +188,7 @@ const QUESTIONS: [[&str; 4]; 15] = [
     [
         "A gauge was glued elsewhere?",
         "docs/faq.md",
-        "My gauge is not where the plan says. What now?",
+        "My gauge is not at its planned place. What now?",
         "angle_deg",
     ],
     [
