@@ -19,11 +19,11 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
-    recover_beside(s, readings, errors, &mut Vec::new)
+    recover_with_alternatives(s, readings, errors, &mut Vec::new)
 }
 
 /// Loads of every run as [`recover`] has them; faults of the installation are searched for as well.
-pub fn recover_beside(
+pub fn recover_with_alternatives(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,

@@ -18,12 +18,12 @@ use crate::sensitivity::Sensitivity;
 /// A sample whose gauges don't tell a load is blank there. Whether a load can be had is asked of the whole record ([`check_gaps`]), not of
 /// the samples that happen to be looked at: `run-not-solvable` stays only where all gauges together don't tell a load, which is no gap.
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
-    recover_samples_beside(s, samples, errors, (Vec::new(), &mut Vec::new))
+    recover_samples_with_alternatives(s, samples, errors, (Vec::new(), &mut Vec::new))
 }
 
 /// The same where readings have errors beyond noise, by sample (none where `beyond` is empty), and gauges may be installed otherwise. The record is
 /// recovered from all gauges, whatever contradicts the others.
-pub fn recover_samples_beside(
+pub fn recover_samples_with_alternatives(
     s: &Sensitivity,
     samples: Vec<Readings>,
     errors: ErrorModel,

@@ -131,7 +131,7 @@ pub(super) fn weighed(
                 reason: match verdict {
                     None => "no gauge says a possible payload".to_owned(),
                     Some(v) if v.used && estimate.is_finite() && !carries => {
-                        "too weak to tell: it carries less than a thousandth of the answer"
+                        "too weak: the gauge carries less than a thousandth of the answer"
                             .to_owned()
                     }
                     Some(v) => v.reason.clone(),

@@ -11,7 +11,7 @@ use crate::app::strain::alternative_rows;
 use crate::app::work::Work;
 use crate::recovery::dynamic::Doubt;
 use crate::recovery::history::Filter;
-use crate::recovery::{Readings, Recovery, clock, recover_samples_beside};
+use crate::recovery::{Readings, Recovery, clock, recover_samples_with_alternatives};
 use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 
@@ -33,7 +33,7 @@ pub(super) fn judge(
 ) -> Recovery {
     let fields = task.prepared.fields.as_ref();
     let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
-    recover_samples_beside(s, readings, task.errors, (Vec::new(), &mut others))
+    recover_samples_with_alternatives(s, readings, task.errors, (Vec::new(), &mut others))
 }
 
 /// The same of samples at rest, by number, and what they are off by.
@@ -50,7 +50,7 @@ pub(super) fn judge_at_rest(
     };
     let beyond = readings.iter().map(beyond).collect();
     let readings = readings.into_iter().map(|r| r.1).collect();
-    recover_samples_beside(s, readings, task.errors, (beyond, &mut Vec::new))
+    recover_samples_with_alternatives(s, readings, task.errors, (beyond, &mut Vec::new))
 }
 
 /// Readings of samples spread over the record, less `zero`, each with the number of its sample.

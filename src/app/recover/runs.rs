@@ -17,7 +17,7 @@ use crate::app::strain::{LoadUnits, alternative_rows};
 use crate::app::work::Work;
 use crate::finding::{Finding, Severity, few};
 use crate::input_faults::not_explained_by;
-use crate::recovery::{Readings, Recovery, recover_beside};
+use crate::recovery::{Readings, Recovery, recover_with_alternatives};
 use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use std::collections::{HashMap, HashSet};
@@ -142,7 +142,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
     let mut recovery = work.stage("recover", |work| {
         let fields = task.prepared.fields.as_ref();
         let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
-        recover_beside(&s, &readings, task.errors, &mut others)
+        recover_with_alternatives(&s, &readings, task.errors, &mut others)
     });
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
