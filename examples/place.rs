@@ -2,7 +2,7 @@
 
 use std::error::Error;
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, place};
 
 /// A strip of ten plates along x, 2 mm thick, held at x = 0.

@@ -1,6 +1,6 @@
 //! Eight gauges under two known loads, one of them wired the wrong way round: which one, and what is left of the gap.
 
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, reconcile};
 
 const JOB: &str = r#"

@@ -1,7 +1,7 @@
 //! Two loads from three gauges whose sensitivity is known, readings with errors: loads with intervals, everything in memory.
 
 use std::error::Error;
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, recover};
 
 const JOB: &str = r#"

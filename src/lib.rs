@@ -6,7 +6,11 @@
 //! |---|---|---|---|
 //! | 10 | [`cli`] | arguments | calls of row 8, exit codes |
 //! | 9 | [`report`] | outcomes | html, pdf, csv, xlsx, vtu, op2 |
-//! | 8 | [`app`] | a [`Job`] and a [`Context`] | an [`Outcome`] |
+//! | 8 | [`workflow`] | a [`Job`] and a [`Context`] | an [`Outcome`]: one module a command |
+//! | 7.8 | [`measured`] | files of readings, runs and records | readings by gauge, with units, times and zero |
+//! | 7.7 | [`strain_chain`] | a job's deck, results, gauges | S with its uncertainty |
+//! | 7.6 | [`mod@job`] | job.toml and the tables it names | a checked [`Job`], every fault with its line |
+//! | 7.5 | [`host`] | paths | files, kept solutions, the output folder, progress |
 //! | 7 | [`mod@reconcile`], [`mod@study`], [`mod@payload`], [`mod@calibrate`] | channels | ranked effects, studies, weighings, a learnt S |
 //! | 6 | [`placement`], [`recovery`], [`mod@respond`], [`vehicle`] | S, strain, accelerations | layouts, loads, stress |
 //! | 5 | [`mod@sensitivity`] | [`fe::Solution`]s and [`gauge::Gauge`]s | S in eps = S f |
@@ -57,7 +61,6 @@
 //! The finite element layer never sees a gauge; a report never opens a file; numerics never print.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
-pub mod app;
 pub mod calibrate;
 #[cfg(feature = "cli")]
 pub mod cli;
@@ -65,8 +68,11 @@ pub mod estimate;
 pub mod fe;
 pub mod finding;
 pub mod gauge;
+pub mod host;
 pub mod input_faults;
+pub mod job;
 pub mod linalg;
+pub mod measured;
 pub mod model;
 pub mod payload;
 pub mod placement;
@@ -78,37 +84,39 @@ pub mod respond;
 pub mod sensitivity;
 pub mod series;
 pub mod stop;
+pub mod strain_chain;
 pub mod study;
 pub mod units;
 pub mod vehicle;
+pub mod workflow;
 
 #[cfg(test)]
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
 
-pub use app::context::{Context, Disk};
-pub use app::fault::{Fault, Faults};
-pub use app::job::Job;
-pub use app::outcome::Outcome;
-pub use app::store::Folder;
 pub use finding::Severity;
+pub use host::context::{Context, Disk};
+pub use host::fault::{Fault, Faults};
+pub use host::outcome::Outcome;
+pub use host::store::Folder;
+pub use job::Job;
 
-pub use app::ballast::ballast;
-pub use app::calibrate::calibrate;
-pub use app::cases::cases;
-pub use app::check::check;
-pub use app::explain::{explain, explain_all};
-pub use app::fleet::fleet;
-pub use app::identify::identify;
-pub use app::init::{init, init_for};
-pub use app::modes::{modes, modes_of_deck};
-pub use app::payload::payload;
-pub use app::place::place;
-pub use app::reconcile::reconcile;
-pub use app::recover::recover;
-pub use app::respond::respond;
-pub use app::sensitivity::sensitivity;
-pub use app::solve::{solve, solve_deck};
-pub use app::strains::strains;
-pub use app::study::study;
-pub use app::verify::verify;
+pub use workflow::ballast::ballast;
+pub use workflow::calibrate::calibrate;
+pub use workflow::cases::cases;
+pub use workflow::check::check;
+pub use workflow::explain::{explain, explain_all};
+pub use workflow::fleet::fleet;
+pub use workflow::identify::identify;
+pub use workflow::init::{init, init_for};
+pub use workflow::modes::{modes, modes_of_deck};
+pub use workflow::payload::payload;
+pub use workflow::place::place;
+pub use workflow::reconcile::reconcile;
+pub use workflow::recover::recover;
+pub use workflow::respond::respond;
+pub use workflow::sensitivity::sensitivity;
+pub use workflow::solve::{solve, solve_deck};
+pub use workflow::strains::strains;
+pub use workflow::study::study;
+pub use workflow::verify::verify;

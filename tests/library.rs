@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 use std::sync::Arc;
-use strainbridge::app::context::{Files, InMemory};
-use strainbridge::app::reconcile::extended_job;
-use strainbridge::app::recover::{Block, RecordHead, RecordSink, Samples, recover_into};
-use strainbridge::app::store::Memory;
+use strainbridge::host::context::{Files, InMemory};
+use strainbridge::host::store::Memory;
 use strainbridge::reconcile::Verdict;
 use strainbridge::report::command::{RecordFolder, Report, finish, save};
+use strainbridge::workflow::reconcile::extended_job;
+use strainbridge::workflow::recover::{Block, RecordHead, RecordSink, Samples, recover_into};
 use strainbridge::{Context, Fault, Job, Severity, place, reconcile, recover, sensitivity};
 
 /// A free strip of plates along x, 11 by 2 grids 20 mm apart, 2 mm thick.
@@ -709,7 +709,7 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     };
     answer(&folder.join("job.toml"), &kept);
     let ask = || {
-        let again = |made: &strainbridge::app::verify::Made, main: &std::path::Path| {
+        let again = |made: &strainbridge::workflow::verify::Made, main: &std::path::Path| {
             assert_eq!(made.command, "place");
             answer(main, &anew);
             Ok(anew.clone())
@@ -727,7 +727,7 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     assert!(files.contains(&"result.json"), "{files:?}");
     assert_eq!(other.findings.worst(), Some(Severity::Error));
     std::fs::remove_file(folder.join("job.toml")).unwrap();
-    let none = |_: &strainbridge::app::verify::Made, _: &std::path::Path| Ok(anew.clone());
+    let none = |_: &strainbridge::workflow::verify::Made, _: &std::path::Path| Ok(anew.clone());
     let fault = strainbridge::verify(&kept, none, &context).unwrap_err();
     assert!(fault.to_string().contains("isn't found"), "{fault}");
     std::fs::remove_dir_all(folder).unwrap();
@@ -736,7 +736,7 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
 /// Stops the work when it begins to solve.
 struct StopsAtSolve(strainbridge::stop::Stop);
 
-impl strainbridge::app::context::Progress for StopsAtSolve {
+impl strainbridge::host::context::Progress for StopsAtSolve {
     fn begin(&self, stage: &str) {
         if stage == "solve" {
             self.0.ask();

@@ -5,10 +5,10 @@ mod support;
 
 use serde_json::Value;
 use std::path::{Path, PathBuf};
-use strainbridge::app::deck::{DeckModel, read_model};
-use strainbridge::app::files::Inputs;
 use strainbridge::fe::shell_frame::quad_axes;
+use strainbridge::host::files::Inputs;
 use strainbridge::model::{GridIx, Model, RigidKind, Vec3};
+use strainbridge::strain_chain::deck::{DeckModel, read_model};
 
 fn shared() -> Option<PathBuf> {
     support::shared("nastran")
@@ -49,7 +49,7 @@ fn cases() -> Vec<(String, Value, DeckModel)> {
             .starts_with("op2");
         let file = if from_op2 { &case["op2"] } else { &case["bdf"] };
         let read = read_model(
-            &mut Inputs::of(&strainbridge::app::context::Disk),
+            &mut Inputs::of(&strainbridge::host::context::Disk),
             &path,
             file.as_str().unwrap(),
         )

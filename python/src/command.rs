@@ -8,10 +8,10 @@ use crate::work::{Asked, run};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use strainbridge::app::fleet::{FleetSpec, name::Shard};
-use strainbridge::app::store::Folder;
-use strainbridge::app::verify;
 use strainbridge::fe::{HeatedStrain, SolveOptions};
+use strainbridge::host::store::Folder;
+use strainbridge::workflow::fleet::{FleetSpec, name::Shard};
+use strainbridge::workflow::verify;
 use strainbridge::{Context, Faults, Job};
 
 /// A question of a job alone.
@@ -63,7 +63,7 @@ pub(crate) fn commands() -> Vec<&'static str> {
 /// The JSON schema of a job.
 #[pyfunction]
 pub(crate) fn schema() -> String {
-    strainbridge::app::job::schema::job_schema()
+    strainbridge::job::schema::job_schema()
 }
 
 /// The outcome of a command.

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use strainbridge::Disk;
-use strainbridge::app::context::Files;
-use strainbridge::app::files::{FileBytes, Opened, Stamp};
+use strainbridge::host::context::Files;
+use strainbridge::host::files::{FileBytes, Opened, Stamp};
 
 /// The disk with files from memory before it.
 #[derive(Clone, Debug, Default)]

@@ -7,13 +7,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
-use strainbridge::app::calibrate::Calibrated;
-use strainbridge::app::outcome::Answer;
-use strainbridge::app::recover::Recovered;
-use strainbridge::app::sensitivity::Sensed;
+use strainbridge::host::outcome::Answer;
 use strainbridge::report::command::{Report, save, unsaved};
 use strainbridge::report::notebook::piece;
 use strainbridge::sensitivity::Sensitivity;
+use strainbridge::workflow::calibrate::Calibrated;
+use strainbridge::workflow::recover::Recovered;
+use strainbridge::workflow::sensitivity::Sensed;
 use strainbridge::{Faults, Outcome};
 
 /// What can be asked of an outcome of any type.

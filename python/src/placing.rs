@@ -7,7 +7,7 @@ use numpy::{PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::time::Instant;
-use strainbridge::app::context::Progress;
+use strainbridge::host::context::Progress;
 use strainbridge::linalg::{Matrix, dense};
 use strainbridge::placement::candidates::{Candidates, Scatter};
 use strainbridge::placement::{Layout, Spec, place};

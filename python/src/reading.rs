@@ -12,13 +12,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use strainbridge::app::cases::edited_files;
-use strainbridge::app::deck::{DeckModel, read_model};
-use strainbridge::app::files::{FileBytes, Inputs};
 use strainbridge::fe::strain_rows::{Location, Point, each_row, n_elements};
 use strainbridge::fe::strain_tensor::Surface;
+use strainbridge::host::files::{FileBytes, Inputs};
 use strainbridge::report::vtk_cells;
+use strainbridge::strain_chain::deck::{DeckModel, read_model};
 use strainbridge::units::MICROSTRAIN;
+use strainbridge::workflow::cases::edited_files;
 use strainbridge::{Context, Fault, Faults};
 
 /// Numbers of a table, `columns` a row.

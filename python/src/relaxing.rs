@@ -6,7 +6,7 @@ use crate::work::{Asked, run};
 use numpy::{PyArray1, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use strainbridge::Faults;
-use strainbridge::app::context::Progress;
+use strainbridge::host::context::Progress;
 use strainbridge::placement::Criterion;
 use strainbridge::placement::candidates::{Candidates, Scatter};
 use strainbridge::placement::column_generation::{Groups, solve};

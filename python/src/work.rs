@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
-use strainbridge::app::context::Progress;
+use strainbridge::host::context::Progress;
 use strainbridge::stop::Stop;
 
 /// Bytes of stack of a working thread, as in the command.

@@ -1,8 +1,8 @@
 //! Arguments as the user types them.
 
-use crate::app::fleet::{digests_of, name::Shard};
-use crate::app::init::Purpose;
 use crate::fe::{HeatedStrain, SolveOptions};
+use crate::workflow::fleet::{digests_of, name::Shard};
+use crate::workflow::init::Purpose;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
@@ -299,7 +299,7 @@ pub struct SolveArguments {
     #[arg(long)]
     pub total_strain: bool,
     /// Elastic modes computed in addition to the strain; 0: none
-    #[arg(long, value_name = "N", default_value_t = crate::app::solve::MODES)]
+    #[arg(long, value_name = "N", default_value_t = crate::workflow::solve::MODES)]
     pub modes: usize,
 }
 
@@ -330,7 +330,7 @@ pub struct ModesArguments {
     #[arg(value_name = "DECK|JOB.toml")]
     pub input: PathBuf,
     /// How many
-    #[arg(long, value_name = "N", default_value_t = crate::app::solve::MODES)]
+    #[arg(long, value_name = "N", default_value_t = crate::workflow::solve::MODES)]
     pub modes: usize,
     #[command(flatten)]
     #[allow(missing_docs)]

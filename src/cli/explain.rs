@@ -3,10 +3,10 @@
 use super::arguments::ExplainArguments;
 use super::run::refuse;
 use super::voice::print;
-use crate::app;
-use crate::app::output::Output;
 use crate::finding::explain::Code;
+use crate::host::output::Output;
 use crate::report::reference;
+use crate::workflow;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -15,9 +15,9 @@ pub(super) fn explain(a: &ExplainArguments) -> ExitCode {
     if let Some(folder) = &a.reference {
         return write_reference(a, folder);
     }
-    let all = app::explain::explain_all();
+    let all = workflow::explain::explain_all();
     match (&a.code, a.common.json) {
-        (Some(code), json) => match app::explain::explain(code) {
+        (Some(code), json) => match workflow::explain::explain(code) {
             Ok(entry) if json => print_json(entry),
             Ok(entry) => print(words(entry).as_bytes()),
             Err(faults) => refuse(&faults, &a.common),

@@ -1,6 +1,6 @@
 //! Ctrl-C leaves no half files: what is being written is removed, then the program ends.
 
-use crate::app::half_written;
+use crate::host::half_written;
 
 /// Exit code of a program that Ctrl-C ended.
 const INTERRUPTED: i32 = 130;

@@ -3,8 +3,8 @@
 use super::Arguments;
 use super::arguments::ManArguments;
 use super::run::refuse;
-use crate::app::fault::Fault;
-use crate::app::output::Output;
+use crate::host::fault::Fault;
+use crate::host::output::Output;
 use clap::CommandFactory;
 use std::process::ExitCode;
 

@@ -12,7 +12,7 @@ mod voice;
 
 pub use arguments::*;
 
-use crate::app;
+use crate::{job, workflow};
 use clap::CommandFactory;
 use run::Run;
 use std::process::ExitCode;
@@ -22,13 +22,16 @@ use voice::print;
 pub fn run(arguments: Arguments) -> ExitCode {
     interrupt::watch();
     match arguments.command {
-        Command::Strains(a) => Run::of(&a.common, &a.deck)
-            .files(&a.deck, |cx| app::strains::strains(&a.deck, &a.results, cx)),
+        Command::Strains(a) => Run::of(&a.common, &a.deck).files(&a.deck, |cx| {
+            workflow::strains::strains(&a.deck, &a.results, cx)
+        }),
         Command::Check(a) => Run::of(&a.common, a.first()).check(&a.files),
         Command::Init(a) => Run::of(&a.common, a.main()).init(&a),
-        Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, app::cases::cases),
-        Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, app::place::place),
-        Command::Calibrate(a) => Run::of(&a.common, &a.job).job(&a.job, app::calibrate::calibrate),
+        Command::Cases(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::cases::cases),
+        Command::Place(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::place::place),
+        Command::Calibrate(a) => {
+            Run::of(&a.common, &a.job).job(&a.job, workflow::calibrate::calibrate)
+        }
         Command::Recover(a) => Run::of(&a.common, &a.job).recover(&a.job),
         Command::Fleet(a) => {
             let run = Run::of(&a.common, &a.job);
@@ -38,21 +41,23 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 Some(s) => folder.join(format!("shard-{}-of-{}", s.number, s.of)),
                 None => folder.clone(),
             };
-            let spec = app::fleet::FleetSpec {
+            let spec = workflow::fleet::FleetSpec {
                 folder: a.kept.unwrap_or(folder),
                 files: a.files,
                 shard: a.shard,
                 digests: a.digests.unwrap_or_default(),
             };
-            run.job_into(&a.job, &answer, |job, cx| app::fleet::fleet(job, &spec, cx))
+            run.job_into(&a.job, &answer, |job, cx| {
+                workflow::fleet::fleet(job, &spec, cx)
+            })
         }
         Command::Sensitivity(a) => {
-            Run::of(&a.common, &a.job).job(&a.job, app::sensitivity::sensitivity)
+            Run::of(&a.common, &a.job).job(&a.job, workflow::sensitivity::sensitivity)
         }
-        Command::Ballast(a) => Run::of(&a.common, &a.job).job(&a.job, app::ballast::ballast),
-        Command::Payload(a) => Run::of(&a.common, &a.job).job(&a.job, app::payload::payload),
-        Command::Respond(a) => Run::of(&a.common, &a.job).job(&a.job, app::respond::respond),
-        Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, app::study::study),
+        Command::Ballast(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::ballast::ballast),
+        Command::Payload(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::payload::payload),
+        Command::Respond(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::respond::respond),
+        Command::Study(a) => Run::of(&a.common, &a.job).job(&a.job, workflow::study::study),
         Command::Demo(a) => {
             let run = Run::of(&a.common, demo::DECK_NAME.as_ref());
             let folder = a.common.out.clone().or(a.folder);
@@ -62,36 +67,40 @@ pub fn run(arguments: Arguments) -> ExitCode {
         Command::Solve(a) => {
             let (run, options) = (Run::of(&a.job.common, &a.job.job), a.options());
             if a.is_job() {
-                run.job(&a.job.job, |job, cx| app::solve::solve(job, options, cx))
+                run.job(&a.job.job, |job, cx| {
+                    workflow::solve::solve(job, options, cx)
+                })
             } else {
                 let deck = &a.job.job;
-                run.files(deck, |cx| app::solve::solve_deck(deck, options, cx))
+                run.files(deck, |cx| workflow::solve::solve_deck(deck, options, cx))
             }
         }
         Command::Modes(a) => {
             Run::of(&a.common, &a.input).files(&a.input, |cx| match a.input.extension() {
                 Some(e) if e.eq_ignore_ascii_case("toml") => {
-                    let job = app::job::Job::read(&a.input, cx.files)?;
-                    app::modes::modes(&job, a.modes, cx)
+                    let job = job::Job::read(&a.input, cx.files)?;
+                    workflow::modes::modes(&job, a.modes, cx)
                 }
-                _ => app::modes::modes_of_deck(&a.input, a.modes, cx),
+                _ => workflow::modes::modes_of_deck(&a.input, a.modes, cx),
             })
         }
         Command::Reconcile(a) => {
             let run = Run::of(&a.common, &a.job);
             let folder = run.folder(&a.job);
             run.job_into(&a.job, &folder, |job, cx| {
-                let mut found = app::reconcile::reconcile(job, cx)?;
+                let mut found = workflow::reconcile::reconcile(job, cx)?;
                 found.answer.put_into(&folder);
                 Ok(found)
             })
         }
-        Command::Identify(a) => Run::of(&a.common, &a.job).job(&a.job, app::identify::identify),
+        Command::Identify(a) => {
+            Run::of(&a.common, &a.job).job(&a.job, workflow::identify::identify)
+        }
         Command::Verify(a) => upkeep::verify(&a),
         Command::Clean(a) => upkeep::clean(&a),
         Command::Explain(a) => explain::explain(&a),
         Command::Man(a) => manual::man(&a),
-        Command::Schema => print(app::job::schema::job_schema().as_bytes()),
+        Command::Schema => print(job::schema::job_schema().as_bytes()),
         Command::Completions(a) => {
             let mut text = Vec::new();
             clap_complete::generate(

@@ -1,6 +1,6 @@
 //! Progress on a terminal, for work that takes over a second: the stage, how long it has run and, where that is known, the time left.
 
-use crate::app::context::Progress;
+use crate::host::context::Progress;
 use std::io::IsTerminal;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};

@@ -3,17 +3,17 @@
 use super::progress::Terminal;
 use super::voice::Voice;
 use super::{CommonArguments, InitArguments};
-use crate::app::check::{Checked, check};
-use crate::app::context::{Context, Disk};
-use crate::app::fault::{Fault, Faults};
-use crate::app::init::{init, init_for};
-use crate::app::job::Job;
-use crate::app::outcome::{Answer, Findings, Outcome, Seconds};
-use crate::app::output::{Output, left_by_others};
-use crate::app::recover::{Recovered, recover_into};
-use crate::app::store::Folder;
 use crate::finding::Severity;
+use crate::host::context::{Context, Disk};
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Answer, Findings, Outcome, Seconds};
+use crate::host::output::{Output, left_by_others};
+use crate::host::store::Folder;
+use crate::job::Job;
 use crate::report::command::{RecordFolder, Report, check_folder, finish, save, unsaved};
+use crate::workflow::check::{Checked, check};
+use crate::workflow::init::{init, init_for};
+use crate::workflow::recover::{Recovered, recover_into};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

@@ -3,9 +3,9 @@
 use super::arguments::{CleanArguments, VerifyArguments};
 use super::run::{Run, refuse};
 use super::voice::print;
-use crate::app::fault::{Fault, Faults};
-use crate::app::store::Folder;
-use crate::app::verify::Made;
+use crate::host::fault::{Fault, Faults};
+use crate::host::store::Folder;
+use crate::workflow::verify::Made;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
@@ -16,7 +16,7 @@ pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
         Scratch(std::env::temp_dir().join(format!("strainbridge-verify-{}", std::process::id())));
     Run::of(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
         let anew = |made: &Made, main: &Path| again(&a.folder, made, main, &scratch.0);
-        crate::app::verify::verify(&a.folder, anew, cx)
+        crate::workflow::verify::verify(&a.folder, anew, cx)
     })
 }
 

@@ -1,10 +1,10 @@
 //! What a command says on standard error: faults and findings one line each, quieter or louder as asked, in colour on a terminal.
 
 use super::CommonArguments;
-use crate::app::fault::Fault;
-use crate::app::outcome::Seconds;
-use crate::app::words::finding_text;
 use crate::finding::{Finding, Severity};
+use crate::host::fault::Fault;
+use crate::host::outcome::Seconds;
+use crate::host::words::finding_text;
 use serde_json::{Value, json};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;

@@ -7,10 +7,10 @@ use crate::job::{
 };
 use std::collections::BTreeMap;
 use std::path::Path;
-use strainbridge::app::context::InMemory;
-use strainbridge::app::solve::SolvedCases;
-use strainbridge::app::store::Memory;
 use strainbridge::fe::{CaseResult, SolveOptions};
+use strainbridge::host::context::InMemory;
+use strainbridge::host::store::Memory;
+use strainbridge::workflow::solve::SolvedCases;
 use strainbridge::{Context, Faults, Job, Outcome, Severity};
 
 /// Numbers by group and item. Numbers of a group have one scale, the largest of them.

@@ -1,6 +1,6 @@
 //! Cards as text: small, large or free field, in any order, split into files, continuations in place or named at the end.
 
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 
 /// A field of a card.
 #[derive(Clone)]

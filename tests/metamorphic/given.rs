@@ -3,8 +3,8 @@
 use crate::answers::{answered, read};
 use nastran::op2::{EncodedBlock, Op2Writer};
 use strainbridge::Context;
-use strainbridge::app::context::InMemory;
 use strainbridge::fe::SolveOptions;
+use strainbridge::host::context::InMemory;
 use strainbridge::report::{planned_blocks, rows_of_block};
 
 /// The files with `unit.op2`, the strain of the loads of `unit.toml`.

@@ -3,8 +3,8 @@
 use super::{Context, InMemory, Job, Random, mutate};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use strainbridge::app::outcome::Outcome;
-use strainbridge::{Faults, app};
+use strainbridge::host::outcome::Outcome;
+use strainbridge::{Faults, host};
 
 /// The files of a folder of `examples/`.
 pub struct Folder {
@@ -26,8 +26,8 @@ type Ask = fn(&Path, &Context) -> Result<(), Faults>;
 type Command = (&'static str, Ask);
 
 /// Turns any answer into nothing; its serialisation must not fail either.
-fn told<A: app::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
-    outcome.to_json(&app::outcome::Tables::new()).unwrap();
+fn told<A: host::outcome::Answer>(outcome: Outcome<A>) -> Result<(), Faults> {
+    outcome.to_json(&host::outcome::Tables::new()).unwrap();
     Ok(())
 }
 

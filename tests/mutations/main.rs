@@ -14,10 +14,10 @@ use nastran::results::{ResultsFile, Salvaged};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use strainbridge::app::context::{Context, InMemory};
-use strainbridge::app::job::Job;
-use strainbridge::app::job::table::read_table;
-use strainbridge::app::measured::strain_file::{read_strain, wanted_columns};
+use strainbridge::host::context::{Context, InMemory};
+use strainbridge::job::Job;
+use strainbridge::job::table::read_table;
+use strainbridge::measured::strain_file::{read_strain, wanted_columns};
 use strainbridge::model::Model;
 use strainbridge::series::record::{Options, open_record};
 
@@ -186,7 +186,7 @@ fn runs(bytes: &[u8]) -> bool {
     let Ok(job) = Job::read("job.toml", &files) else {
         return false;
     };
-    let mut inputs = strainbridge::app::files::Inputs::of(&files);
+    let mut inputs = strainbridge::host::files::Inputs::of(&files);
     let named = &job.measured.as_ref().unwrap().strain;
     let wanted = wanted_columns(&mut inputs, &job);
     read_strain(&mut inputs, &job, named, &wanted).is_ok()

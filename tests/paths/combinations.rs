@@ -1,12 +1,12 @@
 //! SUBCOM, SYMCOM and REPCASE against closed forms of rods.
 
 use std::path::Path;
-use strainbridge::app::check::check;
-use strainbridge::app::context::InMemory;
-use strainbridge::app::outcome::Outcome;
-use strainbridge::app::solve::{SolvedCases, solve_deck};
 use strainbridge::fe::{Corners, SolveOptions};
 use strainbridge::finding::Finding;
+use strainbridge::host::context::InMemory;
+use strainbridge::host::outcome::Outcome;
+use strainbridge::workflow::check::check;
+use strainbridge::workflow::solve::{SolvedCases, solve_deck};
 use strainbridge::{Context, Faults, strains};
 
 /// Axial stiffness of the bars.

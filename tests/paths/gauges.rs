@@ -1,6 +1,6 @@
 //! Gauges of a job on closed forms: directions in cylindrical systems, second pairs, names, corrections, reference states, placed grids.
 
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, place, recover, sensitivity, study};
 
 /// A square plate of 4 by 4 elements of 10 mm, 2 mm thick, its middle at the origin, with the coordinate system 7 (cylindrical) there and the

@@ -4,10 +4,10 @@ use nastran::bdf::vocabulary::{CaseWord, Effect, all_cards, all_words, case_word
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use strainbridge::Context;
-use strainbridge::app::context::InMemory;
-use strainbridge::app::{check::check, solve::solve_deck};
 use strainbridge::fe::SolveOptions;
 use strainbridge::finding::Finding;
+use strainbridge::host::context::InMemory;
+use strainbridge::workflow::{check::check, solve::solve_deck};
 
 /// A rod of length 2, EA = 1e8, held at grid 1 and pulled by 1000 at grid 2.
 const ROD: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCROD,1,1,1,2\nPROD,1,1,.01\nMAT1,1,1.+10,,.3,100.\n\

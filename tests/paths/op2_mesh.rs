@@ -4,11 +4,11 @@ use nastran::bdf::{MemoryLoader, read_deck};
 use nastran::op2::Op2;
 use std::path::{Path, PathBuf};
 use strainbridge::Context;
-use strainbridge::app::context::InMemory;
-use strainbridge::app::{check::check, solve::solve_deck};
 use strainbridge::fe::{FeError, LoadCase, Relief, SolveOptions, UnitLoad, refuse, solve_cases};
 use strainbridge::finding::Finding;
+use strainbridge::host::context::InMemory;
 use strainbridge::model::Model;
+use strainbridge::workflow::{check::check, solve::solve_deck};
 
 /// The bytes of an OP2 in the making.
 #[derive(Default)]

@@ -3,8 +3,8 @@
 use crate::drawn::Numbers;
 use std::f64::consts::TAU;
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
-use strainbridge::app::store::Memory;
+use strainbridge::host::context::InMemory;
+use strainbridge::host::store::Memory;
 use strainbridge::{Context, Job};
 
 /// Elements along it.

@@ -3,8 +3,8 @@
 use super::{S, loads, strain};
 use std::fmt::Write;
 use std::path::PathBuf;
-use strainbridge::app::check::Checked;
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
+use strainbridge::workflow::check::Checked;
 use strainbridge::{Context, Faults, Job, Outcome, check, sensitivity, strains};
 
 /// A plate of two quads in m, kg, s, pulled by a force.

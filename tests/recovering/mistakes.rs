@@ -2,8 +2,8 @@
 
 use super::{S, loads, strain};
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
 use strainbridge::finding::Finding;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Disk, Job, Severity, calibrate, payload, reconcile, recover};
 
 const RUNS: usize = 10;
@@ -257,7 +257,7 @@ fn tables_in_the_code_of_windows_are_read_and_names_of_another_case_are_shown_wi
     let text = |name: &str| {
         let path = std::path::Path::new(name);
         String::from_utf8(
-            strainbridge::app::context::Files::load(&right, path)
+            strainbridge::host::context::Files::load(&right, path)
                 .unwrap()
                 .to_vec(),
         )

@@ -1,7 +1,7 @@
 //! Measured strain and recorded runs in the forms in which loggers and spreadsheets write them.
 
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Faults, Job, calibrate, payload, reconcile, recover, sensitivity};
 
 /// Two loads, three gauges; of each load the column of S is known.

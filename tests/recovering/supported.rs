@@ -2,7 +2,7 @@
 
 use crate::drawn::Numbers;
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
+use strainbridge::host::context::InMemory;
 use strainbridge::recovery::history::{Filter, SampleLoads};
 use strainbridge::recovery::{ErrorModel, Readings, Sums, recover};
 use strainbridge::sensitivity::Sensitivity;

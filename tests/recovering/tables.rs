@@ -1,8 +1,8 @@
 //! Columns of tables that a job names: read where the meaning is certain, else named once.
 
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
 use strainbridge::finding::Finding;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Faults, Job, recover, respond, sensitivity};
 
 /// A square plate of one element, its element x axis along x, held at one side.
@@ -190,8 +190,8 @@ fn columns_of_the_runs_file_are_read_or_named() {
             "[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\", mass = \"kg\", length = \"m\" }\n",
         );
         let job = Job::read("job.toml", &files).unwrap();
-        let mut inputs = strainbridge::app::files::Inputs::of(&files);
-        let rows = strainbridge::app::measured::runs_file::read_runs(
+        let mut inputs = strainbridge::host::files::Inputs::of(&files);
+        let rows = strainbridge::measured::runs_file::read_runs(
             &mut inputs,
             &job,
             job.runs.as_ref().unwrap(),

@@ -2,8 +2,8 @@
 
 use super::{S, loads, strain};
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
-use strainbridge::app::recover::{Recovered, ValidationGauge};
+use strainbridge::host::context::InMemory;
+use strainbridge::workflow::recover::{Recovered, ValidationGauge};
 use strainbridge::{Context, Job, calibrate, payload, reconcile, recover};
 
 const NOISE: f64 = 0.3;

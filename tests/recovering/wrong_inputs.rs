@@ -5,8 +5,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::Value;
 use std::fmt::Write;
-use strainbridge::app::context::InMemory;
 use strainbridge::finding::Finding;
+use strainbridge::host::context::InMemory;
 use strainbridge::{Context, Job, Severity, calibrate, payload, reconcile, recover};
 
 /// A fault of the readings, by run and gauge.
@@ -206,7 +206,7 @@ impl Matrix {
     /// The job with recorded loads.
     fn with_runs(files: InMemory) -> InMemory {
         let path = std::path::Path::new("job.toml");
-        let text = strainbridge::app::context::Files::load(&files, path)
+        let text = strainbridge::host::context::Files::load(&files, path)
             .unwrap()
             .to_vec();
         let text = String::from_utf8(text).unwrap()

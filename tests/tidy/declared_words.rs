@@ -5,7 +5,7 @@ use super::root;
 
 /// Declaration texts, with the columns that are prose; of findings, the lines `cause:`, `limit:`, `remedy:`, `example:`.
 const TEXTS: [(&str, std::ops::Range<usize>); 7] = [
-    ("src/app/job/keys.txt", 1..4),
+    ("src/job/keys.txt", 1..4),
     ("src/report/reference/columns.txt", 3..5),
     ("src/report/reference/fields.txt", 2..4),
     ("src/finding/codes/layout.txt", 0..0),

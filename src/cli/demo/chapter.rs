@@ -1,6 +1,6 @@
 //! A chapter of the story, and the deck that it is told of.
 
-use crate::app::outcome::Findings;
+use crate::host::outcome::Findings;
 use serde_json::Value;
 
 /// The model, as in models/truck-shell.

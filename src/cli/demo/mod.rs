@@ -9,17 +9,17 @@ mod simulated_measurements;
 pub(super) use chapter::DECK_NAME;
 
 use super::run::recover_and_save;
-use crate::app;
-use crate::app::context::Context;
-use crate::app::fault::{Fault, Faults};
-use crate::app::job::Job;
-use crate::app::outcome::{Answer, Outcome, StatedUnits};
-use crate::app::output::Output;
-use crate::app::work::Work;
 use crate::fe::SolveOptions;
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::output::Output;
+use crate::host::work::Work;
+use crate::job::Job;
 use crate::report::command::{Report, save, write_page};
 use crate::report::page::Page;
 use crate::units::UnitSystem;
+use crate::workflow;
 use chapter::{Chapter, DECK, Step};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -287,16 +287,16 @@ fn play(
     work.stage(command, |_| {
         let job = Job::read(job, cx.files)?;
         match command {
-            "solve" => asked(&app::solve::solve(&job, solving(), &cx)?, &folder),
-            "place" => asked(&app::place::place(&job, &cx)?, &folder),
+            "solve" => asked(&workflow::solve::solve(&job, solving(), &cx)?, &folder),
+            "place" => asked(&workflow::place::place(&job, &cx)?, &folder),
             "recover" => Ok(step_of(&recover_and_save(&job, &cx, &folder)?.0)),
             "reconcile" => {
-                let mut found = app::reconcile::reconcile(&job, &cx)?;
+                let mut found = workflow::reconcile::reconcile(&job, &cx)?;
                 found.answer.put_into(&folder);
                 asked(&found, &folder)
             }
-            "payload" => asked(&app::payload::payload(&job, &cx)?, &folder),
-            _ => asked(&app::respond::respond(&job, &cx)?, &folder),
+            "payload" => asked(&workflow::payload::payload(&job, &cx)?, &folder),
+            _ => asked(&workflow::respond::respond(&job, &cx)?, &folder),
         }
     })
 }
@@ -325,7 +325,7 @@ where
 /// What the story asks of the solver.
 fn solving() -> SolveOptions {
     SolveOptions {
-        modes: app::solve::MODES,
+        modes: workflow::solve::MODES,
         ..SolveOptions::default()
     }
 }

@@ -2,11 +2,11 @@
 
 use super::chapter::DECK;
 use super::jobs::{NOISE, PAYLOAD, WHEELS};
-use crate::app::fault::{Fault, Faults};
 use crate::fe::floor::{FloorLoad, Standing, solve_standing};
 use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, UnitLoad};
 use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
+use crate::host::fault::{Fault, Faults};
 use crate::model::{GridIx, Model, Vec3};
 use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
 use nastran::bdf::{MemoryLoader, read_deck};

@@ -1,13 +1,13 @@
 //! Files and words of `ballast`.
 
 use super::{Report, write_page};
-use crate::app::ballast::{Ballasted, HungMass};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::page::{Page, table_section};
 use crate::units::number;
+use crate::workflow::ballast::{Ballasted, HungMass};
 use std::fmt::Write;
 
 /// Columns of masses.csv.

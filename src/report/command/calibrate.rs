@@ -2,15 +2,15 @@
 
 use super::sensitivity::columns;
 use super::{Report, mistake, write_page};
-use crate::app::calibrate::{Calibrated, calibrated_job};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::strain::covariance_bytes;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::page::Page;
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
+use crate::strain_chain::covariance_bytes;
 use crate::units::Quantity;
+use crate::workflow::calibrate::{Calibrated, calibrated_job};
 use std::fmt::Write as _;
 
 /// The gauges where the runs say that they sit, as a table that a job can name.

@@ -1,11 +1,11 @@
 //! Files and words of `cases`.
 
 use super::{Report, write_page};
-use crate::app::cases::UnitLoadDeck;
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::page::Page;
+use crate::workflow::cases::UnitLoadDeck;
 
 impl Report for Outcome<UnitLoadDeck> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {

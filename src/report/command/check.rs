@@ -1,13 +1,13 @@
 //! Files and words of `check`.
 
 use super::{Report, write_page};
-use crate::app::check::Checked;
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::model::Model;
 use crate::report::page::{Block, Page, Section};
 use crate::report::scene::{Places, scene_of_model, scene_section};
+use crate::workflow::check::Checked;
 
 impl Report for Outcome<Checked> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {

@@ -1,7 +1,7 @@
 //! Units of the columns of a table, stated by its header.
 
-use crate::app::fault::Fault;
-use crate::app::output::Output;
+use crate::host::fault::Fault;
+use crate::host::output::Output;
 
 /// States the units of a table that was written, column by column of its header; empty: a name or a plain number.
 ///

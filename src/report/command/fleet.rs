@@ -2,14 +2,14 @@
 
 use super::fleet_page::page;
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::fleet::{Fleet, MissionAnswer};
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::page::Page;
 use crate::series::rainflow::Ratio;
 use crate::units::number;
+use crate::workflow::fleet::{Fleet, MissionAnswer};
 use std::fmt::Write;
 
 impl Report for Outcome<Fleet> {

@@ -1,13 +1,13 @@
 //! The report of `fleet`.
 
-use crate::app::fleet::{
-    Fleet, GaugeHistory, MissionAnswer, SampleOf, VehicleAnswer, VehicleLoadAnswer,
-};
-use crate::app::outcome::Outcome;
+use crate::host::outcome::Outcome;
 use crate::report::figure::{Line, Scale, intervals, lines};
 use crate::report::page::{Block, CellLink, Page, Paper, Section, figure_section};
 use crate::series::rainflow::Ratio;
 use crate::units::number;
+use crate::workflow::fleet::{
+    Fleet, GaugeHistory, MissionAnswer, SampleOf, VehicleAnswer, VehicleLoadAnswer,
+};
 
 /// Files listed on the page; `result.json` has all.
 const LISTED: usize = 500;

@@ -1,8 +1,8 @@
 //! `fleet.parquet`: the table of `fleet.csv` for programs.
 
 use super::mistake;
-use crate::app::fault::Faults;
-use crate::app::fleet::Fleet;
+use crate::host::fault::Faults;
+use crate::workflow::fleet::Fleet;
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;

@@ -2,11 +2,10 @@
 
 use super::columns::declare_written;
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::identify::Identified;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
 use crate::estimate::NORMAL_95;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::page::Page;
 use crate::report::vehicle::{
     Curve, Curves, identify_page, restoring_curves, restoring_unit, write_chassis_forces,
@@ -16,6 +15,7 @@ use crate::series::welch::cross_spectra;
 use crate::vehicle::loads::LoadHistory;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::term::UnitNames;
+use crate::workflow::identify::Identified;
 use std::fmt::Write;
 
 impl Report for Outcome<Identified> {

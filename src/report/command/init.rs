@@ -1,11 +1,11 @@
 //! Files and words of `init`.
 
 use super::Report;
-use crate::app::fault::Faults;
-use crate::app::init::Proposal;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::page::{Block, Page, Section};
+use crate::workflow::init::Proposal;
 
 /// Lines of a block: a notebook cuts longer ones.
 const LINES: usize = 30;
@@ -91,7 +91,7 @@ impl Report for Outcome<Proposal> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::outcome::{Findings, Seconds, StatedUnits};
+    use crate::host::outcome::{Findings, Seconds, StatedUnits};
     use crate::report::notebook::piece;
 
     #[test]

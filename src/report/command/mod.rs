@@ -31,9 +31,9 @@ mod verify;
 pub use pages::{write_book, write_page};
 pub use recover::RecordFolder;
 
-use crate::app::fault::{Fault, Faults};
-use crate::app::outcome::{Answer, Outcome, Tables};
-use crate::app::output::Output;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Answer, Outcome, Tables};
+use crate::host::output::Output;
 use crate::report::page::Page;
 use std::path::Path;
 

@@ -1,16 +1,16 @@
 //! Files and words of `modes`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::modes::{ModeRow, Modes};
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::mode_blocks::rows_of_mode_block;
 use crate::report::page::{Block, Page, Section, number};
 use crate::report::scene::{scene_of_solution, scene_section};
 use crate::report::{planned_blocks, write_vtu};
 use crate::vehicle::term::{Quantity, UnitNames};
+use crate::workflow::modes::{ModeRow, Modes};
 use nastran::op2::{EncodedBlock, Op2Writer};
 use std::io::Write;
 

@@ -1,10 +1,10 @@
 //! `report.html`, `report.pdf` and spreadsheets of an outcome.
 
 use super::{Report, mistake};
-use crate::app::fault::Faults;
-use crate::app::job::Job;
-use crate::app::outcome::{Answer, Outcome};
-use crate::app::output::Output;
+use crate::host::fault::Faults;
+use crate::host::outcome::{Answer, Outcome};
+use crate::host::output::Output;
+use crate::job::Job;
 use crate::report::spreadsheet::{About, Sheet, UnitOf, spreadsheet};
 use crate::units::Quantity;
 

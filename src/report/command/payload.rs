@@ -1,17 +1,17 @@
 //! Files and words of `payload`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::payload::{Weighed, WeighedPayload};
 use crate::estimate::NORMAL_95;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::payload::{WeighedRun, Weighing};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
 use crate::report::page::{Page, Paper, Section, figure_section, table_section};
 use crate::report::scene::{scene_of_job, scene_section};
 use crate::units::{MICROSTRAIN, fixed, number};
+use crate::workflow::payload::{Weighed, WeighedPayload};
 use std::fmt::Write;
 
 /// Columns of payload.csv with their quantity.

@@ -2,11 +2,9 @@
 
 use super::columns::declare_written;
 use super::{Report, write_book, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::place::{Installed, InstalledQuality, Placed};
-use crate::app::strain::LoadSigma;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::placement::Role;
 use crate::report::figure::CountPoint;
 use crate::report::page::{Page, Paper, number};
@@ -15,6 +13,8 @@ use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
     HowMany, gauges_csv, gauges_vtu, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
 };
+use crate::strain_chain::LoadSigma;
+use crate::workflow::place::{Installed, InstalledQuality, Placed};
 use std::fmt::Write;
 
 impl Report for Outcome<Placed> {
@@ -243,7 +243,7 @@ fn load_sigma(placed: &Placed) -> Vec<Vec<String>> {
 }
 
 fn how_many(placed: &Placed) -> HowMany {
-    let point = |p: &crate::app::place::CurvePoint| CountPoint {
+    let point = |p: &crate::workflow::place::CurvePoint| CountPoint {
         gauges: p.gauges,
         efficiency: p.efficiency_bound,
         after_loss: p.worst_loss,

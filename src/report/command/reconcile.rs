@@ -4,13 +4,13 @@ use super::reconcile_extended::write_extended;
 use super::reconcile_motion::{motion_page, simulated_words, write_motion};
 use super::reconcile_strain::{strain_page, write_strain};
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::reconcile::{GapFound, Reconciled, effect_in_words};
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::reconcile::{CauseOutcome, CauseSet};
 use crate::report::page::{Page, Paper, table_section};
 use crate::vehicle::term::UnitNames;
+use crate::workflow::reconcile::{GapFound, Reconciled, effect_in_words};
 use std::fmt::Write as _;
 
 impl Report for Outcome<Reconciled> {

@@ -1,15 +1,15 @@
 //! Files of the extended model.
 
-use crate::app::fault::Faults;
-use crate::app::job::Job;
-use crate::app::output::Output;
-use crate::app::reconcile::extended::{
-    DECK, ExtendedRuns, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN,
-};
-use crate::app::reconcile::extended_columns::{payload_factors, sensitivity_columns};
-use crate::app::reconcile::{Reconciled, extended_job};
+use crate::host::fault::Faults;
+use crate::host::output::Output;
+use crate::job::Job;
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
+use crate::workflow::reconcile::extended::{
+    DECK, ExtendedRuns, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN,
+};
+use crate::workflow::reconcile::extended_columns::{payload_factors, sensitivity_columns};
+use crate::workflow::reconcile::{Reconciled, extended_job};
 use std::fmt::Write;
 
 /// Writes the extended job and what it names, where there is one.

@@ -2,10 +2,9 @@
 
 use super::columns::declare_written;
 use super::reconcile_strain::added_rows;
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::reconcile::{MotionPart, Reconciled, SimulationFound};
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::reconcile::motion::gap::EquationGap;
 use crate::reconcile::motion::sits::{GapSits, Stretch};
 use crate::reconcile::motion::{MotionEffect, MotionOutcome};
@@ -18,6 +17,7 @@ use crate::report::vehicle::{
     restoring_curves, restoring_section, restoring_unit, write_restoring_force,
 };
 use crate::vehicle::term::UnitNames;
+use crate::workflow::reconcile::{MotionPart, Reconciled, SimulationFound};
 use std::fmt::Write;
 
 /// Writes the tables; `units` are the job's.

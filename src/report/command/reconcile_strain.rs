@@ -1,11 +1,10 @@
 //! Files of `reconcile` for strain: gap by gauge, loads before and after, page.
 
 use super::columns::declare_written;
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::reconcile::{Added, MarkedStiffness, Reconciled, StrainPart};
 use crate::estimate::NORMAL_95;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::model::{Model, Vec3};
 use crate::reconcile::strain::StrainFrame;
 use crate::report::csv_cell;
@@ -13,6 +12,7 @@ use crate::report::figure::GaugePoints;
 use crate::report::page::Page;
 use crate::report::scene::{Field, FieldValues, Mark, Pointing, Scene, fields_of, mark_of_gap};
 use crate::report::strain::{GapReport, RunStrain, reconcile_page};
+use crate::workflow::reconcile::{Added, MarkedStiffness, Reconciled, StrainPart};
 use std::fmt::Write;
 
 /// Writes `gap.csv` and `loads_before_after.csv`.

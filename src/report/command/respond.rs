@@ -3,11 +3,10 @@
 use super::columns::declare_written;
 use super::respond_files::{arrays, histories};
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::respond::{Element, Responded, grids};
 use crate::estimate::NORMAL_95;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::model::{Model, Vec3};
 use crate::report::csv_cell;
 use crate::report::figure::{GaugePoints, agreement};
@@ -16,6 +15,7 @@ use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{Place, ResponseRow, von_mises_history};
 use crate::units::factor;
+use crate::workflow::respond::{Element, Responded, grids};
 use std::fmt::Write as _;
 
 /// Rows of a table on the page.

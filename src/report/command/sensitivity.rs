@@ -1,16 +1,16 @@
 //! Files and words of `sensitivity`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::job::Job;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::sensitivity::Sensed;
-use crate::app::strain::load_units;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
+use crate::job::Job;
 use crate::report::page::Page;
 use crate::report::scene::scene_of_job;
 use crate::report::strain::{sensitivity_csv, sensitivity_page};
 use crate::sensitivity::Sensitivity;
+use crate::strain_chain::load_units;
+use crate::workflow::sensitivity::Sensed;
 
 impl Report for Outcome<Sensed> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "sensitivity.csv"];

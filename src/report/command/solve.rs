@@ -1,16 +1,16 @@
 //! Files and words of `solve`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::solve::SolvedCases;
 use crate::fe::Solution;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::model::Model;
 use crate::report::page::Page;
 use crate::report::scene::scene_of_solution;
 use crate::report::strain::solution_page;
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
+use crate::workflow::solve::SolvedCases;
 use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
 use rayon::prelude::*;
 

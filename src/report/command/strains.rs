@@ -1,13 +1,13 @@
 //! Files and words of `strains`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::strains::Strains;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::page::Page;
 use crate::report::strain::strains_page;
 use crate::report::{strains_columns, write_strains};
+use crate::workflow::strains::Strains;
 
 impl Report for Outcome<Strains> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "strains.csv"];

@@ -1,14 +1,14 @@
 //! Files and words of `study`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::study::{Studied, StudiedLayout, StudiedLoad};
 use crate::estimate::NORMAL_95;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::page::{Page, table_section};
 use crate::units::number;
+use crate::workflow::study::{Studied, StudiedLayout, StudiedLoad};
 use std::fmt::Write;
 
 impl Report for Outcome<Studied> {

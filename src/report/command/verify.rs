@@ -1,11 +1,11 @@
 //! Files and words of `verify`.
 
 use super::{Report, write_page};
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::verify::Verified;
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::page::{Block, Page, Section};
+use crate::workflow::verify::Verified;
 
 impl Report for Outcome<Verified> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {

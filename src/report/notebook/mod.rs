@@ -8,7 +8,7 @@ use super::drawing::{STROKES, pictures, to_svg, views};
 use super::figure::Figure;
 use super::page::{Block, Page, Section, Table, block_html, judged};
 use super::scene::SceneView;
-use crate::app::outcome::{Answer, Outcome};
+use crate::host::outcome::{Answer, Outcome};
 use maud::{Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("notebook.css");

@@ -1,9 +1,9 @@
 //! What a page is made of. Plain text throughout: each rendering escapes it in its own way.
 
-use crate::app::cases::from_folder;
 use crate::finding::Finding;
 use crate::report::figure::Figure;
 use crate::report::scene::SceneView;
+use crate::workflow::cases::from_folder;
 use std::path::Path;
 
 /// A report: title, findings, then the sections.

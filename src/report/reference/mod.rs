@@ -1,7 +1,7 @@
 //! The reference as pages, made from the code: keys of a job, fields and columns of results, findings.
 
-use crate::app::job::schema::keys;
 use crate::finding::explain::codes;
+use crate::job::schema::keys;
 use std::fmt::Write;
 
 /// Fields of `result.json`: command, field, unit, meaning.

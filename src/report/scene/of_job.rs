@@ -1,16 +1,16 @@
 //! The scene of a job: the job's unit loads as strain and arrows, gauges, recovered loads.
 
 use super::types::{Arrow, ArrowSet, Field, FieldValues, Mark, Places, Pointing, Scene, Twist};
-use crate::app::job::{Job, LoadActs};
-use crate::app::place::PlacedGauge;
-use crate::app::strain::{Fields, LoadUnits, Prepared, load_units};
 use crate::fe::{LoadCase, Solution, UnitLoad};
+use crate::job::{Job, LoadActs};
 use crate::model::{GridIx, Load, Model, Vec3};
 use crate::placement::Role;
 use crate::reconcile::ChannelGap;
 use crate::report::page::number;
 use crate::report::strain::RecoveredRun;
+use crate::strain_chain::{Fields, LoadUnits, Prepared, load_units};
 use crate::units::Quantity;
+use crate::workflow::place::PlacedGauge;
 
 /// Load cases to choose from, and runs.
 const MOST_FIELDS: usize = 24;

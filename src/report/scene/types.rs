@@ -1,9 +1,9 @@
 //! What a scene shows.
 
-use crate::app::job::{Candidates, Clearances, Ids};
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
+use crate::job::{Candidates, Clearances, Ids};
 use crate::model::{Model, Vec3};
 
 /// All of it.

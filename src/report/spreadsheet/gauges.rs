@@ -1,11 +1,11 @@
 //! The gauge plan: where each gauge goes, what the technician takes along, and what it reads.
 
 use super::book::{Cell, Sheet};
-use crate::app::place::{PlacedGauge, WorstLoss};
-use crate::app::strain::LoadSigma;
 use crate::model::Model;
 use crate::report::strain::corner_distances;
 use crate::sensitivity::Sensitivity;
+use crate::strain_chain::LoadSigma;
+use crate::workflow::place::{PlacedGauge, WorstLoss};
 
 /// Sheets `Gauges` (basic frame, the model's length unit), `Gluing sheet`, `Loads` and `Sensitivity` (microstrain per job unit of each load).
 pub fn gauge_sheets(

@@ -1,10 +1,10 @@
 //! The page of `calibrate`.
 
-use crate::app::calibrate::{Calibrated, CalibratedGauge, GlueSummary};
 use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::units::Quantity;
+use crate::workflow::calibrate::{Calibrated, CalibratedGauge, GlueSummary};
 
 /// The page of `calibrate`: what was learnt, left-out runs against what is known, each gauge's model and calibrated row.
 pub fn calibrate_page(title: &str, answer: &Calibrated, findings: &[Finding]) -> Page {

@@ -1,8 +1,8 @@
 //! The table of gauges as glued: where each one sits, as the runs say, in columns that a job can name as its gauges.
 
-use crate::app::calibrate::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
-use crate::app::job::{Job, StatedPlace};
+use crate::job::{Job, StatedPlace};
 use crate::report::csv_cell;
+use crate::workflow::calibrate::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use std::io::{self, Write};
 
 /// Columns with their units; `L` stands for the job's length.

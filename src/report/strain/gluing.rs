@@ -1,11 +1,11 @@
 //! What the technician takes to the structure, to print: as markdown, and as a part of the plan's report.
 
 use super::tables::corner_distances;
-use crate::app::place::PlacedGauge;
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
 use crate::placement::Role;
 use crate::report::page::{Block, Section};
+use crate::workflow::place::PlacedGauge;
 
 const FRAME: &str =
     "Positions and directions in the basic frame; the side is the one the arrow `outward` leaves.";

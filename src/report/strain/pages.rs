@@ -1,7 +1,6 @@
 //! The pages of `sensitivity`, `place` and `recover`.
 
 use super::gluing::{gluing_section, in_length};
-use crate::app::place::PlacedGauge;
 use crate::finding::Finding;
 use crate::report::figure::{
     CountPoint, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history, intervals,
@@ -9,6 +8,7 @@ use crate::report::figure::{
 use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 use crate::sensitivity::Sensitivity;
+use crate::workflow::place::PlacedGauge;
 
 /// Rows of S that a page shows; longer tables are in `sensitivity.csv`.
 const MOST_ROWS: usize = 120;

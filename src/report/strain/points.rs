@@ -1,9 +1,9 @@
 //! `gauges.vtu`.
 
-use crate::app::place::PlacedGauge;
 use crate::gauge::Gauge;
 use crate::model::Vec3;
 use crate::report::{PointValues, write_points_vtu};
+use crate::workflow::place::PlacedGauge;
 use std::io::{Result, Write};
 
 /// Gauges as points: axis, outward normal, leverage, expected strain.

@@ -1,11 +1,11 @@
 //! CSV of gauges and of S.
 
-use crate::app::place::{PlacedGauge, StrainOfLoad};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::model::Model;
 use crate::report::csv_cell;
 use crate::sensitivity::Sensitivity;
+use crate::workflow::place::{PlacedGauge, StrainOfLoad};
 use std::io::{self, Write};
 
 /// S in microstrain per job unit: `gauge`, then a column a load.

@@ -1,7 +1,7 @@
 //! Columns that several files share.
 
-use crate::app::recover::GaugeResidual;
-use crate::app::strain::LoadUnits;
+use crate::strain_chain::LoadUnits;
+use crate::workflow::recover::GaugeResidual;
 
 /// Columns of `loads.csv`: `key`, then each load with the ends of its 95 % interval.
 pub(super) fn columns(key: &str, names: &[String]) -> Vec<String> {

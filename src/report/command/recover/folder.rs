@@ -1,9 +1,9 @@
 //! Where the loads of a record are written while they are recovered.
 
 use super::tables::{LoadTables, LoadsFile};
-use crate::app::fault::Fault;
-use crate::app::output::Output;
-use crate::app::recover::{Block, RecordHead, RecordSink, Samples};
+use crate::host::fault::Fault;
+use crate::host::output::Output;
+use crate::workflow::recover::{Block, RecordHead, RecordSink, Samples};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

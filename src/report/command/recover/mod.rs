@@ -16,11 +16,11 @@ mod vtu;
 pub use folder::RecordFolder;
 
 use super::Report;
-use crate::app::fault::Faults;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::recover::{Recovered, States};
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
 use crate::report::page::{Page, number};
+use crate::workflow::recover::{Recovered, States};
 use std::fmt::Write;
 
 impl Report for Outcome<Recovered> {

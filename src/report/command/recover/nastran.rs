@@ -4,13 +4,13 @@
 //! load and one DLOAD for all.
 
 use super::tables::LoadsFile;
-use crate::app::cases::{dynamic_ids, load_card, load_ids};
-use crate::app::fault::Faults;
-use crate::app::job::{JobLoad, LoadActs};
-use crate::app::output::Output;
-use crate::app::recover::{RecordHead, Recovered, RecoveredRuns, Samples};
-use crate::app::strain::LoadUnits;
+use crate::host::fault::Faults;
+use crate::host::output::Output;
+use crate::job::{JobLoad, LoadActs};
 use crate::model::Model;
+use crate::strain_chain::LoadUnits;
+use crate::workflow::cases::{dynamic_ids, load_card, load_ids};
+use crate::workflow::recover::{RecordHead, Recovered, RecoveredRuns, Samples};
 use nastran::bdf::{Field, format_card};
 use nastran::cards::Force;
 use std::io::Write;

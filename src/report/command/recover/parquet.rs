@@ -1,11 +1,11 @@
 //! `loads.parquet`.
 
 use super::tables::LoadsFile;
-use crate::app::fault::Faults;
-use crate::app::output::Output;
-use crate::app::recover::{RecordHead, Samples};
+use crate::host::fault::Faults;
+use crate::host::output::Output;
 use crate::report::command::mistake;
 use crate::series::parquet::parquet_bytes;
+use crate::workflow::recover::{RecordHead, Samples};
 
 const NAME: &str = "loads.parquet";
 

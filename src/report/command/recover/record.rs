@@ -3,11 +3,10 @@
 use super::columns::{by_gauge, columns_with_units};
 use super::tables::{BIN, CSV, LoadTables, LoadsFile};
 use super::{nastran, rpc};
-use crate::app::fault::Faults;
-use crate::app::job::LoadFile;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::recover::{LoadDamage, Recovered, RecoveredRecord};
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
+use crate::job::LoadFile;
 use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
 use crate::report::figure::LoadTrace;
@@ -16,6 +15,7 @@ use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
 use crate::units::fixed;
+use crate::workflow::recover::{LoadDamage, Recovered, RecoveredRecord};
 use std::io::Write;
 
 /// Blocks formed at a time.
@@ -129,7 +129,7 @@ fn rainflow_csv(w: &mut dyn Write, damage: &[LoadDamage]) -> std::io::Result<()>
     Ok(())
 }
 
-fn of_history(l: &crate::app::recover::RecordLoad) -> HistoryLoad {
+fn of_history(l: &crate::workflow::recover::RecordLoad) -> HistoryLoad {
     HistoryLoad {
         name: l.name.clone(),
         unit: l.unit.clone(),

@@ -1,10 +1,10 @@
 //! `loads.rsp`.
 
 use super::tables::LoadsFile;
-use crate::app::fault::Faults;
-use crate::app::output::Output;
-use crate::app::recover::{RecoveredRecord, Samples, rpc_targets};
+use crate::host::fault::Faults;
+use crate::host::output::Output;
 use crate::series::rpc::write_rpc;
+use crate::workflow::recover::{RecoveredRecord, Samples, rpc_targets};
 
 /// Writes the history in RPC III, report units.
 ///

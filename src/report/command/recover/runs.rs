@@ -2,11 +2,10 @@
 
 use super::columns::{by_gauge, columns, columns_with_units};
 use super::{nastran, vtu};
-use crate::app::fault::Faults;
-use crate::app::job::LoadFile;
-use crate::app::outcome::Outcome;
-use crate::app::output::Output;
-use crate::app::recover::{Recovered, RecoveredRuns};
+use crate::host::fault::Faults;
+use crate::host::outcome::Outcome;
+use crate::host::output::Output;
+use crate::job::LoadFile;
 use crate::recovery::RunEstimate;
 use crate::report::command::{write_book, write_page};
 use crate::report::csv_cell;
@@ -16,6 +15,7 @@ use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
 use crate::units::{MICROSTRAIN, fixed};
+use crate::workflow::recover::{Recovered, RecoveredRuns};
 use std::fmt::Write as _;
 use std::io::Write;
 

@@ -1,14 +1,14 @@
 //! `loads.csv` and `loads.bin` of a record: formed in parallel, written in order by a thread of their own.
 
 use super::columns::columns;
-use crate::app::fault::Fault;
-use crate::app::files::FileBytes;
-use crate::app::output::{OpenFile, Output};
-use crate::app::recover::{Block, RecordHead, Samples};
-use crate::app::strain::LoadUnits;
+use crate::host::fault::Fault;
+use crate::host::files::FileBytes;
+use crate::host::output::{OpenFile, Output};
 use crate::report::csv_cell;
 use crate::series::binary::{self, Header};
 use crate::series::number::push_seven_digits;
+use crate::strain_chain::LoadUnits;
+use crate::workflow::recover::{Block, RecordHead, Samples};
 use rayon::prelude::*;
 use std::io::{Seek, Write};
 use std::sync::Arc;

@@ -1,10 +1,10 @@
 //! `loads.vtu`: recovered loads as arrows at their grids.
 
-use crate::app::fault::Faults;
-use crate::app::job::LoadActs;
-use crate::app::output::Output;
-use crate::app::recover::{Recovered, RecoveredRuns};
+use crate::host::fault::Faults;
+use crate::host::output::Output;
+use crate::job::LoadActs;
 use crate::report::{PointValues, write_points_vtu};
+use crate::workflow::recover::{Recovered, RecoveredRuns};
 
 /// Writes a point a loaded grid with force and moment of every run, basic frame, report units; nothing without a model.
 ///

@@ -1,0 +1,172 @@
+//! What a question comes to: the answer of its own type, with units, inputs, findings and seconds. `result.json` is it, serialised.
+
+use crate::finding::{Finding, Severity, worst};
+use crate::host::files::Input;
+use crate::units::{ReportUnits, UnitSystem};
+use serde::{Serialize, Serializer};
+use serde_json::{Map, Value};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// Counts up when a key of `result.json` changes its meaning.
+pub const SCHEMA: u32 = 1;
+
+/// The answer to a question, of its own type.
+pub trait Answer: Serialize {
+    /// The command that asks.
+    const COMMAND: &'static str;
+}
+
+/// An answer, and how it was come by. The fields of the answer are reached through it: `plan.gauges`.
+#[derive(Clone, Debug)]
+pub struct Outcome<A> {
+    /// Units of the answer.
+    pub units: StatedUnits,
+    /// Every file that was read.
+    pub inputs: Vec<Input>,
+    /// Where they stand, and other files that the answer came from: what is written never replaces one.
+    pub sources: Vec<PathBuf>,
+    /// What is to be known of the answer, the worst first.
+    pub findings: Findings,
+    /// Seconds by stage.
+    pub seconds: Seconds,
+    /// What is worth knowing of the way, and no part of the answer.
+    pub notes: Vec<String>,
+    /// The answer.
+    pub answer: A,
+}
+
+impl<A> std::ops::Deref for Outcome<A> {
+    type Target = A;
+    fn deref(&self) -> &A {
+        &self.answer
+    }
+}
+
+impl<A> Outcome<A> {
+    /// Whether no finding says that the answer can't be relied on.
+    pub fn is_reliable(&self) -> bool {
+        self.findings.worst() < Some(Severity::Error)
+    }
+}
+
+/// Findings of an outcome.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Findings(pub Vec<Finding>);
+
+impl Findings {
+    /// The worst severity; `None` where there are none.
+    pub fn worst(&self) -> Option<Severity> {
+        worst(&self.0)
+    }
+}
+
+impl std::ops::Deref for Findings {
+    type Target = [Finding];
+    fn deref(&self) -> &[Finding] {
+        &self.0
+    }
+}
+
+/// Seconds by stage.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Seconds(Map<String, Value>);
+
+impl Seconds {
+    /// Adds seconds under a name.
+    pub fn add(&mut self, name: &str, seconds: f64) {
+        let before = self.0.get(name).and_then(Value::as_f64).unwrap_or(0.0);
+        let s = before + seconds;
+        self.0
+            .insert(name.to_owned(), Value::from((s * 1e6).round() / 1e6));
+    }
+
+    /// Seconds of all stages.
+    pub fn total(&self) -> f64 {
+        self.0.get("total").and_then(Value::as_f64).unwrap_or(0.0)
+    }
+}
+
+/// Units of an answer, by quantity; none where an answer has no numbers with units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StatedUnits(Vec<(&'static str, String)>);
+
+impl StatedUnits {
+    /// Units of a job: the model's system, and what reports count in.
+    pub fn of(system: UnitSystem, report: &ReportUnits) -> Self {
+        let unit = |name: &str| name.to_owned();
+        Self(vec![
+            ("system", unit(system.name())),
+            ("force", unit(report.force.name)),
+            ("moment", unit(report.moment.name)),
+            ("length", unit(report.length.name)),
+            ("mass", unit(report.mass.name)),
+            ("stress", unit(report.stress.name)),
+            ("strain", unit("microstrain")),
+        ])
+    }
+
+    /// Units of numbers in the model's own system.
+    pub fn of_model(system: UnitSystem) -> Self {
+        Self::of(system, &ReportUnits::of(system))
+    }
+
+    /// Quantity and unit.
+    pub fn list(&self) -> &[(&'static str, String)] {
+        &self.0
+    }
+}
+
+impl Serialize for StatedUnits {
+    fn serialize<S: Serializer>(&self, s: S) -> Result<S::Ok, S::Error> {
+        match self.0.is_empty() {
+            true => s.serialize_none(),
+            false => s.collect_map(self.0.iter().map(|(k, v)| (k, v))),
+        }
+    }
+}
+
+/// Units of the columns of every table that was written: file, column, unit (empty: a number, a name).
+pub type Tables = BTreeMap<String, BTreeMap<String, String>>;
+
+/// `result.json`.
+#[derive(Serialize)]
+struct ResultFile<'a, A> {
+    command: &'a str,
+    version: &'a str,
+    schema: u32,
+    units: &'a StatedUnits,
+    inputs: &'a [Input],
+    findings: &'a Findings,
+    #[serde(flatten)]
+    answer: &'a A,
+    tables: &'a Tables,
+    seconds: &'a Seconds,
+}
+
+impl<A: Answer> Outcome<A> {
+    /// `result.json`, ending in a line feed; `tables` are those that were written beside it.
+    ///
+    /// # Errors
+    /// Where the answer has no JSON form, which is a mistake of the program.
+    pub fn to_json(&self, tables: &Tables) -> Result<String, serde_json::Error> {
+        let file = ResultFile {
+            command: A::COMMAND,
+            version: env!("CARGO_PKG_VERSION"),
+            schema: SCHEMA,
+            units: &self.units,
+            inputs: &self.inputs,
+            findings: &self.findings,
+            answer: &self.answer,
+            tables,
+            seconds: &self.seconds,
+        };
+        serde_json::to_string_pretty(&file).map(|text| text + "\n")
+    }
+}
+
+/// A number for JSON, which has no form for those that are not finite: they become null.
+#[must_use]
+pub fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}

@@ -1,0 +1,135 @@
+//! Solutions in a folder of the file system.
+
+use super::{Key, SolutionStore};
+use crate::host::half_written;
+use std::path::{Path, PathBuf};
+
+/// Solutions kept in one folder; those not used for longest go first.
+const KEPT: usize = 64;
+/// Their bytes.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// A folder of the file system: `<key>.solution`, a few at most.
+#[derive(Clone, Debug)]
+pub struct Folder(PathBuf);
+
+impl Folder {
+    /// Solutions in this folder, which is made when the first is kept.
+    pub fn at(folder: impl Into<PathBuf>) -> Self {
+        Self(folder.into())
+    }
+
+    /// Solutions in the user's folder for caches: `STRAINBRIDGE_CACHE`, else `strainbridge` in `XDG_CACHE_HOME`, in the system's place for
+    /// caches, or in that for temporary files.
+    pub fn of_user() -> Self {
+        let at = |name: &str| {
+            let path = PathBuf::from(std::env::var_os(name)?);
+            path.is_absolute().then_some(path)
+        };
+        if let Some(folder) = at("STRAINBRIDGE_CACHE") {
+            return Self(folder);
+        }
+        let system = match std::env::consts::OS {
+            "windows" => at("LOCALAPPDATA"),
+            "macos" => at("HOME").map(|h| h.join("Library").join("Caches")),
+            _ => at("HOME").map(|h| h.join(".cache")),
+        };
+        let base = at("XDG_CACHE_HOME").or(system);
+        Self(base.unwrap_or_else(std::env::temp_dir).join("strainbridge"))
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Returns how many solutions are kept in the folder, and their bytes.
+    pub fn size(&self) -> (usize, u64) {
+        let kept = self.kept();
+        (kept.len(), kept.iter().map(|k| k.1).sum())
+    }
+
+    /// Removes every kept solution of the folder, and the folder where that leaves it empty: how many, and their bytes.
+    ///
+    /// # Errors
+    /// The first that can't be removed.
+    pub fn clean(&self) -> std::io::Result<(usize, u64)> {
+        let (mut n, mut bytes) = (0, 0);
+        for (_, size, path) in self.kept() {
+            std::fs::remove_file(path)?;
+            n += 1;
+            bytes += size;
+        }
+        // Refused where something else stands in it.
+        let _ = std::fs::remove_dir(&self.0);
+        Ok((n, bytes))
+    }
+
+    /// Kept solutions, the oldest use first: when, bytes, file.
+    fn kept(&self) -> Vec<(std::time::SystemTime, u64, PathBuf)> {
+        let entries = std::fs::read_dir(&self.0).into_iter().flatten();
+        let mut files: Vec<_> = entries
+            .filter_map(Result::ok)
+            .filter(|e| e.path().extension().is_some_and(|x| x == "solution"))
+            .filter_map(|e| {
+                let meta = e.metadata().ok().filter(|m| m.is_file())?;
+                Some((meta.modified().ok()?, meta.len(), e.path()))
+            })
+            .collect();
+        files.sort();
+        files
+    }
+
+    fn file(&self, key: &Key) -> PathBuf {
+        self.0.join(format!("{}.solution", key.name()))
+    }
+
+    fn forget_oldest(&self) {
+        let mut files = self.kept();
+        // The one just kept stays, however large.
+        files.pop();
+        let mut room = MOST_BYTES;
+        for (age, (_, size, path)) in files.into_iter().rev().enumerate() {
+            match room.checked_sub(size).filter(|_| age + 1 < KEPT) {
+                Some(left) => room = left,
+                None => {
+                    let _ = std::fs::remove_file(path);
+                }
+            }
+        }
+    }
+}
+
+impl SolutionStore for Folder {
+    fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String> {
+        match std::fs::read(self.file(key)) {
+            Ok(bytes) => {
+                // Used now: so it is not among the first to go.
+                let now = std::time::SystemTime::now();
+                let file = std::fs::File::options().write(true).open(self.file(key));
+                let _ = file.and_then(|f| f.set_modified(now));
+                Ok(Some(bytes))
+            }
+            Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
+            Err(e) => Err(format!("the kept solution can't be read ({e})")),
+        }
+    }
+
+    fn write(&self, key: &Key, bytes: Vec<u8>) -> Result<(), String> {
+        let write = || -> std::io::Result<()> {
+            std::fs::create_dir_all(&self.0)?;
+            let file = self.file(key);
+            let part = file.with_extension(format!("{}.part", std::process::id()));
+            half_written::note(&part);
+            let done = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, &file));
+            if done.is_err() {
+                let _ = std::fs::remove_file(&part);
+            }
+            half_written::forget(&part);
+            done
+        };
+        write().map_err(|e| format!("`{}`: {e}", self.0.display()))?;
+        self.forget_oldest();
+        Ok(())
+    }
+}

@@ -1,0 +1,80 @@
+//! Where solutions of the built-in solver are kept between questions.
+//!
+//! The key is the SHA-256 of everything a solution depends on: contents of the files, load cases, version, sources, dependencies and
+//! features of the program. A changed deck or load finds nothing.
+
+mod folder;
+mod key;
+mod solution_file;
+
+#[cfg(test)]
+mod tests;
+
+pub use folder::Folder;
+pub use key::Key;
+
+use crate::fe::Solved;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Where solutions are kept, as bytes under a key. A store is a handle: its clones share what they keep.
+pub trait SolutionStore: Send + Sync {
+    /// The bytes kept under a key; `None` where there are none.
+    ///
+    /// # Errors
+    /// Why what is there can't be read.
+    fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String>;
+
+    /// Keeps bytes under a key.
+    ///
+    /// # Errors
+    /// Why they can't be kept.
+    fn write(&self, key: &Key, bytes: Vec<u8>) -> Result<(), String>;
+}
+
+/// The solution under a key; `None` where there is none.
+///
+/// # Errors
+/// Why what is there can't be used.
+pub(crate) fn read_solution(
+    store: &dyn SolutionStore,
+    key: &Key,
+    grids: usize,
+    cases: usize,
+) -> Result<Option<Solved>, String> {
+    let Some(bytes) = store.read(key)? else {
+        return Ok(None);
+    };
+    solution_file::decode(&bytes, key, grids, cases)
+        .map(Some)
+        .ok_or_else(|| "the kept solution is damaged".to_owned())
+}
+
+/// Keeps a solution.
+///
+/// # Errors
+/// Why it can't be kept.
+pub(crate) fn write_solution(
+    store: &dyn SolutionStore,
+    key: &Key,
+    solved: &Solved,
+) -> Result<(), String> {
+    store.write(key, solution_file::encode(solved, key))
+}
+
+/// Memory: solutions live as long as this value or a clone of it.
+#[derive(Clone, Debug, Default)]
+pub struct Memory(Arc<Mutex<HashMap<Key, Vec<u8>>>>);
+
+impl SolutionStore for Memory {
+    fn read(&self, key: &Key) -> Result<Option<Vec<u8>>, String> {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        Ok(kept.get(key).cloned())
+    }
+
+    fn write(&self, key: &Key, bytes: Vec<u8>) -> Result<(), String> {
+        let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.insert(*key, bytes);
+        Ok(())
+    }
+}

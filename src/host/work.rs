@@ -1,0 +1,93 @@
+//! What a workflow collects on its way to an outcome: files read, findings, seconds of its stages, notes.
+
+use crate::finding::Finding;
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::files::Inputs;
+use crate::host::outcome::{Findings, Outcome, Seconds, StatedUnits};
+use std::path::PathBuf;
+use std::time::Instant;
+
+/// A question on its way to its answer.
+pub struct Work<'a> {
+    /// What it is asked in.
+    pub cx: Context<'a>,
+    /// Files read so far.
+    pub inputs: Inputs<'a>,
+    /// What the stages had to say.
+    pub findings: Vec<Finding>,
+    /// What is worth knowing of the way, and no part of the answer.
+    pub notes: Vec<String>,
+    /// Files that were read and are not listed among the inputs.
+    pub sources: Vec<PathBuf>,
+    seconds: Seconds,
+    began: Instant,
+}
+
+impl<'a> Work<'a> {
+    /// A question that is asked of files alone.
+    pub fn new(cx: &Context<'a>) -> Self {
+        Self {
+            cx: cx.clone(),
+            inputs: Inputs::of(cx.files),
+            findings: Vec::new(),
+            notes: Vec::new(),
+            sources: Vec::new(),
+            seconds: Seconds::default(),
+            began: Instant::now(),
+        }
+    }
+
+    /// Runs a stage: timed under its name, told to whoever hears of progress.
+    pub fn stage<T>(&mut self, name: &str, work: impl FnOnce(&mut Self) -> T) -> T {
+        let start = Instant::now();
+        self.cx.progress.begin(name);
+        let out = work(self);
+        self.cx.progress.end();
+        self.note_seconds(name, start.elapsed().as_secs_f64());
+        out
+    }
+
+    /// Adds seconds under a name of their own, for the steps of a stage.
+    pub fn note_seconds(&mut self, name: &str, seconds: f64) {
+        self.seconds.add(name, seconds);
+    }
+
+    /// Goes on, or not.
+    ///
+    /// # Errors
+    /// One fault where whoever hears of progress stops the work.
+    pub fn go_on(&self) -> Result<(), Faults> {
+        if self.cx.progress.is_cancelled() {
+            return Err(stopped().into());
+        }
+        Ok(())
+    }
+
+    /// The outcome: the answer with everything that was collected.
+    pub fn finish<A>(mut self, units: StatedUnits, answer: A) -> Outcome<A> {
+        self.note_seconds("total", self.began.elapsed().as_secs_f64());
+        self.findings.extend(self.inputs.findings());
+        // The worst first; the order of stages within a severity.
+        self.findings.sort_by_key(|f| std::cmp::Reverse(f.severity));
+        Outcome {
+            units,
+            sources: self
+                .inputs
+                .paths()
+                .into_iter()
+                .chain(self.sources)
+                .collect(),
+            inputs: self.inputs.list(),
+            findings: Findings(self.findings),
+            seconds: self.seconds,
+            notes: self.notes,
+            answer,
+        }
+    }
+}
+
+/// What is said where whoever hears of progress stops the work.
+pub fn stopped() -> Fault {
+    Fault::of("work", "progress", "stopped", "ask again")
+}

@@ -1,0 +1,82 @@
+//! What the rooms below do for a job: its files read with the line that names them, its folder of kept solutions.
+
+use super::{Job, NamedFile};
+use crate::host::context::Context;
+use crate::host::fault::Fault;
+use crate::host::files::{FileBytes, Inputs, as_table, no_text, unreadable};
+use crate::host::store::Folder;
+use crate::host::work::Work;
+use crate::series::record::csv::table_text;
+use std::path::Path;
+
+impl Inputs<'_> {
+    /// Returns the bytes of a file that a job names; of a spreadsheet the CSV text of its first sheet, of Parquet and Feather with a column `run`
+    /// the table as CSV text.
+    ///
+    /// # Errors
+    /// A fault at the line of the job that names it.
+    pub fn read_named(&mut self, job: &Job, named: &NamedFile) -> Result<FileBytes, Fault> {
+        let read = self.read(&job.folder, &named.given);
+        // Results and covariances have forms of their own.
+        let is_table = !["model.", "load.result", "sensitivity.covariance"]
+            .iter()
+            .any(|key| named.key.starts_with(key));
+        let read = match is_table {
+            true => read.and_then(|bytes| as_table(&named.given, bytes)),
+            false => read,
+        };
+        self.note_end(&named.given, read.as_ref().ok());
+        read.map_err(|f| at_job_line(job, named, f))
+    }
+
+    /// Returns the text of a table that a job names: UTF-8, UTF-16, or the eight-bit code of Windows that spreadsheets write.
+    ///
+    /// # Errors
+    /// A fault at the line of the job that names it, or at the line that isn't text.
+    pub fn read_named_text(&mut self, job: &Job, named: &NamedFile) -> Result<String, Fault> {
+        let text = self.table_bytes(&job.folder, &named.given);
+        let text =
+            text.and_then(|bytes| table_text(&bytes).ok_or_else(|| no_text(&named.given, &bytes)));
+        self.note_end(&named.given, text.as_ref().ok());
+        text.map_err(|f| at_job_line(job, named, f))
+    }
+}
+
+impl<'a> Work<'a> {
+    /// A question of a job, whose files count as read.
+    pub fn of_job(cx: &Context<'a>, job: &Job) -> Self {
+        let mut work = Self::new(cx);
+        work.inputs = Inputs::resume(cx.files, &job.read);
+        work
+    }
+}
+
+impl Folder {
+    /// Solutions in `<job name>.cache` beside the job, as `<job name>.out` beside it holds what a command writes.
+    pub fn beside(job: &Job) -> Self {
+        let mut name = match Path::new(&job.file).file_stem() {
+            Some(stem) => stem.to_owned(),
+            None => "strainbridge".into(),
+        };
+        name.push(".cache");
+        Self::at(job.folder.join(name))
+    }
+}
+
+fn at_job_line(job: &Job, named: &NamedFile, f: Fault) -> Fault {
+    match f.line {
+        Some(_) => f,
+        None => Fault::at(
+            &*job.file,
+            named.line,
+            &*named.key,
+            format!("`{}`: {}", named.given, f.wrong),
+            f.remedy,
+        ),
+    }
+}
+
+/// The fault, at its line of the job, of a file that can't be read.
+pub(crate) fn unreadable_at(job: &Job, named: &NamedFile, e: &std::io::Error) -> Fault {
+    at_job_line(job, named, unreadable(&named.given, e))
+}

@@ -1,0 +1,114 @@
+//! job.toml: [`parse`] turns text into [`raw`] structs with the place of every value, [`resolve`] turns those into the plain
+//! structs of [`types`]; [`gauges`], [`given_columns`] and [`table`] read the tables a job names; [`schema`] describes
+//! a job to editors.
+
+pub mod correct;
+mod faults;
+mod gauge_table;
+pub mod gauges;
+pub mod given_columns;
+pub(crate) mod host;
+mod not_a_job;
+mod parse;
+pub mod payload_loads;
+pub mod payload_signature;
+mod picked;
+pub mod quantity;
+mod raw;
+pub mod readings;
+mod resolve;
+mod roles;
+pub(crate) mod same_name;
+pub mod schema;
+mod shapes;
+mod spanned;
+pub mod suggest;
+pub mod table;
+mod types;
+pub mod unread;
+
+#[cfg(test)]
+pub(crate) mod tests;
+
+pub use types::*;
+
+use crate::host::context::Files;
+use crate::host::fault::Faults;
+use crate::host::files::Inputs;
+use crate::units::STANDARD_GRAVITY_M_S2;
+use std::path::Path;
+
+impl Job {
+    /// The job in a file.
+    ///
+    /// # Errors
+    /// Every fault found, with file and line: syntax, unknown keys, wrong types, contradictions, missing files.
+    pub fn read(path: impl AsRef<Path>, files: &dyn Files) -> Result<Self, Faults> {
+        let mut inputs = Inputs::of(files);
+        let mut job = read_job(&mut inputs, path.as_ref())?;
+        job.read = inputs.files_read();
+        Ok(job)
+    }
+
+    /// Gravity, m/s^2 whatever the unit system: that of `[payload]`, else standard gravity.
+    pub fn gravity_m_s2(&self) -> f64 {
+        let payload = self.payload.as_ref();
+        payload.map_or(STANDARD_GRAVITY_M_S2, |p| p.gravity_m_s2)
+    }
+
+    /// Gravity in the job's units.
+    pub fn gravity(&self) -> f64 {
+        self.gravity_m_s2() / self.units.length_m()
+    }
+
+    /// Where the payload of `[payload]` acts: the grid stated, else the one grid at which wanted moments act.
+    pub fn payload_grid(&self) -> Option<u32> {
+        let payload = self.payload.as_ref()?;
+        let mut with_moment = self.loads.iter().filter_map(|l| match l.acts {
+            LoadActs::AtGrid {
+                grid, component, ..
+            } if !component.is_force() && l.role == LoadRole::Wanted => Some(grid),
+            _ => None,
+        });
+        payload.grid.or_else(|| {
+            let first = with_moment.next()?;
+            with_moment.all(|g| g == first).then_some(first)
+        })
+    }
+}
+
+impl AsRef<Path> for Job {
+    fn as_ref(&self) -> &Path {
+        Path::new(&self.file)
+    }
+}
+
+/// The job in a file, with its gauge file read; strain and runs are read when a command asks for them.
+///
+/// # Errors
+/// Every fault found: syntax, unknown keys, wrong types, contradictions, missing files.
+pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
+    let given = path.display().to_string();
+    not_a_job::check_name(&given)?;
+    let folder = Path::new("");
+    let bytes = inputs.read(folder, &given).map_err(Faults::from)?;
+    if let Ok(text) = std::str::from_utf8(&bytes) {
+        not_a_job::check_text(&given, text)?;
+    }
+    let text = inputs.read_text(folder, &given).map_err(Faults::from)?;
+    let (raw, mut faults) = parse::parse_job(&given, &text);
+    let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+    let mut job = resolve::resolve_job(&given, &text, &folder, raw, &mut faults);
+    job.gauges
+        .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
+    picked::read_picked(inputs, &mut job, &mut faults);
+    resolve::check_names(&job, &mut faults);
+    resolve::check_named(&job, &mut faults);
+    correct::correct_legs(&mut job, &mut faults);
+    faults.sort_by(|a, b| {
+        (a.file != given, &a.file, a.line).cmp(&(b.file != given, &b.file, b.line))
+    });
+    faults.dedup();
+    Faults::check(faults)?;
+    Ok(job)
+}

@@ -1,0 +1,92 @@
+//! The file of `[candidates]`: lists of properties and elements that were picked elsewhere, such as in a report.
+
+use super::faults::Collector;
+use super::parse::parse_job;
+use super::resolve::candidates_of;
+use super::types::{Candidates, Ids, Job, NamedFile};
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::files::Inputs;
+
+type Lists<'a> = [(&'static str, &'a mut Option<Ids>); 5];
+
+fn lists(c: &mut Candidates) -> Lists<'_> {
+    [
+        ("properties", &mut c.properties),
+        ("elements", &mut c.elements),
+        ("exclude_properties", &mut c.exclude_properties),
+        ("exclude_elements", &mut c.exclude_elements),
+        ("wanted_elements", &mut c.wanted_elements),
+    ]
+}
+
+/// Puts the lists of the file that `[candidates] file` names beside those of the job; faults are added to the list.
+pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut FaultList) {
+    let Some(named) = job.candidates.file.clone() else {
+        return;
+    };
+    match inputs.read_named_text(job, &named) {
+        Ok(text) => put(job, &named, &text, faults),
+        Err(f) => faults.extend(Faults::from(f).into_list()),
+    }
+}
+
+/// Keys of a picked file that are none of its lists: they would not count.
+fn strangers(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
+    let known = lists(candidates).map(|l| l.0);
+    let table: toml::Table = text.parse().unwrap_or_default();
+    let below = table.get("candidates").and_then(toml::Value::as_table);
+    let sections = table.keys().filter(|k| *k != "candidates").cloned();
+    let keys = below.into_iter().flat_map(toml::Table::keys);
+    let keys = keys.filter(|k| !known.contains(&k.as_str()));
+    let remedy = format!("keep {} here, and the rest in the job", known.join(", "));
+    sections
+        .chain(keys.map(|k| format!("candidates.{k}")))
+        .map(|k| {
+            Fault::of(
+                file,
+                k,
+                "it does not count in a file of picked lists",
+                &*remedy,
+            )
+        })
+        .collect()
+}
+
+fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
+    let file = &*named.given;
+    let (raw, found) = parse_job(file, text);
+    let broken = !found.is_empty();
+    faults.extend(found);
+    let Some(section) = &raw.candidates else {
+        if !broken {
+            faults.push(Fault::at(
+                file,
+                1,
+                "candidates",
+                "the file has no [candidates]",
+                "write `[candidates]` above its lists",
+            ));
+        }
+        return;
+    };
+    faults.extend(strangers(file, text, &mut job.candidates));
+    let mut c = Collector::new(file, text, faults);
+    let mut picked = candidates_of(&mut c, section);
+    for ((name, own), (_, other)) in lists(&mut job.candidates)
+        .into_iter()
+        .zip(lists(&mut picked))
+    {
+        if own.is_some() && other.is_some() {
+            let wrong = format!("`{name}` stands in the job too");
+            c.fault(
+                section,
+                &format!("candidates.{name}"),
+                wrong,
+                "state it in one of the two",
+            );
+        }
+        if own.is_none() {
+            *own = other.take();
+        }
+    }
+}

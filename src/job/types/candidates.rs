@@ -1,0 +1,68 @@
+//! `[candidates]`.
+
+use super::named_file::NamedFile;
+use super::region::Region;
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::{Bridge, Rosette};
+use crate::job::shapes::Ids;
+
+/// The angles of candidates as a job states them: a step, not the angles themselves ([`crate::placement::candidates::Angles`]).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AngleStep {
+    /// Every so many degrees from the element x axis.
+    Degrees(f64),
+    /// Any angle.
+    Continuous,
+}
+
+/// `[candidates]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Candidates {
+    /// Property ids; `None`: all shells.
+    pub properties: Option<Ids>,
+    /// Element ids; `None`: all.
+    pub elements: Option<Ids>,
+    /// Surfaces; default both.
+    pub surfaces: Vec<Surface>,
+    /// Angles; default 15 degrees.
+    pub angles: AngleStep,
+    /// Grid length of the gauges to be placed.
+    pub grid_length: f64,
+    /// Wirings to choose from; default quarter bridges alone.
+    pub bridges: Vec<Bridge>,
+    /// Rosettes too.
+    pub rosette: Option<Rosette>,
+    /// SETs of the deck's case control that name the elements; `None`: not limited so.
+    pub sets: Option<Ids>,
+    /// Properties left out.
+    pub exclude_properties: Option<Ids>,
+    /// Elements left out.
+    pub exclude_elements: Option<Ids>,
+    /// Elements of which each gets a gauge.
+    pub wanted_elements: Option<Ids>,
+    /// A file with lists of properties and elements.
+    pub file: Option<NamedFile>,
+    /// Boxes in which gauges may sit; empty: anywhere.
+    pub boxes: Vec<Region>,
+    /// Boxes in which they may not.
+    pub exclude_boxes: Vec<Region>,
+    /// Least distances, job units.
+    pub clear: Clearances,
+    /// Line of the job; 0 where the section is absent.
+    pub line: u32,
+}
+
+/// `clear_of` of `[candidates]`: least distances, 0 where not stated.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Clearances {
+    /// From free edges; from rims of holes too, where `holes` is not stated.
+    pub edges: f64,
+    /// From rims of holes.
+    pub holes: Option<f64>,
+    /// From edges where plates meet: welds.
+    pub joints: f64,
+    /// From grids at which loads act.
+    pub loads: f64,
+    /// From grids that rigid elements, RBE3 and bushes hold.
+    pub attachments: f64,
+}

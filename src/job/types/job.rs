@@ -1,0 +1,97 @@
+//! The whole job, section by section.
+
+use super::ballast::Ballast;
+use super::calibration::CalibrationKeys;
+use super::candidates::Candidates;
+use super::correction::StrainCorrection;
+use super::dynamic::Dynamic;
+use super::fleet::Fleet;
+use super::gauge::JobGauge;
+use super::load::{Combination, JobLoad};
+use super::measured::Measured;
+use super::model::ModelFiles;
+use super::named_file::NamedFile;
+use super::payload::Payload;
+use super::placement::Placement;
+use super::reconcile::Reconcile;
+use super::recover::Recover;
+use super::respond::Respond;
+use super::runs::Runs;
+use super::sensitivity::GivenSensitivity;
+use super::study::Study;
+use super::vehicle::Vehicle;
+use crate::host::file_read::FileRead;
+use crate::job::quantity::quantity_of_name;
+use crate::units::{Quantity, ReportUnits, UnitSystem};
+use std::path::PathBuf;
+
+/// A job.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// The job file as given on the command line.
+    pub file: String,
+    /// Its folder: what paths in it are relative to.
+    pub folder: PathBuf,
+    /// The files it was read from: itself, then tables read with it.
+    pub read: Vec<FileRead>,
+    /// Title; the file's name where there is none.
+    pub title: String,
+    /// Unit system of the model.
+    pub units: UnitSystem,
+    /// Units of reports.
+    pub report_units: ReportUnits,
+    /// `[model]`.
+    pub model: Option<ModelFiles>,
+    /// `[[load]]`, in job order.
+    pub loads: Vec<JobLoad>,
+    /// `[calibration]`; the default where absent.
+    pub calibration: CalibrationKeys,
+    /// `[[combination]]`, in job order.
+    pub combinations: Vec<Combination>,
+    /// `[[correction]]`, in job order.
+    pub corrections: Vec<StrainCorrection>,
+    /// `[[gauge]]`, then those of `[gauges] file`.
+    pub gauges: Vec<JobGauge>,
+    /// Names of the readings of gauges that were left out of this job ([`Job::estimating`]).
+    pub reserved: Vec<String>,
+    /// `[gauges] file`.
+    pub gauge_file: Option<NamedFile>,
+    /// `[candidates]`; the default where absent.
+    pub candidates: Candidates,
+    /// `[placement]`; the default where absent.
+    pub placement: Placement,
+    /// `[measured]`.
+    pub measured: Option<Measured>,
+    /// `[runs]`.
+    pub runs: Option<Runs>,
+    /// `[ballast]`.
+    pub ballast: Option<Ballast>,
+    /// `[payload]`.
+    pub payload: Option<Payload>,
+    /// `[dynamic]`.
+    pub dynamic: Option<Dynamic>,
+    /// `[recover]`; the default where absent.
+    pub recover: Recover,
+    /// `[respond]`; the default where absent.
+    pub respond: Respond,
+    /// `[study]`.
+    pub study: Option<Study>,
+    /// `[vehicle]`.
+    pub vehicle: Option<Vehicle>,
+    /// `[reconcile]`.
+    pub reconcile: Option<Reconcile>,
+    /// `[sensitivity]`: S and signatures computed elsewhere.
+    pub sensitivity: Option<GivenSensitivity>,
+    /// `[fleet]`.
+    pub fleet: Option<Fleet>,
+}
+
+impl Job {
+    /// Returns what a load measures: by its `[[load]]`, else by its name; `None` for a load set of the deck.
+    pub fn quantity_of_load(&self, name: &str) -> Option<Quantity> {
+        match self.loads.iter().find(|l| l.name == name) {
+            Some(load) => load.quantity(),
+            None => Some(quantity_of_name(name)),
+        }
+    }
+}

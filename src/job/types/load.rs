@@ -1,0 +1,136 @@
+//! `[[load]]` and `[[combination]]`.
+
+use super::named_file::NamedFile;
+use crate::job::quantity::quantity_of_name;
+use crate::units::{Quantity, ReportUnits, Unit};
+
+/// A force or moment component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Component {
+    FX,
+    FY,
+    FZ,
+    MX,
+    MY,
+    MZ,
+}
+
+impl Component {
+    /// All, in dof order.
+    pub const ALL: [Component; 6] = [Self::FX, Self::FY, Self::FZ, Self::MX, Self::MY, Self::MZ];
+
+    /// As in a job.
+    pub fn name(self) -> &'static str {
+        ["FX", "FY", "FZ", "MX", "MY", "MZ"][self as usize]
+    }
+
+    /// 0 to 5.
+    pub fn dof(self) -> usize {
+        self as usize
+    }
+
+    /// A force, not a moment.
+    pub fn is_force(self) -> bool {
+        (self as usize) < 3
+    }
+
+    /// Force or moment.
+    pub fn quantity(self) -> Quantity {
+        if self.is_force() {
+            Quantity::Force
+        } else {
+            Quantity::Moment
+        }
+    }
+
+    /// A force or moment of `size` as a vector in the axes of the load.
+    pub fn vector(self, size: f64) -> [f64; 3] {
+        let mut v = [0.0; 3];
+        v[self.dof() % 3] = size;
+        v
+    }
+}
+
+/// What a load is as a job states it, by ids of the deck; [`crate::fe::UnitLoad`] is what a solution takes: vectors in the basic frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LoadActs {
+    /// A component at a grid, in the axes of `cid` (0 basic) at that grid.
+    AtGrid {
+        /// Grid id.
+        grid: u32,
+        /// Component.
+        component: Component,
+        /// Coordinate system id.
+        cid: u32,
+    },
+    /// A load set of the deck.
+    Set(u32),
+    /// A column of a given S: nothing but its name is known.
+    Named,
+}
+
+/// Whether a load is asked for; what a placed gauge is for is [`crate::placement::Role`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum LoadRole {
+    Wanted,
+    Nuisance,
+}
+
+/// A column of S.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JobLoad {
+    /// Name.
+    pub name: String,
+    /// What acts.
+    pub acts: LoadActs,
+    /// The load in its subcase, job units, signed; not zero.
+    pub applied: f64,
+    /// Which of the results files, where the job says.
+    pub result: Option<NamedFile>,
+    /// Subcase, where the job says; else its number in job order.
+    pub subcase: Option<u32>,
+    /// Its number in job order, from 1: the subcase that `cases` gives it.
+    pub number: u32,
+    /// Wanted or nuisance.
+    pub role: LoadRole,
+    /// Prior standard deviation, job units.
+    pub expected: Option<f64>,
+    /// How much its variance counts in criterion A; default 1.
+    pub weight: f64,
+    /// Line of the job.
+    pub line: u32,
+}
+
+impl JobLoad {
+    /// The subcase stated, else the one that `cases` gives.
+    pub fn subcase(&self) -> u32 {
+        self.subcase.unwrap_or(self.number)
+    }
+
+    /// Force or moment; `None` for a load set.
+    pub fn quantity(&self) -> Option<Quantity> {
+        match self.acts {
+            LoadActs::AtGrid { component, .. } => Some(component.quantity()),
+            LoadActs::Named => Some(quantity_of_name(&self.name)),
+            LoadActs::Set(_) => None,
+        }
+    }
+
+    /// The unit in which it is reported; `None` for a load set, which is counted in times the set.
+    pub fn report_unit(&self, units: &ReportUnits) -> Option<Unit> {
+        Some(units.unit(self.quantity()?))
+    }
+}
+
+/// `[[combination]]`: a sum of loads with an interval of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Combination {
+    /// Name.
+    pub name: String,
+    /// Loads and their factors.
+    pub terms: Vec<(String, f64)>,
+    /// Line of the job.
+    pub line: u32,
+}

@@ -1,0 +1,76 @@
+//! `[reconcile]` and `[[reconcile.effect]]`.
+
+use super::named_file::NamedFile;
+use crate::job::shapes::Ids;
+use std::collections::BTreeMap;
+
+/// Which world `reconcile` compares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum ReconcilePath {
+    Static,
+    Dynamic,
+}
+
+/// `[reconcile]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reconcile {
+    /// Static or dynamic.
+    pub path: ReconcilePath,
+    /// Zone to property ids.
+    pub zones: BTreeMap<String, Ids>,
+    /// Place to grid id.
+    pub places: BTreeMap<String, u32>,
+    /// Apparent strain per degree by bridge name.
+    pub thermal_microstrain_per_degc: BTreeMap<String, f64>,
+    /// Temperature set of the deck whose pattern `thermal_gradient` has.
+    pub temperature_set: Option<u32>,
+    /// Effect ids; `None`: all.
+    pub effects: Option<Vec<String>>,
+    /// Bushes whose stiffness may be wrong; `None`: all, where they are few.
+    pub joints: Option<Ids>,
+    /// Causes measured beside the readings: name, and column of the runs file.
+    pub causes: BTreeMap<String, String>,
+    /// Gluing tolerance of angles, degrees, 1 sd.
+    pub angle_tolerance_deg: Option<f64>,
+    /// Gluing tolerance of places, mm, 1 sd.
+    pub position_tolerance_mm: Option<f64>,
+    /// Hypotheses of the user's own.
+    pub described: Vec<DescribedEffect>,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// `[[reconcile.effect]]`: a hypothesis of the user's own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DescribedEffect {
+    /// Its id in results.
+    pub id: String,
+    /// What it does at size one.
+    pub source: EffectSource,
+    /// One standard deviation of its size before a run is seen.
+    pub prior: f64,
+    /// Line of the job.
+    pub line: u32,
+}
+
+/// What a described effect does at size one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EffectSource {
+    /// A table: the change of S, a row a gauge, a column a load.
+    Signature(NamedFile),
+    /// The thickness of a shell property times a factor.
+    Thickness {
+        /// Property id.
+        property: u32,
+        /// Factor.
+        factor: f64,
+    },
+    /// The stiffness of a bush times a factor.
+    Bush {
+        /// Element id.
+        element: u32,
+        /// Factor.
+        factor: f64,
+    },
+}

@@ -1,0 +1,17 @@
+//! `[respond]`.
+
+use super::named_file::NamedFile;
+use crate::job::shapes::Ids;
+
+/// `[respond]`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Respond {
+    /// Elements to report; `None`: the hottest.
+    pub elements: Option<Ids>,
+    /// How many of the hottest; default 20.
+    pub hottest: usize,
+    /// Load histories; `None`: recovered from `[measured]`.
+    pub loads: Option<NamedFile>,
+    /// Line of the job; 0 where the section is absent.
+    pub line: u32,
+}

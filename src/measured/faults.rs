@@ -1,0 +1,87 @@
+//! Faults of files of measured strain.
+
+use crate::finding::few;
+use crate::host::fault::Fault;
+use crate::job::Job;
+use crate::job::same_name::is_same_name;
+use crate::series::SeriesError;
+
+/// Returns the fault of a record where runs are needed.
+pub(crate) fn no_runs(file: &str) -> Fault {
+    Fault::of(
+        file,
+        "run",
+        "the rows are samples of a record, which can't be read as runs",
+        "give the means of static runs, a row each, with their names in a column `run`; `recover` recovers the loads of a record",
+    )
+}
+
+/// Returns the fault of a strain file without a column of a gauge. Where a table of S alone names the gauges, either file may be wrong.
+pub(crate) fn no_gauge_column(
+    job: &Job,
+    file: &str,
+    columns: &[String],
+    gauges: &[String],
+) -> Fault {
+    let (wrong, remedy) = match &job.sensitivity {
+        Some(s) if job.gauges.is_empty() => (
+            format!("no column is named after a gauge of `{}`", s.file.given),
+            "call the gauges alike in both tables",
+        ),
+        _ => (
+            "no column is named after a gauge of the job".to_owned(),
+            "name the columns after the gauges",
+        ),
+    };
+    let alike = gauges.iter().filter_map(|g| {
+        let column = columns.iter().find(|c| is_same_name(c, g))?;
+        Some(format!("`{column}` and `{g}`"))
+    });
+    let alike: Vec<String> = alike.collect();
+    if !alike.is_empty() {
+        let wrong = format!(
+            "{wrong}; columns and gauges differ by case or separators: {}",
+            few(&alike)
+        );
+        return Fault::at(
+            file,
+            1,
+            "gauge",
+            wrong,
+            "write the names alike in both tables",
+        );
+    }
+    let wrong = match columns.is_empty() {
+        true => format!("{wrong}; the file has no column of numbers"),
+        false => format!("{wrong}; its columns are {}", few(columns)),
+    };
+    Fault::at(file, 1, "gauge", wrong, remedy)
+}
+
+/// The fault of a record that can't be read.
+pub(crate) fn record_fault(file: &str, e: &SeriesError) -> Fault {
+    let (wrong, remedy) = e.parts();
+    match e {
+        SeriesError::Line { line, what, remedy } => {
+            Fault::at(file, *line as u32, "row", what, *remedy)
+        }
+        SeriesError::NotAscending { line, .. } | SeriesError::NoTime { line } => {
+            Fault::at(file, *line as u32, "time", wrong, remedy)
+        }
+        SeriesError::Empty => Fault::at(
+            file,
+            1,
+            "rows",
+            "a header and no rows",
+            "write a row a sample",
+        ),
+        SeriesError::NoRate => Fault::at(
+            file,
+            1,
+            "time",
+            "no column `time`",
+            "add a column `time` in seconds",
+        ),
+        _ => Fault::of(file, "record", wrong, remedy),
+    }
+}

@@ -1,0 +1,197 @@
+//! Which column of a strain file holds which gauge, and microstrain in one of its numbers: one judgement for tables and records.
+
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::series::record::{Clash, Column, Header, name_and_unit};
+use crate::units::microstrain_in;
+use std::collections::{HashMap, HashSet};
+
+/// A column of a strain file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainColumn {
+    /// The gauge, as the job calls it; of a column that is no gauge's, what tells it from the others.
+    pub name: String,
+    /// Microstrain in one of its numbers; `None` where they are no strain, and it is no gauge's.
+    pub microstrain: Option<f64>,
+}
+
+/// The columns of a file, in its order, as `gauges` are called; where none are known, every column may be one.
+///
+/// What stands in brackets beside a name is its unit or, where the job calls a gauge so, part of its name: `SG1 (left)`. A column that is no
+/// strain is another than the gauge's where a column of strain bears the gauge's name: `P01 (raw)` beside `P01 [um/m]`.
+///
+/// # Errors
+/// Gauges in a unit that is none of strain, or that contradicts the row of units; gauges that two columns hold.
+pub fn find_gauge_columns(
+    file: &str,
+    columns: &[Column],
+    gauges: &[String],
+) -> Result<Vec<StrainColumn>, Faults> {
+    let names = Names::of(columns, gauges);
+    let mut faults = FaultList::new();
+    let mut taken: HashSet<String> = HashSet::new();
+    let mut out: Vec<Option<StrainColumn>> = Vec::with_capacity(columns.len());
+    for column in columns {
+        let holds = holder(column, &names).unwrap_or_else(|wrong| {
+            faults.push(wrong.fault(file, column));
+            Holds::Gauge(column.header.whole.clone(), 1.0)
+        });
+        out.push(match holds {
+            Holds::Gauge(name, microstrain) => {
+                if !taken.insert(name.clone()) {
+                    let remedy = "give every column its own name";
+                    faults.push(Fault::at(file, 1, &*name, "column named twice", remedy));
+                }
+                let microstrain = Some(microstrain);
+                Some(StrainColumn { name, microstrain })
+            }
+            Holds::Other => None,
+        });
+    }
+    Faults::check(faults)?;
+    let named = out.into_iter().zip(columns).map(|(gauge, column)| {
+        gauge.unwrap_or_else(|| {
+            let (name, microstrain) = by_itself(column);
+            let whole = column.header.whole.clone();
+            let full = format!("{whole} [{}]", column.unit);
+            let free = |name: &String| !taken.contains(name);
+            let name = [name, whole].into_iter().find(free).unwrap_or(full);
+            taken.insert(name.clone());
+            StrainColumn { name, microstrain }
+        })
+    });
+    Ok(named.collect())
+}
+
+/// The fault of a gauge's unit that is none of strain.
+pub fn no_strain(file: &str, column: &Column) -> Fault {
+    let units = [&column.header.bracket, &column.stated];
+    let unit = units.into_iter().find(|u| microstrain_in(u).is_none());
+    Fault::of(
+        file,
+        &*column.header.name,
+        format!("`{}` is no unit of strain", unit.unwrap_or(&column.unit)),
+        "export it in microstrain (uE, um/m) or strain (m/m)",
+    )
+}
+
+/// Which names are whose.
+struct Names<'a> {
+    /// The job's gauges; none where it doesn't tell.
+    known: HashSet<&'a str>,
+    /// Those that no column is called in whole, by their name before the bracket.
+    split: HashMap<String, Vec<(Header, &'a str)>>,
+    /// Names of columns of strain.
+    held: HashSet<&'a str>,
+}
+
+impl<'a> Names<'a> {
+    fn of(columns: &'a [Column], gauges: &'a [String]) -> Self {
+        let wholes: HashSet<&str> = columns.iter().map(|c| c.header.whole.as_str()).collect();
+        let mut split: HashMap<String, Vec<(Header, &str)>> = HashMap::new();
+        for gauge in gauges.iter().filter(|g| !wholes.contains(g.as_str())) {
+            let header = name_and_unit(gauge).header;
+            let alike = split.entry(header.name.clone()).or_default();
+            alike.push((header, gauge));
+        }
+        let of_strain = |c: &&Column| microstrain_in(&c.unit).is_some();
+        Self {
+            known: gauges.iter().map(String::as_str).collect(),
+            split,
+            held: columns
+                .iter()
+                .filter(of_strain)
+                .map(|c| c.name.as_str())
+                .collect(),
+        }
+    }
+
+    /// The gauge that is called as a header in whole.
+    fn in_whole(&self, header: &Header) -> Option<&'a str> {
+        let exact = self.known.get(header.whole.as_str()).copied();
+        exact.or_else(|| {
+            let mut alike = self.split.get(&header.name)?.iter();
+            let found = alike.find(|(h, _)| !h.bracket.is_empty() && h.is_like(header));
+            found.map(|(_, gauge)| *gauge)
+        })
+    }
+}
+
+/// What a column holds.
+enum Holds {
+    /// A gauge, and microstrain in one of its numbers.
+    Gauge(String, f64),
+    /// Something else.
+    Other,
+}
+
+/// Why a column that should be a gauge's can't be.
+enum Wrong {
+    /// Its unit is none of strain.
+    NoStrain,
+    /// Two units.
+    Clash,
+}
+
+impl Wrong {
+    fn fault(&self, file: &str, column: &Column) -> Fault {
+        match self {
+            Self::NoStrain => no_strain(file, column),
+            Self::Clash => Fault::at(
+                file,
+                1,
+                &*column.header.whole,
+                column.clash_words(),
+                "correct whichever is wrong",
+            ),
+        }
+    }
+}
+
+/// Whose a column is.
+fn holder(column: &Column, names: &Names) -> Result<Holds, Wrong> {
+    let header = &column.header;
+    let clash = column.clash();
+    let (gauge, microstrain) = if names.known.is_empty() {
+        let (name, microstrain) = by_itself(column);
+        match microstrain {
+            _ if clash == Some(Clash::Size) => return Err(Wrong::Clash),
+            None => return Ok(Holds::Other),
+            some => (name, some),
+        }
+    } else if let Some(gauge) = names.in_whole(header) {
+        // Its unit is stated elsewhere, or is one of strain in its brackets; else the brackets are a label.
+        let unit = match column.stated.as_str() {
+            "" => microstrain_in(&header.bracket).or(Some(1.0)),
+            stated => microstrain_in(stated),
+        };
+        (gauge.to_owned(), unit)
+    } else if names.known.contains(header.name.as_str()) {
+        // What stands in brackets must be the unit, not what the unit below makes a label.
+        let is_split = column.name == header.name;
+        let unit = microstrain_in(&column.unit).filter(|_| is_split);
+        (header.name.clone(), unit)
+    } else {
+        return Ok(Holds::Other);
+    };
+    match microstrain {
+        _ if clash == Some(Clash::Size) => Err(Wrong::Clash),
+        Some(microstrain) => Ok(Holds::Gauge(gauge, microstrain)),
+        None if names.held.contains(gauge.as_str()) => Ok(Holds::Other),
+        None => Err(Wrong::NoStrain),
+    }
+}
+
+/// What a column is called, and microstrain in one of its numbers, where no gauge's name tells: what is no unit in brackets is part of the
+/// name, `None` where it is a unit that is none of strain.
+fn by_itself(column: &Column) -> (String, Option<f64>) {
+    let header = &column.header;
+    if column.clash().is_some() {
+        return (header.whole.clone(), None);
+    }
+    let microstrain = microstrain_in(&column.unit);
+    let is_unit = header.is_unit() || header.whole.ends_with(']');
+    if column.stated.is_empty() && microstrain.is_none() && !is_unit {
+        return (header.whole.clone(), Some(1.0));
+    }
+    (column.name.clone(), microstrain)
+}

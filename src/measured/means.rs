@@ -1,0 +1,91 @@
+//! What a strain file comes to where only its means count: sums over the rows, of a record passed over once, however long it is.
+
+use super::open::is_record;
+use super::record::Record;
+use super::strain_file::read_strain;
+use super::strain_table::StrainTable;
+use crate::host::fault::Faults;
+use crate::host::files::{FileBytes, Inputs};
+use crate::job::{Job, NamedFile};
+use crate::recovery::net::Series;
+use crate::series::record::is_format;
+
+/// Text beyond which a record is passed over rather than read whole: its samples would take as much again.
+const LARGE: usize = 16 << 20;
+
+/// A strain file.
+#[derive(Clone, Debug)]
+pub enum StrainFile {
+    /// Runs, or a record small enough to be a table.
+    Table(StrainTable),
+    /// A record.
+    Means(StrainMeans),
+}
+
+/// The sums of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StrainMeans {
+    /// Gauge names.
+    pub gauges: Vec<String>,
+    /// Readings of each, microstrain, channels put right.
+    pub readings: Vec<Series>,
+}
+
+impl StrainFile {
+    /// Gauge names.
+    pub fn gauges(&self) -> &[String] {
+        match self {
+            Self::Table(t) => &t.gauges,
+            Self::Means(m) => &m.gauges,
+        }
+    }
+
+    /// Sums over all rows, by column.
+    pub fn readings(&self) -> Vec<Series> {
+        match self {
+            Self::Means(m) => m.readings.clone(),
+            Self::Table(t) => {
+                let mut out = vec![Series::default(); t.gauges.len()];
+                for i in 0..t.n_rows() {
+                    out.iter_mut()
+                        .zip(t.row(i))
+                        .for_each(|(series, v)| series.add(*v));
+                }
+                out
+            }
+        }
+    }
+}
+
+/// Whether the bytes are a record that is not to be read whole.
+pub fn is_long_record(bytes: &FileBytes) -> bool {
+    is_format(bytes) || bytes.len() > LARGE && is_record(bytes)
+}
+
+/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain_file::wanted_columns`].
+///
+/// # Errors
+/// Every fault of the file.
+pub fn read_strain_file(
+    inputs: &mut Inputs,
+    job: &Job,
+    named: &NamedFile,
+    wanted: &[String],
+) -> Result<StrainFile, Faults> {
+    let bytes = inputs.read_named(job, named).map_err(Faults::from)?;
+    let record = |bytes| {
+        let record = Record::open(job, (&named.given, None), bytes, wanted)?.with_all_strain(job);
+        Ok(StrainFile::Means(StrainMeans {
+            readings: record.sums()?,
+            gauges: record.names_read(),
+        }))
+    };
+    if is_long_record(&bytes) {
+        return record(bytes);
+    }
+    // A short record is a table too, unless it holds what only records may: words for no reading, dates, lines before its header.
+    match read_strain(inputs, job, named, wanted) {
+        Err(_) if is_record(&bytes) => record(bytes),
+        read => read.map(StrainFile::Table),
+    }
+}

@@ -1,0 +1,76 @@
+//! A strain file: runs, or a record.
+
+use super::faults::{no_runs, record_fault};
+use super::record::Record;
+use super::strain_file::{read_strain, wanted_columns};
+use super::strain_table::{StrainRows, StrainTable};
+use crate::host::fault::Faults;
+use crate::host::files::{FileBytes, Inputs};
+use crate::job::{Job, Measured, NamedFile};
+use crate::series::record::csv::{Layout, has_bare_returns};
+use crate::series::record::is_format;
+
+/// Runs or record of a strain file.
+pub(crate) enum MeasuredStrain {
+    /// Static states, a row each.
+    Runs(StrainTable),
+    /// Samples of one record.
+    Record(Box<Record>),
+}
+
+impl MeasuredStrain {
+    /// Returns the runs.
+    ///
+    /// # Errors
+    /// A record.
+    pub fn into_runs(self) -> Result<StrainTable, Faults> {
+        match self {
+            Self::Runs(table) => Ok(table),
+            Self::Record(record) => Err(no_runs(record.file()).into()),
+        }
+    }
+
+    /// Names of its columns, by gauge as the job calls them.
+    pub fn gauges(&self) -> &[String] {
+        match self {
+            Self::Runs(table) => &table.gauges,
+            Self::Record(record) => &record.names,
+        }
+    }
+}
+
+/// Whether a strain file is a record, a row a sample, rather than runs.
+pub(super) fn is_record(bytes: &FileBytes) -> bool {
+    is_format(bytes) || Layout::of(bytes).is_ok_and(|l| l.is_record())
+}
+
+/// Opens a strain file of a job: reads the runs, or opens the record, whose pieces are read later.
+///
+/// # Errors
+/// Every fault of the file.
+pub(crate) fn open(
+    inputs: &mut Inputs,
+    job: &Job,
+    measured: &Measured,
+    named: &NamedFile,
+) -> Result<MeasuredStrain, Faults> {
+    let bytes = inputs.read_named(job, named)?;
+    let wanted = wanted_columns(inputs, job);
+    if is_record(&bytes) {
+        let of_file = (named.given.as_str(), measured.time_unit_s);
+        let record = Record::open(job, of_file, bytes, &wanted)?;
+        return Ok(MeasuredStrain::Record(Box::new(record)));
+    }
+    let table = read_strain(inputs, job, named, &wanted);
+    let looks_like_record = match &table {
+        Ok(t) => matches!(t.rows, StrainRows::Times(_)),
+        Err(_) => has_bare_returns(&bytes),
+    };
+    if looks_like_record {
+        // Its layout is what keeps it from being a record.
+        let wrong = Layout::of(&bytes).err();
+        let wrong = wrong.map_or_else(|| no_runs(&named.given), |e| record_fault(&named.given, &e));
+        return Err(wrong.into());
+    }
+    table.map(MeasuredStrain::Runs)
+}

@@ -1,0 +1,293 @@
+//! A record of any length, a piece at a time: readings, and the loads that a filter makes of them.
+
+use super::faults::record_fault;
+use super::gauge_columns::{StrainColumn, find_gauge_columns};
+use crate::finding::Finding;
+use crate::host::fault::{Fault, Faults};
+use crate::host::files::FileBytes;
+use crate::job::Job;
+use crate::job::correct::{Channel, channel_of, column_of};
+use crate::recovery::clock;
+use crate::recovery::net::Series;
+use crate::recovery::plausible::LARGEST_STRAIN;
+use crate::recovery::stuck::Stuck;
+use crate::series::record::{self as series, Clock, Options, Times, open_record};
+use crate::series::still::{self, Gives, Still};
+use crate::units::MICROSTRAIN;
+use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
+
+/// A record whose columns are read as strain.
+#[derive(Clone)]
+pub(crate) struct Record {
+    inner: Arc<series::Record>,
+    file: String,
+    /// The gauge that each column holds the readings of, as the job calls it.
+    pub names: Vec<String>,
+    /// Microstrain in one unit of each column; not a number where it is no strain.
+    micro: Vec<f64>,
+    /// Columns that are read, and what puts their readings right.
+    columns: Vec<(Option<usize>, Channel)>,
+    /// Readings that are taken for none: column that is read, and samples.
+    blank: Vec<(usize, Range<usize>)>,
+}
+
+impl Record {
+    /// Opens the record in a strain file of a job, of which the columns `wanted` will be read; `time_unit_s` counts where the file states no unit
+    /// of time.
+    ///
+    /// # Errors
+    /// Faults of the file: its format, its times, units that are none of strain.
+    pub fn open(
+        job: &Job,
+        (file, time_unit_s): (&str, Option<f64>),
+        bytes: FileBytes,
+        wanted: &[String],
+    ) -> Result<Self, Faults> {
+        let options = Options {
+            declared_hz: None,
+            time_unit_s,
+            wanted: wanted.to_vec(),
+        };
+        let inner = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
+        let columns = find_gauge_columns(file, inner.columns(), &options.wanted)?;
+        let gauge = |c: &StrainColumn| column_of(&job.corrections, &c.name).to_owned();
+        let micro = |c: &StrainColumn| c.microstrain.unwrap_or(f64::NAN);
+        Ok(Self {
+            names: columns.iter().map(gauge).collect(),
+            file: file.to_owned(),
+            micro: columns.iter().map(micro).collect(),
+            columns: Vec::new(),
+            blank: Vec::new(),
+            inner: Arc::new(inner),
+        })
+    }
+
+    /// The same, with the columns that are read.
+    pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
+        Self { columns, ..self }
+    }
+
+    /// Returns the record with all columns of strain read, but those of the job's reserved gauges.
+    pub fn with_all_strain(self, job: &Job) -> Self {
+        let is_read =
+            |c: &usize| !self.micro[*c].is_nan() && !job.reserved.contains(&self.names[*c]);
+        let columns = (0..self.names.len()).filter(is_read);
+        let columns = columns.map(|c| (Some(c), channel_of(&job.corrections, &self.names[c])));
+        let columns = columns.collect();
+        self.with_columns(columns)
+    }
+
+    /// Returns the gauges whose columns are read.
+    pub fn names_read(&self) -> Vec<String> {
+        let read = self.columns.iter().filter_map(|c| self.names.get(c.0?));
+        read.cloned().collect()
+    }
+
+    /// Returns sums over all samples, microstrain, by column that is read.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn sums(&self) -> Result<Vec<Series>, Fault> {
+        let mut sums = vec![Series::default(); self.columns.len()];
+        for i in 0..self.n_pieces() {
+            self.each_microstrain(i, |_, values| {
+                for row in values.chunks_exact(self.columns.len().max(1)) {
+                    sums.iter_mut().zip(row).for_each(|(s, v)| s.add(*v));
+                }
+            })?;
+        }
+        Ok(sums)
+    }
+
+    /// The same, without readings: number of the column that is read, and samples.
+    pub fn without(self, blank: Vec<(usize, Range<usize>)>) -> Self {
+        Self { blank, ..self }
+    }
+
+    /// The samples of a part in which a gauge (the column that is read by its number) is dead.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn extent(&self, stuck: &Stuck) -> Result<Range<usize>, Fault> {
+        let column = self.columns.get(stuck.gauge).and_then(|c| c.0);
+        let found = still::extent(&self.inner, column, stuck.gives, stuck.span, stuck.within);
+        found.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// What the gauges give in all of the record, of which the rows in `looked` are some.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn throughout(&self, looked: &Still) -> Result<Vec<Gives>, Fault> {
+        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
+        let found = looked.throughout(&self.inner, &columns);
+        found.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// The readings of every column that is read, strain, a column each.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn columns(&self) -> Result<Vec<Vec<f64>>, Fault> {
+        let n = self.columns.len();
+        let mut out = vec![Vec::with_capacity(self.clock().samples); n];
+        for i in 0..self.n_pieces() {
+            self.each(i, |strain| {
+                for row in strain.chunks_exact(n.max(1)) {
+                    out.iter_mut().zip(row).for_each(|(c, v)| c.push(*v));
+                }
+            })?;
+        }
+        Ok(out)
+    }
+
+    /// The same record with other readings, strain, a column each; the first sample and the time between samples, s.
+    ///
+    /// # Errors
+    /// A record without samples.
+    pub fn with_readings(
+        &self,
+        mut readings: Vec<Vec<f64>>,
+        (start_s, step_s): (f64, f64),
+    ) -> Result<Self, Fault> {
+        readings
+            .iter_mut()
+            .flatten()
+            .for_each(|v| *v /= MICROSTRAIN);
+        let n = readings.len();
+        let whole = series::Whole {
+            columns: Vec::new(),
+            times: Times::Even {
+                start_s,
+                step_s,
+                samples: readings.first().map_or(0, Vec::len),
+            },
+            samples: readings,
+            stored: Vec::new(),
+            others: Vec::new(),
+        };
+        let inner = series::Record::new(Box::new(whole), None, None)
+            .map_err(|e| record_fault(&self.file, &e))?;
+        let as_it_is = Channel {
+            offset: 0.0,
+            factor: 1.0,
+            ignore: false,
+        };
+        Ok(Self {
+            inner: Arc::new(inner),
+            file: self.file.clone(),
+            names: self.names.clone(),
+            micro: vec![1.0; n],
+            columns: (0..n).map(|c| (Some(c), as_it_is)).collect(),
+            blank: Vec::new(),
+        })
+    }
+
+    /// Number of the first sample of a piece.
+    pub fn first_of(&self, piece: usize) -> usize {
+        self.inner.span(piece).0
+    }
+
+    /// Time of a sample, s.
+    pub fn time_s(&self, sample: usize) -> f64 {
+        self.inner.clock.time_s(sample)
+    }
+
+    /// Returns the times of the samples.
+    pub fn clock(&self) -> &Clock {
+        &self.inner.clock
+    }
+
+    /// Time of the first sample and between samples, s.
+    pub fn first_and_step(&self) -> (f64, f64) {
+        let clock = self.clock();
+        (clock.start_s, 1.0 / clock.rate_hz)
+    }
+
+    /// Whether neither the file nor the job states the unit of its times, and their size does not show it.
+    pub fn is_time_unit_open(&self) -> bool {
+        !self.inner.is_time_unit_stated()
+    }
+
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    pub fn n_pieces(&self) -> usize {
+        self.inner.n_pieces()
+    }
+
+    pub fn n_columns(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Hands the readings of a piece on, strain, a block at a time.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn each(&self, i: usize, mut sink: impl FnMut(&[f64])) -> Result<(), Fault> {
+        let n = self.columns.len().max(1);
+        self.each_microstrain(i, |first, values| {
+            values.iter_mut().for_each(|v| *v *= MICROSTRAIN);
+            still::blank(values, n, first, &self.blank);
+            sink(values);
+        })
+    }
+
+    /// Hands the readings of a piece on, microstrain, a block at a time with the number of its first sample.
+    fn each_microstrain(
+        &self,
+        i: usize,
+        mut sink: impl FnMut(usize, &mut [f64]),
+    ) -> Result<(), Fault> {
+        let n = self.columns.len().max(1);
+        let columns: Vec<Option<usize>> = self.columns.iter().map(|c| c.0).collect();
+        let micro_of = |c: &Option<usize>| c.and_then(|c| self.micro.get(c)).copied();
+        let right: Vec<(f64, Channel)> = self
+            .columns
+            .iter()
+            .map(|(c, channel)| (micro_of(c).unwrap_or(f64::NAN), *channel))
+            .collect();
+        let mut strain = Vec::new();
+        let read = self.inner.read(i, &columns, &mut |block| {
+            strain.clear();
+            for row in block.values.chunks_exact(n) {
+                let put_right = |(v, (micro, c)): (&f64, &(f64, Channel))| c.put_right(v * micro);
+                strain.extend(row.iter().zip(&right).map(put_right));
+            }
+            sink(block.first, &mut strain);
+            ControlFlow::Continue(())
+        });
+        read.map_err(|e| record_fault(&self.file, &e))
+    }
+
+    /// Times, s, and readings of a piece, strain.
+    pub fn piece(&self, i: usize) -> Result<(Vec<f64>, Vec<f64>), Fault> {
+        let mut values = Vec::new();
+        self.each(i, |strain| values.extend_from_slice(strain))?;
+        Ok((self.times(i), values))
+    }
+
+    /// How many readings of a piece, less `zero`, are too large to be strain.
+    pub fn impossible(&self, i: usize, zero: &[f64]) -> Result<u64, Fault> {
+        let mut n = 0;
+        self.each(i, |strain| {
+            for row in strain.chunks_exact(zero.len().max(1)) {
+                let large = |(v, z): &(&f64, &f64)| (**v - **z).abs() > LARGEST_STRAIN;
+                n += row.iter().zip(zero).filter(large).count() as u64;
+            }
+        })?;
+        Ok(n)
+    }
+
+    pub fn times(&self, i: usize) -> Vec<f64> {
+        let (from, to) = self.inner.span(i);
+        (from..to).map(|s| self.time_s(s)).collect()
+    }
+
+    /// What is to be known of its times.
+    pub fn findings(&self) -> Vec<Finding> {
+        clock::irregular(&self.file, self.clock())
+    }
+}

@@ -1,0 +1,350 @@
+//! Names and units of a run table's columns, read as those of records are: `A [kN]`, `A (kN)`, or a row of units below the names.
+
+use crate::host::fault::{Fault, FaultList};
+use crate::host::files::Inputs;
+use crate::job::same_name::{is_same_name, is_same_word};
+use crate::job::suggest;
+use crate::job::table::Table;
+use crate::job::unread::note_unread;
+use crate::job::{Job, Runs};
+use crate::series::number::DecimalMark;
+use crate::series::record::csv::is_units;
+use crate::series::record::{Clash, Column, name_and_unit, take_unit_below};
+use crate::units::{Quantity, Unit, find_unit, unit_names};
+
+/// Name and unit of every column; a row of units below the names is taken out of the table. A unit beside the name goes before that row's.
+pub fn take_units(t: &mut Table) -> Vec<Column> {
+    let mut columns: Vec<Column> = t.header.iter().map(|h| name_and_unit(h)).collect();
+    let is_row = t.rows.first().is_some_and(|(_, fields)| {
+        let fields: Vec<&[u8]> = fields.iter().map(|f| f.as_bytes()).collect();
+        is_units(&fields, &columns, DecimalMark::Point)
+    });
+    if is_row {
+        let (_, units) = t.rows.remove(0);
+        for (c, unit) in columns.iter_mut().zip(&units) {
+            take_unit_below(c, unit);
+        }
+    }
+    columns
+}
+
+/// The column whose header is `name`, or `name` and a unit; `None` where there is none.
+///
+/// # Errors
+/// Several that are `name` and a unit, and none that is `name` alone.
+pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usize>, Fault> {
+    // Last what the row of units makes a label: what stands in brackets is not what that row says.
+    let readings: [fn(&Column) -> &str; 3] = [|c| &c.header.whole, |c| &c.name, |c| &c.header.name];
+    for reading in readings {
+        let found = sole_column(t, columns, name, |c| reading(c) == name)?;
+        if found.is_some() {
+            return Ok(found);
+        }
+    }
+    Ok(None)
+}
+
+/// Returns the only column that `is_meant` accepts.
+///
+/// # Errors
+/// Several columns.
+fn sole_column(
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+    is_meant: impl Fn(&Column) -> bool,
+) -> Result<Option<usize>, Fault> {
+    let mut meant = columns.iter().enumerate().filter(|(_, c)| is_meant(c));
+    let first = meant.next();
+    match meant.next() {
+        None => Ok(first.map(|(i, _)| i)),
+        Some((_, second)) => Err(Fault::at(
+            &*t.file,
+            1,
+            &*second.header.whole,
+            format!("two columns hold `{name}`"),
+            "leave one of them out, or name it in [runs] columns",
+        )),
+    }
+}
+
+/// Returns the column of `name` of the job: [`place_of`], else the one column that has this name apart from case and separators and no other
+/// name of the job.
+///
+/// # Errors
+/// Several columns.
+pub fn column_called(
+    job: &Job,
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+) -> Result<Option<usize>, Fault> {
+    column_among(&names_in_runs(job), t, columns, name)
+}
+
+/// Returns the column of `name` among the `names` that columns may have.
+///
+/// # Errors
+/// Several columns.
+fn column_among(
+    names: &[String],
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+) -> Result<Option<usize>, Fault> {
+    let exact = place_of(t, columns, name)?;
+    if exact.is_some() {
+        return Ok(exact);
+    }
+    let is_other = |c: &Column| names.iter().any(|n| is_called(c, n));
+    let is_meant = |c: &Column| called(c).iter().any(|n| is_same_word(n, name));
+    sole_column(t, columns, name, |c| is_meant(c) && !is_other(c))
+}
+
+/// Returns the names that a header may state.
+fn called(c: &Column) -> [&str; 3] {
+    [&c.header.whole, &c.name, &c.header.name]
+}
+
+fn is_called(c: &Column, name: &str) -> bool {
+    called(c).contains(&name)
+}
+
+/// Names of the payload in a runs file.
+pub const PAYLOAD: [(&str, Quantity); 4] = [
+    ("payload_force", Quantity::Force),
+    ("payload_mass", Quantity::Mass),
+    ("payload_x", Quantity::Length),
+    ("payload_y", Quantity::Length),
+];
+
+/// Returns the names that a column of the runs file may have for any command, those of a given S apart.
+pub fn names_in_runs(job: &Job) -> Vec<String> {
+    let loads = job.loads.iter().map(|l| l.name.clone());
+    let sums = job.combinations.iter().map(|c| c.name.clone());
+    let payload = PAYLOAD.iter().map(|p| p.0.to_owned());
+    let mapped = job.runs.iter().flat_map(|r| r.columns.values().cloned());
+    let mut out: Vec<String> = loads.chain(sums).chain(payload).chain(mapped).collect();
+    let sd: Vec<String> = out.iter().map(|n| format!("{n}_sd")).collect();
+    out.extend(sd);
+    let causes = job.reconcile.iter().flat_map(|r| &r.causes);
+    out.extend(causes.map(|c| c.1.clone()));
+    out.extend(job.calibration.repeats.iter().cloned());
+    out.extend(job.calibration.depends_on.clone());
+    out.push("run".to_owned());
+    out
+}
+
+/// Returns the names that columns of the runs file may have, and for each column whether it has one; `given` are the loads of a given S.
+fn columns_claimed(
+    job: &Job,
+    (t, columns): (&Table, &[Column]),
+    given: &[String],
+) -> (Vec<String>, Vec<bool>) {
+    let of_job = names_in_runs(job);
+    let mut names = of_job.clone();
+    names.extend(given.iter().flat_map(|n| [n.clone(), format!("{n}_sd")]));
+    let mut read = vec![false; columns.len()];
+    for name in &names {
+        if let Ok(Some(at)) = column_among(&of_job, t, columns, name) {
+            read[at] = true;
+        }
+    }
+    (names, read)
+}
+
+/// Returns the column that no name of the job claims and that may be the one of a load: `FZ_FL` for `FL.FZ`, else the closest by its letters.
+pub fn column_meant<'a>(
+    job: &Job,
+    (t, columns): (&Table, &'a [Column]),
+    given: &[String],
+    name: &str,
+) -> Option<&'a str> {
+    let (_, claimed) = columns_claimed(job, (t, columns), given);
+    let free = columns.iter().zip(claimed).filter(|(_, claimed)| !claimed);
+    let free: Vec<&str> = free.map(|(c, _)| c.name.as_str()).collect();
+    let words = |name: &str| {
+        let lower = name.to_lowercase();
+        let parts = lower.split(|c: char| !c.is_alphanumeric());
+        let mut words: Vec<String> = parts.filter(|w| !w.is_empty()).map(Into::into).collect();
+        words.sort_unstable();
+        words
+    };
+    let turned = free.iter().find(|c| words(c) == words(name)).copied();
+    turned.or_else(|| suggest::closest(name, free))
+}
+
+/// Adds a warning that names the columns of the runs file which no command reads; `given` are the loads of a given S.
+pub fn note_unread_runs(
+    inputs: &mut Inputs,
+    job: &Job,
+    (t, columns): (&Table, &[Column]),
+    given: &[String],
+) {
+    let (names, read) = columns_claimed(job, (t, columns), given);
+    let lacking = |n: &&String| !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd");
+    let lacking: Vec<&str> = names.iter().filter(lacking).map(String::as_str).collect();
+    note_unread(inputs, t, |c| read[c], &lacking);
+}
+
+/// The column that the job asks for by `name`, at this line and key; a fault where there is none, or several.
+pub fn asked_column(
+    job: &Job,
+    (line, key): (u32, &str),
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+    faults: &mut FaultList,
+) -> Option<usize> {
+    let missing = || {
+        let wrong = format!("`{}` has no column `{name}`", t.file);
+        let remedy = suggest::remedy(name, t.header.iter().map(String::as_str));
+        Fault::at(&*job.file, line, key, wrong, remedy)
+    };
+    place_of(t, columns, name)
+        .and_then(|at| at.ok_or_else(missing))
+        .map_err(|f| faults.push(f))
+        .ok()
+}
+
+/// The column that names the runs.
+///
+/// # Errors
+/// A fault where there is none.
+pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fault> {
+    column_called(job, t, columns, "run")?.ok_or_else(|| {
+        let headers = t.header.iter().map(String::as_str);
+        let general = "add a column `run` with the runs' names";
+        let remedy = suggest::header_remedy("run", headers, general);
+        Fault::at(&*t.file, 1, "run", "no column `run`", remedy)
+    })
+}
+
+/// A column of the runs file with numbers of one quantity, and their unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct KnownColumn {
+    /// Its place in the table.
+    pub at: usize,
+    /// The unit that the column states, else that of the job; `None` for amplitudes of load sets, which have none.
+    pub unit: Option<Unit>,
+    /// Whether the column states it.
+    pub is_stated: bool,
+}
+
+/// The column of the runs file that holds `name`; `None` where there is none and the job names none.
+///
+/// The unit is the one that the column states. Where the job's `[runs] units` states another one for the quantity, one of them is wrong
+/// and nothing tells which.
+pub fn known_column(
+    job: &Job,
+    runs: &Runs,
+    t: &Table,
+    columns: &[Column],
+    name: &str,
+    quantity: Option<Quantity>,
+    faults: &mut FaultList,
+) -> Option<KnownColumn> {
+    let given = runs.columns.get(name);
+    let wanted = given.map_or(name, String::as_str);
+    let key = format!("runs.columns.{name}");
+    let at = match given {
+        Some(_) => asked_column(job, (runs.line, &key), t, columns, wanted, faults)?,
+        None => column_called(job, t, columns, wanted)
+            .map_err(|f| faults.push(f))
+            .ok()??,
+    };
+    let of_job = quantity.map(|q| runs.units.unit(q));
+    let here = KnownColumn {
+        at,
+        unit: of_job,
+        is_stated: false,
+    };
+    let (header, stated) = (t.header.get(at)?, columns.get(at)?);
+    let is_named = header == wanted || is_same_name(&stated.name, wanted);
+    if !is_named || stated.clash() == Some(Clash::Size) {
+        let remedy = match is_named {
+            true => "correct whichever is wrong",
+            false => "correct whichever is wrong, or name the column in [runs] columns",
+        };
+        faults.push(Fault::at(&*t.file, 1, header, stated.clash_words(), remedy));
+        return Some(here);
+    }
+    if matches!(stated.unit.as_str(), "" | "-") {
+        return Some(here);
+    }
+    // `Axle (front)` is a name where the job says that this is the column's.
+    let is_name = header == wanted
+        && stated.header.bracket == stated.unit
+        && (given.is_some() || !header.ends_with(']'));
+    let Some((quantity, of_job)) = quantity.zip(of_job) else {
+        if !is_name && stated.unit != "1" {
+            let wrong = format!(
+                "`{name}` is a factor of a load set, the column says `{}`",
+                stated.unit
+            );
+            let remedy = "write how many times the set acts, without a unit";
+            faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+        }
+        return Some(here);
+    };
+    let Some(unit) = find_unit(quantity, &stated.unit) else {
+        if !is_name {
+            let wrong = format!("`{}` is no unit of {}", stated.unit, quantity.word());
+            let remedy = format!("write one of {}", unit_names(quantity).join(", "));
+            faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+        }
+        return Some(here);
+    };
+    if unit != of_job && runs.stated_units.contains(&quantity) {
+        let wrong = format!(
+            "the column says `{}`, the job says `{}` (runs.units.{})",
+            unit.name,
+            of_job.name,
+            quantity.word()
+        );
+        let remedy = "correct whichever is wrong; without runs.units the column's own unit counts";
+        faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
+    } else if unit != of_job {
+        let doubt = noise_in_doubt(job, runs, quantity, unit, of_job);
+        if let Some(fault) = doubt.filter(|f| !faults.contains(f)) {
+            faults.push(fault);
+        }
+    }
+    Some(KnownColumn {
+        at,
+        unit: Some(unit),
+        is_stated: true,
+    })
+}
+
+/// The fault of a noise that the job states beside columns in another unit than the job's, of which it doesn't say whether it is the file's.
+fn noise_in_doubt(
+    job: &Job,
+    runs: &Runs,
+    quantity: Quantity,
+    of_column: Unit,
+    of_job: Unit,
+) -> Option<Fault> {
+    let noise = match quantity {
+        Quantity::Force => runs.noise.force,
+        Quantity::Moment => runs.noise.moment,
+        Quantity::Mass => runs.noise.mass,
+        Quantity::Length => runs.noise.length,
+        Quantity::Stress | Quantity::Acceleration => None,
+    };
+    let noise = noise.filter(|n| *n > 0.0)?;
+    let word = quantity.word();
+    Some(Fault::at(
+        &*job.file,
+        runs.line,
+        format!("runs.noise.{word}"),
+        format!(
+            "is {noise} in `{}` or, as columns of the file, in `{}`?",
+            of_job.name, of_column.name
+        ),
+        format!(
+            "state the unit of file and noise: [runs] units = {{ {word} = \"{}\" }}",
+            of_column.name
+        ),
+    ))
+}

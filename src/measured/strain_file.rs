@@ -1,0 +1,92 @@
+//! A strain file as a table: a column a gauge, a row a run (`run`) or a sample (`time`).
+
+use super::strain_table::StrainTable;
+use super::strain_text::strain_from_text;
+use crate::host::fault::Faults;
+use crate::host::files::Inputs;
+use crate::job::correct::{check_channels, columns_wanted};
+use crate::job::readings::{readings_of, stated_readings};
+use crate::job::table::read_table;
+use crate::job::{Job, JobGauge, NamedFile};
+use std::collections::HashSet;
+
+/// Reads a strain file of text whole, its channels corrected as `[[correction]]` states; `wanted`: its [`wanted_columns`].
+///
+/// # Errors
+/// Every fault: no `run` or `time` column, fields that are no numbers, runs named twice, times that don't ascend.
+pub fn read_strain(
+    inputs: &mut Inputs,
+    job: &Job,
+    named: &NamedFile,
+    wanted: &[String],
+) -> Result<StrainTable, Faults> {
+    let text = inputs.read_named_text(job, named)?;
+    let mut table = strain_from_text(&named.given, &text, wanted)?;
+    check_corrected(job, named, &table.gauges)?;
+    table.put_right(&job.corrections);
+    table.leave_out(&job.reserved);
+    Ok(table)
+}
+
+/// Refuses corrections of channels that the job's strain file lacks, where nothing else names the channels.
+pub(crate) fn check_corrected(
+    job: &Job,
+    named: &NamedFile,
+    columns: &[String],
+) -> Result<(), Faults> {
+    let measured = job.measured.as_ref();
+    let is_own = measured.is_some_and(|m| m.strain.given == named.given);
+    if job.sensitivity.is_some() || !is_own {
+        return Ok(());
+    }
+    check_channels(job, columns, &format!("`{}`", named.given))
+}
+
+/// Names of the columns that the readings of the job's gauges are taken from; none where the job doesn't tell its gauges. Where a given S
+/// names them, its whole table is read for it: once a question will do.
+pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
+    let mut names = gauge_names(inputs, job);
+    names.extend(job.reserved.iter().cloned());
+    columns_wanted(&job.corrections, &names)
+}
+
+/// Readings of the job's gauges that a strain file has no column of. A rosette may have one column of its own name in place of its legs.
+pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec<String> {
+    let known: HashSet<&String> = columns.iter().collect();
+    let has = |name: &String| known.contains(name);
+    if job.gauges.is_empty() {
+        let mut names = gauge_names(inputs, job);
+        names.retain(|n| !has(n));
+        return names;
+    }
+    let of_gauge = |g: &JobGauge| {
+        let mut legs = readings_of(g);
+        legs.retain(|leg| !has(leg) && !has(&g.name));
+        legs
+    };
+    job.gauges.iter().flat_map(of_gauge).collect()
+}
+
+/// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S
+/// that can't be read is a fault of whoever asks for S.
+pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
+    let mut names: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
+    // A rosette is called by its own name too where S comes from a table.
+    let own: HashSet<&str> = job.gauges.iter().map(|g| g.name.as_str()).collect();
+    let legs = stated_readings(job).into_iter();
+    names.extend(legs.filter(|r| !own.contains(r.as_str())));
+    let given = job.sensitivity.as_ref().filter(|_| names.is_empty());
+    let text = given.and_then(|s| inputs.read_named_text(job, &s.file).ok());
+    if let Some((s, text)) = given.zip(text)
+        && let Ok(table) = read_table(&s.file.given, &text)
+        && let Some(key) = table.column(&["gauge", "name"])
+    {
+        names.extend(
+            table
+                .rows
+                .into_iter()
+                .filter_map(|(_, mut r)| (key < r.len()).then(|| r.swap_remove(key))),
+        );
+    }
+    names
+}

@@ -1,0 +1,478 @@
+//! Measured strain less its zero: one answer for every command that reads runs.
+//!
+//! The zero is a file's mean (`[measured] zero`), or what the runs of `zero_runs` read, at which no load acts: between two of them a
+//! gauge's zero is taken as straight over the rows of the file, before the first and after the last as constant. How far it wanders from
+//! row to row is seen between them, and the readings count with that much more noise.
+
+use super::columns::{columns_of, gauges_without_strain, strain_without_gauge};
+use super::faults::no_runs;
+use super::means::is_long_record;
+use super::means::read_strain_file;
+use super::open::{MeasuredStrain, open};
+use super::strain_file::{gauge_names, read_strain, wanted_columns, without_column};
+use super::strain_table::{StrainRows, StrainTable};
+use crate::finding::{Finding, Severity};
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::work::Work;
+use crate::job::{HoldOut, Job, Measured, NamedFile};
+use crate::recovery::{ErrorModel, Readings, plausible};
+use crate::units::MICROSTRAIN;
+
+/// A strain table less its zero.
+pub(crate) struct Zeroed {
+    /// A reading without a zero is not a number.
+    pub table: StrainTable,
+    /// Noise variance of each row's readings, in units of that of a single one.
+    pub noise_factor: Vec<f64>,
+}
+
+impl Zeroed {
+    /// Returns the names of the runs.
+    ///
+    /// # Errors
+    /// A record.
+    pub fn runs(&self) -> Result<&[String], Faults> {
+        match &self.table.rows {
+            StrainRows::Runs(names) => Ok(names),
+            StrainRows::Times(_) => Err(no_runs(&self.table.file).into()),
+        }
+    }
+
+    /// What these gauges read in each row, strain; not a number for a gauge without a column.
+    pub fn readings(&self, gauges: &[String]) -> Vec<Readings> {
+        let table = &self.table;
+        let column = |g: &String| table.gauges.iter().position(|h| h == g);
+        let columns: Vec<Option<usize>> = gauges.iter().map(column).collect();
+        let of_row = |(i, noise_factor): (usize, &f64)| {
+            let row = table.row(i);
+            let reading = |c: &Option<usize>| c.and_then(|c| row.get(c)).copied();
+            let strain = columns.iter().map(reading);
+            Readings {
+                run: match &table.rows {
+                    StrainRows::Runs(names) => names.get(i).cloned().unwrap_or_default(),
+                    StrainRows::Times(times) => {
+                        times.get(i).map(f64::to_string).unwrap_or_default()
+                    }
+                },
+                strain: strain
+                    .map(|v| v.unwrap_or(f64::NAN) * MICROSTRAIN)
+                    .collect(),
+                noise_factor: *noise_factor,
+            }
+        };
+        self.noise_factor.iter().enumerate().map(of_row).collect()
+    }
+}
+
+/// A strain file of the job less its zero.
+///
+/// # Errors
+/// Faults of the files, a long record among them; zero runs that the table lacks.
+pub(crate) fn read_zeroed(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    named: &NamedFile,
+) -> Result<Zeroed, Faults> {
+    let bytes = work.inputs.read_named(job, named)?;
+    if is_long_record(&bytes) {
+        return Err(no_runs(&named.given).into());
+    }
+    let wanted = wanted_columns(&mut work.inputs, job);
+    let mut table = read_strain(&mut work.inputs, job, named, &wanted)?;
+    note_columns(work, job, named, (&table.gauges, &wanted));
+    let (zero, effective) = zero_of(work, job, measured, &table.gauges)?;
+    let own = 1.0 + effective.map_or(0.0, |n| 1.0 / n);
+    let rows = zeros_by_row(work, job, measured, &table)?;
+    let width = table.gauges.len().max(1);
+    for (i, row) in table.microstrain.chunks_exact_mut(width).enumerate() {
+        for (g, v) in row.iter_mut().enumerate() {
+            *v -= zero[g] / MICROSTRAIN + rows.as_ref().map_or(0.0, |z| z.zero[i][g]);
+        }
+    }
+    let noise_factor = match rows {
+        Some(z) => z.noise_factor,
+        None => vec![own; table.n_rows()],
+    };
+    Ok(Zeroed {
+        table,
+        noise_factor,
+    })
+}
+
+/// Adds a warning of gauges without a column in a strain file, and one of columns that belong to no gauge of a job that lists its gauges;
+/// `wanted` are the columns that were asked for.
+pub(crate) fn note_columns(
+    work: &mut Work,
+    job: &Job,
+    named: &NamedFile,
+    (columns, wanted): (&[String], &[String]),
+) {
+    let silent = without_column(&mut work.inputs, job, columns);
+    let silent: Vec<&str> = silent.iter().map(String::as_str).collect();
+    let unknown = columns.iter().filter(|g| !wanted.contains(g));
+    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
+    let finding = gauges_without_strain(named, &silent, &unknown);
+    work.findings.extend(finding);
+    let gauges = gauge_names(&mut work.inputs, job);
+    if gauges.is_empty() {
+        return;
+    }
+    let of_file = format!("`{}`: ", named.given);
+    let finding = strain_without_gauge(&of_file, columns, &gauges);
+    let new = finding.filter(|f| !work.findings.contains(f));
+    work.findings.extend(new);
+}
+
+/// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so, once of the
+/// same gauges.
+pub(crate) fn judged(
+    work: &mut Work,
+    measured: &Measured,
+    gauges: &[String],
+    readings: &[Readings],
+) -> Vec<Readings> {
+    let errors = ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: 0.0,
+    };
+    let (kept, findings) = plausible::check(gauges, readings, errors);
+    for finding in findings {
+        let said = |f: &Finding| f.code == finding.code && f.subject == finding.subject;
+        if !work.findings.iter().any(said) {
+            work.findings.push(finding);
+        }
+    }
+    kept
+}
+
+/// Whether readings are strain by what the job says of S: with a model or a given S. What S is learnt from alone may be any signal.
+pub(crate) fn reads_strain(job: &Job) -> bool {
+    job.model.is_some() || job.sensitivity.is_some()
+}
+
+/// As [`judged`], of a job that may have no S yet: its readings are held against their noise alone.
+pub(crate) fn judged_to_learn(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    gauges: &[String],
+    readings: Vec<Readings>,
+) -> Vec<Readings> {
+    if reads_strain(job) {
+        return judged(work, measured, gauges, &readings);
+    }
+    let errors = ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: 0.0,
+    };
+    work.findings
+        .extend(plausible::check_signal(&readings, errors));
+    readings
+}
+
+/// Whether any reading is left to learn from.
+///
+/// # Errors
+/// One fault where there is none.
+pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults> {
+    let mut all = readings.iter().flat_map(|r| &r.strain);
+    if all.any(|v| v.is_finite()) {
+        return Ok(());
+    }
+    Err(Fault::of(
+        file,
+        "strain",
+        "no gauge of the job has a reading that is strain",
+        "state readings in microstrain (strain times 1e6), a column a gauge",
+    )
+    .into())
+}
+
+/// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file. Not a number for a
+/// gauge that the file says nothing of: its readings have no zero, and it is left out.
+pub(crate) fn zero_of(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    gauges: &[String],
+) -> Result<(Vec<f64>, Option<f64>), Faults> {
+    let Some(named) = &measured.zero else {
+        return Ok((vec![0.0; gauges.len()], None));
+    };
+    let wanted = wanted_columns(&mut work.inputs, job);
+    let file = read_strain_file(&mut work.inputs, job, named, &wanted)?;
+    let columns = columns_of(work, named, file.gauges(), gauges);
+    let readings = file.readings();
+    let mut effective = f64::INFINITY;
+    let mut zero = vec![f64::NAN; gauges.len()];
+    for (z, c) in zero.iter_mut().zip(&columns) {
+        let series = c.and_then(|c| readings.get(c));
+        if let Some((series, mean)) = series.and_then(|s| Some((s, s.mean()?))) {
+            *z = mean * MICROSTRAIN;
+            effective = effective.min(series.effective_samples());
+        }
+    }
+    Ok((zero, effective.is_finite().then_some(effective)))
+}
+
+/// The zero that belongs to each row of a table.
+pub(crate) struct RowZeros {
+    /// Microstrain by row and column of the table.
+    pub zero: Vec<Vec<f64>>,
+    /// Noise variance of each row's readings less zero, in units of that of a single one.
+    pub noise_factor: Vec<f64>,
+}
+
+/// Runs of `hold_out` that the strain file lacks, as every command that reads its runs says.
+fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<(), Faults> {
+    let (HoldOut::Runs(names), StrainRows::Runs(runs)) = (&measured.hold_out, &table.rows) else {
+        return Ok(());
+    };
+    let unknown: FaultList = names
+        .iter()
+        .filter(|n| !runs.contains(n))
+        .map(|n| {
+            Fault::at(
+                &*job.file,
+                measured.line,
+                "measured.hold_out",
+                format!("`{}` has no run `{n}`", table.file),
+                "name runs of the strain file",
+            )
+        })
+        .collect();
+    Faults::check(unknown)
+}
+
+/// Zeros from the runs of `zero_runs`; `None` where the job names none.
+///
+/// A run of `zero_runs` itself gets its zero from the others, so that its loads show how well the zero was followed.
+///
+/// # Errors
+/// Runs that the table lacks, those of `hold_out` among them; rows that are samples.
+pub(crate) fn zeros_by_row(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    table: &StrainTable,
+) -> Result<Option<RowZeros>, Faults> {
+    held_out_runs(job, measured, table)?;
+    if measured.zero_runs.is_empty() {
+        return Ok(None);
+    }
+    let StrainRows::Runs(names) = &table.rows else {
+        no_zero_runs(job, measured, &table.file)?;
+        return Ok(None);
+    };
+    let mut at = zero_rows(work, job, measured, table, names)?;
+    at.sort_unstable();
+    at.dedup();
+    let drift = Drift::of(table, &at, measured.noise_microstrain);
+    let step = (drift.walk + drift.steady).sqrt();
+    let noise = measured.noise_microstrain * measured.noise_microstrain;
+    let (mut zero, mut noise_factor) = (Vec::new(), Vec::new());
+    for i in 0..names.len() {
+        let others: Vec<usize> = at.iter().copied().filter(|a| *a != i).collect();
+        let Between {
+            weights,
+            wander,
+            outside,
+        } = between(if others.is_empty() { &at } else { &others }, i);
+        let of = |g: usize| -> f64 {
+            let parts = weights.iter().map(|(a, w)| w * table.row(*a)[g]);
+            parts.sum()
+        };
+        zero.push((0..table.gauges.len()).map(of).collect());
+        let of_zero: f64 = weights.iter().map(|(_, w)| w * w).sum();
+        let gone = drift.steady * (outside * outside);
+        noise_factor.push(1.0 + of_zero + (drift.walk * wander + gone) / noise);
+    }
+    work.findings.push(
+        Finding::new(
+            Severity::Info,
+            "zero-followed",
+            "measured.zero_runs",
+            format!(
+                "the zero is followed through {} runs without load; it wanders by {:.2} microstrain from run to run (rms over gauges)",
+                at.len(),
+                step
+            ),
+            "",
+        )
+        .with_numbers(step, measured.noise_microstrain),
+    );
+    Ok(Some(RowZeros { zero, noise_factor }))
+}
+
+/// Rows of the runs of `zero_runs`. Where runs are held out in a file of their own, its zeros are its own: between two files nothing says
+/// how far a zero has wandered, so each needs one of these runs at least.
+///
+/// # Errors
+/// Runs that no file has, a file without any.
+fn zero_rows(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    table: &StrainTable,
+    names: &[String],
+) -> Result<Vec<usize>, Faults> {
+    let mut known = names.to_vec();
+    let mut files = format!("`{}` has no", table.file);
+    if let HoldOut::File(hold_out) = &measured.hold_out
+        && measured.zero_runs.iter().any(|r| !names.contains(r))
+    {
+        let both = [&measured.strain, hold_out];
+        files = format!("neither `{}` nor `{}` has a", both[0].given, both[1].given);
+        for other in both.into_iter().filter(|f| f.given != table.file) {
+            if let MeasuredStrain::Runs(other) = open(&mut work.inputs, job, measured, other)? {
+                known.extend_from_slice(other.runs());
+            }
+        }
+    }
+    let fault = |wrong: String, remedy: &str| {
+        Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.zero_runs",
+            wrong,
+            remedy,
+        )
+    };
+    let missing = measured.zero_runs.iter().filter(|r| !known.contains(r));
+    let remedy = "name runs at which no load acts";
+    let faults: FaultList = missing
+        .map(|run| fault(format!("{files} run `{run}`"), remedy))
+        .collect();
+    Faults::check(faults)?;
+    let place = |run: &String| names.iter().position(|n| n == run);
+    let at: Vec<usize> = measured.zero_runs.iter().filter_map(place).collect();
+    if at.is_empty() {
+        let wrong = format!("`{}` has none of these runs", table.file);
+        let remedy = "add to it a run without load, measured beside its runs, and name that run here too; or move its runs into the strain file and name them in `hold_out`";
+        return Err(fault(wrong, remedy).into());
+    }
+    Ok(at)
+}
+
+/// A record has no runs.
+///
+/// # Errors
+/// `zero_runs` of a job whose strain is a record.
+pub(crate) fn no_zero_runs(job: &Job, measured: &Measured, file: &str) -> Result<(), Faults> {
+    if measured.zero_runs.is_empty() {
+        return Ok(());
+    }
+    Err(Fault::at(
+        &*job.file,
+        measured.line,
+        "measured.zero_runs",
+        format!("`{file}` is a record and has no runs"),
+        "name a zero file: zero = \"zero.csv\"",
+    )
+    .into())
+}
+
+/// Rows whose readings make a zero, with their weights, and the variance of a walk there in units of that of one step.
+struct Between {
+    weights: Vec<(usize, f64)>,
+    wander: f64,
+    /// Steps over which a steady drift goes on unseen: none between two rows.
+    outside: f64,
+}
+
+fn between(at: &[usize], i: usize) -> Between {
+    let after = at.partition_point(|a| *a < i);
+    let steps = |a: usize| (i as f64 - a as f64).abs();
+    match (after.checked_sub(1).and_then(|b| at.get(b)), at.get(after)) {
+        (Some(&a), Some(&b)) => {
+            let (from, to) = (steps(a), steps(b));
+            let w = from / (from + to);
+            Between {
+                weights: vec![(a, 1.0 - w), (b, w)],
+                wander: from * to / (from + to),
+                outside: 0.0,
+            }
+        }
+        (Some(&a), None) | (None, Some(&a)) => Between {
+            weights: vec![(a, 1.0)],
+            wander: steps(a),
+            outside: steps(a),
+        },
+        (None, None) => Between {
+            weights: Vec::new(),
+            wander: 0.0,
+            outside: 0.0,
+        },
+    }
+}
+
+/// How zeros move from one row to the next, mean squares over gauges, microstrain^2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Drift {
+    /// Variance of a walk.
+    walk: f64,
+    /// Square of a steady change, which a straight line between two zeros follows; 0 where two zeros alone don't tell it from a walk.
+    steady: f64,
+}
+
+impl Drift {
+    /// From the differences between one zero run and the next, `d_j` over `t_j` rows, of which noise makes `2 s^2`.
+    ///
+    /// A steady change is `u = sum d_j / T`, `T = sum t_j`; what is left of it is a walk: `E (d_j - u t_j)^2 = walk (t_j - t_j^2 / T) + s^2 (2 - 2
+    /// (t_j / T) e_j + 2 (t_j / T)^2)`, `e_j` how many ends of the whole stretch the difference has, and `E u^2 = steady + walk / T + 2 s^2 /
+    /// T^2`.
+    fn of(table: &StrainTable, at: &[usize], noise: f64) -> Self {
+        let noise = noise * noise;
+        let (mut walk, mut free) = (0.0, 0.0);
+        let mut slopes = Vec::new();
+        // One difference alone.
+        let (mut alone, mut count) = (0.0, 0.0);
+        for g in 0..table.gauges.len() {
+            let read = |a: &usize| Some((*a as f64, table.row(*a).get(g).copied()?));
+            let zeros: Vec<(f64, f64)> = (at.iter().filter_map(read))
+                .filter(|z| z.1.is_finite())
+                .collect();
+            let steps: Vec<(f64, f64)> = zeros
+                .windows(2)
+                .map(|z| (z[1].0 - z[0].0, z[1].1 - z[0].1))
+                .collect();
+            let total: f64 = steps.iter().map(|s| s.0).sum();
+            if steps.len() < 2 {
+                for (t, d) in steps {
+                    alone += (d * d - 2.0 * noise) / t;
+                    count += 1.0;
+                }
+                continue;
+            }
+            let slope = steps.iter().map(|s| s.1).sum::<f64>() / total;
+            for (j, (t, d)) in steps.iter().enumerate() {
+                let share = t / total;
+                let ends = f64::from(u8::from(j == 0)) + f64::from(u8::from(j + 1 == steps.len()));
+                let of_noise = noise * (2.0 - 2.0 * share * ends + 2.0 * share * share);
+                walk += ((d - slope * t).powi(2) - of_noise) / t;
+                free += 1.0 - share;
+            }
+            slopes.push((slope, total));
+        }
+        if free <= 0.0 {
+            let walk = if count > 0.0 {
+                (alone / count).max(0.0)
+            } else {
+                0.0
+            };
+            return Self { walk, steady: 0.0 };
+        }
+        let walk = (walk / free).max(0.0);
+        let squares = slopes
+            .iter()
+            .map(|(u, total)| u * u - walk / total - 2.0 * noise / (total * total));
+        Self {
+            walk,
+            steady: (squares.sum::<f64>() / slopes.len() as f64).max(0.0),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,121 @@
+//! `calibration.bin`: what stands behind the intervals of a calibrated S.
+//!
+//! Eight bytes `SBCALIB1`, the length of a JSON header (u32), the header (names of gauges and loads, scale, degrees of freedom, whether
+//! loads were taught one by one), then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by
+//! rows; mean squares of S.
+
+use crate::host::fault::{Fault, Faults};
+use crate::sensitivity::{Sensitivity, Uncertainty};
+use serde::{Deserialize, Serialize};
+
+const MAGIC: &[u8; 8] = b"SBCALIB1";
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    gauges: Vec<String>,
+    loads: Vec<String>,
+    scale: f64,
+    /// `None`: nothing was estimated.
+    dof: Option<f64>,
+    #[serde(default)]
+    dof_outside: Option<f64>,
+    #[serde(default)]
+    one_by_one: bool,
+}
+
+/// The file of a calibrated S; `None` where it has no uncertainty.
+pub fn covariance_bytes(s: &Sensitivity) -> Option<Vec<u8>> {
+    let u = s.uncertainty.as_ref()?;
+    let header = Header {
+        gauges: s.gauges.clone(),
+        loads: s.loads.iter().map(|l| l.name.clone()).collect(),
+        scale: u.scale,
+        dof: u.dof.is_finite().then_some(u.dof),
+        dof_outside: u.dof_outside.is_finite().then_some(u.dof_outside),
+        one_by_one: u.one_by_one,
+    };
+    let header = serde_json::to_vec(&header).ok()?;
+    let mut out = MAGIC.to_vec();
+    out.extend(u32::try_from(header.len()).ok()?.to_le_bytes());
+    out.extend(header);
+    let numbers = u.covariance.iter().chain(&u.scatter).chain(&u.mean_square);
+    numbers.for_each(|v| out.extend(v.to_le_bytes()));
+    Some(out)
+}
+
+/// The uncertainty in a file, for the gauges and loads of S in their order.
+///
+/// # Errors
+/// A file that is none, is cut, or knows other gauges or loads.
+pub fn read_covariance(
+    file: &str,
+    bytes: &[u8],
+    gauges: &[String],
+    loads: &[String],
+) -> Result<Uncertainty, Faults> {
+    let fault = |field: &str, wrong: String| {
+        let remedy =
+            "run `calibrate` again, and keep its sensitivity.csv and calibration.bin together";
+        Faults::from(Fault::of(file, field, wrong, remedy))
+    };
+    let broken = || {
+        fault(
+            "covariance",
+            "no file of `calibrate`, or cut off".to_owned(),
+        )
+    };
+    let rest = bytes.strip_prefix(MAGIC).ok_or_else(broken)?;
+    let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(broken)?;
+    let length = u32::from_le_bytes(*length) as usize;
+    let header = rest.get(..length).ok_or_else(broken)?;
+    let header: Header = serde_json::from_slice(header).map_err(|_| broken())?;
+    let (n, k) = (header.gauges.len(), header.loads.len());
+    let sizes = n
+        .checked_mul(k)
+        .and_then(|nk| Some([nk.checked_mul(nk)?, n.checked_mul(n)?, k.checked_mul(k)?]))
+        .ok_or_else(broken)?;
+    let numbers: Vec<f64> = rest[length..]
+        .chunks_exact(8)
+        .filter_map(|c| c.try_into().ok().map(f64::from_le_bytes))
+        .collect();
+    if numbers.len() as u128 != sizes.iter().map(|s| *s as u128).sum::<u128>()
+        || !(rest.len() - length).is_multiple_of(8)
+        || numbers.iter().any(|v| !v.is_finite())
+        || !header.scale.is_finite()
+    {
+        return Err(broken());
+    }
+    if header.loads != loads {
+        return Err(fault(
+            "loads",
+            format!(
+                "it knows the loads {}, the job has {}",
+                header.loads.join(", "),
+                loads.join(", ")
+            ),
+        ));
+    }
+    let places: Vec<Option<usize>> = gauges
+        .iter()
+        .map(|g| header.gauges.iter().position(|h| h == g))
+        .collect();
+    if let Some(missing) = gauges.iter().zip(&places).find(|(_, p)| p.is_none()) {
+        return Err(fault(
+            "gauges",
+            format!("it does not know gauge `{}`", missing.0),
+        ));
+    }
+    let (covariance, numbers) = numbers.split_at(sizes[0]);
+    let (scatter, squares) = numbers.split_at(sizes[1]);
+    let all = Uncertainty {
+        covariance: covariance.to_vec(),
+        scatter: scatter.to_vec(),
+        mean_square: squares.to_vec(),
+        scale: header.scale,
+        dof: header.dof.unwrap_or(f64::INFINITY),
+        dof_outside: header.dof_outside.or(header.dof).unwrap_or(f64::INFINITY),
+        one_by_one: header.one_by_one,
+    };
+    let order: Vec<usize> = places.into_iter().flatten().collect();
+    Ok(all.of_gauges(&order))
+}

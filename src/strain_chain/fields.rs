@@ -1,0 +1,311 @@
+//! The job's model and the strain of its unit loads, from result files or from the built-in solver.
+
+use super::deck_loads::check_deck_loads;
+use super::load_cases::find_cases;
+use super::mesh::{MeshError, WantedAt, not_checked, take_out};
+use super::unit_loads::unit_loads;
+use crate::fe::from_results::{Displacements, ReadOptions, repeated, solution_from_file};
+use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad};
+use crate::gauge::CornerRows;
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::Work;
+use crate::job::{Job, JobLoad, LoadRole, ModelFiles, Reference};
+use crate::model::{BeamIx, Load as ModelLoad, Model};
+use crate::sensitivity::{Load, LoadCaseOf};
+use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::job_deck::read_deck;
+use crate::strain_chain::named_results::results_fault;
+use crate::strain_chain::solved::{
+    MODES, cases_of_job, relief_of_job, solve_kept, static_case, support_of_job,
+};
+use nastran::results::ResultsFile;
+use std::collections::BTreeSet;
+
+/// Model and strain fields.
+pub struct Fields {
+    /// Deck and model.
+    pub deck: DeckModel,
+    /// Result files, or one solved here.
+    pub solutions: Vec<Solution>,
+    solved_here: bool,
+    /// By load: solution, case.
+    of_load: Vec<(usize, usize)>,
+    /// The mesh error that was taken out of `solutions`, by load of the job. `None` where that was not computed.
+    pub mesh_error: Option<MeshError>,
+    /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it, and
+    /// beside other loads.
+    pub first_mode: Option<f64>,
+    /// Subcase of the deck that is the reference state of the readings, solved here; `None` where another program solved it, or the job has no
+    /// such state.
+    reference: Option<CaseResult>,
+    /// What was solved beside the loads of the job; `None` where nothing was, as another program solved them.
+    pub beside: Option<Solution>,
+}
+
+/// Loads on a model that are solved for beside those of a job.
+pub type Beside<'a> = &'a dyn Fn(&Model) -> Result<Vec<UnitLoad>, Faults>;
+
+impl Fields {
+    /// The model.
+    pub fn model(&self) -> &Model {
+        &self.deck.model
+    }
+
+    /// Every load with the case in which it acts, job order.
+    pub fn load_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
+        let cases = self.of_load.iter();
+        of_loads(job, cases.map(|&(s, c)| &self.solutions[s].cases[c]))
+    }
+
+    /// Every load with the mesh error in its case, job order; empty where that was not computed.
+    pub fn mesh_cases<'a>(&'a self, job: &Job) -> Vec<LoadCaseOf<'a>> {
+        of_loads(job, self.mesh_error.iter().flat_map(|e| &e.cases))
+    }
+
+    /// Share of the mesh error that may be left; 0 where it was not computed.
+    pub fn mesh_left(&self) -> f64 {
+        self.mesh_error.as_ref().map_or(0.0, |e| e.left)
+    }
+
+    /// Returns the reference state, a subcase of the deck, from its results or as it was solved here. Cases that were solved for the job's loads
+    /// have numbers of the job, which name no subcase.
+    pub fn subcase(&self, id: u32) -> Option<&CaseResult> {
+        if self.is_solved_here() {
+            return self.reference.as_ref().filter(|c| c.subcase == id);
+        }
+        let mut cases = self.solutions.iter().flat_map(|s| &s.cases);
+        cases.find(|c| c.subcase == id)
+    }
+
+    /// Whether the built-in solver solved the loads.
+    pub fn is_solved_here(&self) -> bool {
+        self.solved_here
+    }
+
+    /// Whether every load's case has strain at corners.
+    pub fn corner_rows(&self, job: &Job) -> CornerRows {
+        let all = self
+            .load_cases(job)
+            .iter()
+            .all(|l| !l.case.shells.corners.is_empty());
+        if all {
+            CornerRows::Present
+        } else {
+            CornerRows::Absent
+        }
+    }
+}
+
+/// The loads of a job with their cases.
+fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<LoadCaseOf<'a>> {
+    job.loads
+        .iter()
+        .zip(cases)
+        .map(|(l, case)| LoadCaseOf {
+            load: Load {
+                name: l.name.clone(),
+                expected: l.expected,
+                wanted: l.role == LoadRole::Wanted,
+                quantity: l.quantity(),
+            },
+            applied: l.applied,
+            case,
+        })
+        .collect()
+}
+
+/// Reads the model and finds the case of every load; strain without what the mesh makes, where the job asks for that, is made `at` these places.
+///
+/// # Errors
+/// Faults of the deck, unreadable results, loads without a case.
+pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, Faults> {
+    read_fields_beside(work, job, at, None)
+}
+
+/// As [`read_fields`], and solves for the loads `beside` with the same factor; elastic modes are then left out, which nobody asks for there.
+///
+/// # Errors
+/// As [`read_fields`]; those of `beside`.
+pub fn read_fields_beside(
+    work: &mut Work,
+    job: &Job,
+    at: WantedAt,
+    beside: Option<Beside<'_>>,
+) -> Result<Fields, Faults> {
+    let Some(files) = &job.model else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )));
+    };
+    if job.loads.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "load",
+            "the job has no [[load]]",
+            "name the loads to be recovered, one [[load]] each",
+        )));
+    }
+    let deck = work.stage("read model", |s| read_deck(s, job, files))?;
+    match files.results.is_empty() {
+        true => solve_fields(work, job, deck, at, beside),
+        false => read_results(work, job, files, deck),
+    }
+}
+
+/// Solves the unit loads of the job, its reference subcase and further cases together with the built-in solver.
+///
+/// # Errors
+/// Faults that stop the solver, with file and line.
+fn solve_fields(
+    work: &mut Work,
+    job: &Job,
+    deck: DeckModel,
+    at: WantedAt,
+    beside: Option<Beside<'_>>,
+) -> Result<Fields, Faults> {
+    let mut cases = cases_of_job(job, &deck)?;
+    work.findings.extend(relief_of_job(job, &deck.model)?);
+    let of_job = cases.len();
+    let number = |cases: &[LoadCase]| cases.iter().map(|c| c.subcase + 1).max().unwrap_or(1);
+    let reference = reference_case(job, &deck);
+    let as_reference = reference.as_ref().map(|r| (r.subcase, number(&cases)));
+    if let (Some(case), Some((_, subcase))) = (reference, as_reference) {
+        cases.push(LoadCase { subcase, ..case });
+    }
+    let of_reference = cases.len();
+    if let Some(beside) = beside {
+        let support = support_of_job(job, &deck.model)?;
+        let more = support.unit_cases(&deck.model, &beside(&deck.model)?);
+        let first = number(&cases);
+        let numbered = |(subcase, case)| LoadCase { subcase, ..case };
+        cases.extend((first..).zip(more).map(numbered));
+    }
+    let options = SolveOptions {
+        modes: if beside.is_some() { 0 } else { MODES },
+        ..SolveOptions::default()
+    };
+    let (mut solved, report) = solve_kept(work, &deck, &cases, options)?;
+    // Findings on loads that the job does not state are dropped.
+    let unasked = |c: &LoadCase| format!("subcase {}", c.subcase);
+    let unasked: BTreeSet<String> = cases.iter().skip(of_reference).map(unasked).collect();
+    solved.findings.retain(|f| !unasked.contains(&f.subject));
+    if let Some((id, number)) = as_reference {
+        let own = format!("subcase {number}");
+        let of_it = solved.findings.iter_mut().filter(|f| f.subject == own);
+        of_it.for_each(|f| f.subject = format!("reference, subcase {id} of the deck"));
+    }
+    work.findings.extend(solved.findings.iter().cloned());
+    let beside = beside.map(|_| Solution {
+        cases: solved.cases.split_off(of_reference),
+        findings: Vec::new(),
+        source: solved.source.clone(),
+    });
+    let reference = solved.cases.split_off(of_job).pop();
+    let subcase = as_reference.map_or(0, |r| r.0);
+    let mesh_error = take_out(work, job, &deck, (&mut solved, at));
+    work.go_on()?;
+    let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
+    Ok(Fields {
+        deck,
+        solutions: vec![solved],
+        solved_here: true,
+        reference: reference.map(|c| CaseResult { subcase, ..c }),
+        of_load,
+        mesh_error,
+        first_mode: report.modes.first().copied(),
+        beside,
+    })
+}
+
+/// Reads the strain of the unit loads from the results that the job names.
+///
+/// # Errors
+/// Files that cannot be read; loads without one subcase of their own.
+fn read_results(
+    work: &mut Work,
+    job: &Job,
+    files: &ModelFiles,
+    deck: DeckModel,
+) -> Result<Fields, Faults> {
+    if files.mesh_error {
+        work.findings.push(not_checked(
+            "the strain comes from results, and the built-in solver alone can solve a finer mesh",
+        ));
+    }
+    let units = unit_loads(job, &deck.model)?;
+    let mut wanted: BTreeSet<u32> = job.loads.iter().map(JobLoad::subcase).collect();
+    if let Some(Reference::Subcase(id)) = job.measured.as_ref().map(|m| m.reference) {
+        wanted.insert(id);
+    }
+    let options = ReadOptions {
+        displacements: Displacements::Leave,
+        subcases: Some(wanted),
+        ..ReadOptions::default()
+    };
+    let (mut solutions, mut repeated_in) = (Vec::new(), Vec::new());
+    for named in &files.results {
+        let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
+        let read = work.stage("read results", |_| {
+            ResultsFile::read(&bytes, &named.given).map(|file| {
+                let solution = solution_from_file(&deck.model, &named.given, &file, &options);
+                (solution, repeated(&[&file], options.subcases.as_ref()))
+            })
+        });
+        let (mut solution, repeated) = read.map_err(|e| results_fault(job, named, &e))?;
+        for case in &mut solution.cases {
+            case.beams.mark_loaded(loaded_bars(&deck, case.subcase));
+        }
+        work.findings.extend(solution.findings.iter().cloned());
+        solutions.push(solution);
+        repeated_in.push(repeated);
+    }
+    let of_load = find_cases(work, job, &mut solutions, &repeated_in)?;
+    let cases = of_load.iter().map(|(s, c)| &solutions[*s].cases[*c]);
+    check_deck_loads(job, &deck, &units, cases)?;
+    work.findings.push(super::source_finding(
+        &solutions
+            .iter()
+            .map(|s| s.source.as_str())
+            .collect::<Vec<_>>()
+            .join("; "),
+    ));
+    Ok(Fields {
+        deck,
+        solutions,
+        solved_here: false,
+        reference: None,
+        of_load,
+        mesh_error: None,
+        first_mode: None,
+        beside: None,
+    })
+}
+
+/// Returns the subcase of the deck that the job names as its reference state; `None` where the job names none, or the deck has no such static
+/// subcase with a load.
+fn reference_case(job: &Job, deck: &DeckModel) -> Option<LoadCase> {
+    let Reference::Subcase(id) = job.measured.as_ref()?.reference else {
+        return None;
+    };
+    let subcases = deck.deck.case_control.effective_subcases();
+    let named = subcases.iter().find(|s| s.id == id)?;
+    static_case(&deck.model, named).ok()
+}
+
+/// Bars and beams with PLOAD1 in the load set of a subcase; in any load set where the deck has no such subcase.
+fn loaded_bars(deck: &DeckModel, subcase: u32) -> Vec<BeamIx> {
+    let subcases = deck.deck.case_control.effective_subcases();
+    let selected = subcases.iter().find(|s| s.id == subcase);
+    let acts = |sid: u32| selected.is_none_or(|s| s.load == Some(sid));
+    let sets = deck.model.load_sets.iter().filter(|s| acts(s.sid));
+    let loads = sets.flat_map(|s| &s.loads);
+    loads
+        .filter_map(|(factor, load)| match load {
+            ModelLoad::Line { beam, .. } if *factor != 0.0 => Some(*beam),
+            _ => None,
+        })
+        .collect()
+}

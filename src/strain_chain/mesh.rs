@@ -1,0 +1,353 @@
+//! What the mesh makes of the strain: the same loads on a mesh half as wide, and what the strain tends to as it gets finer.
+//!
+//! With strain `e(h)` on a mesh of width `h`, what halving the width changes is `e(h/2) - e(h)`. Where errors fall with the square of the width
+//! the error at `h` is 4/3 of that; at folds, edges and corners they fall otherwise. The error is taken as [`WHOLE`] times the change.
+//! It is taken out of the strain of the built-in solver, and what may be left of it is a part of the covariance of S.
+//!
+//! # Reference
+//! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
+
+use super::specs::corrected_spec_of;
+use crate::fe::{CaseResult, ShellField, Solution};
+use crate::finding::{Finding, Severity, few};
+use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
+use crate::host::work::Work;
+use crate::job::{Job, Measured};
+use crate::model::{Model, RefinedModel, ShellIx};
+use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
+use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::solved::{support_of_job, unit_loads_kept};
+use serde::Serialize;
+
+/// Beyond this many shells four times as many would take their time: those round the gauges are divided alone.
+const MOST_SHELLS: usize = 40_000;
+/// Rows of elements round a gauge's that are divided with it, the first that [`MOST_SHELLS`] allows: the error that a mesh makes farther off and
+/// sends to the gauge (a rail that twists too little) is not seen, a third of the whole in open rails with ten rows
+/// (docs/reference/verification.md).
+const ROWS: [usize; 4] = [10, 8, 6, 4];
+/// The error of a mesh over what halving its width changes. Richardson's 4/3 overshoots where the finer mesh meets a corner or the thickness
+/// of the shell: on open, closed and kicked frames of 40 mm against 13 mm errors fall nearly with the cube of the width, and this leaves least
+/// (docs/reference/verification.md).
+const WHOLE: f64 = 1.1;
+/// Share of the error that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern of each load as a whole: where
+/// errors fall with the width itself two thirds are left, which is 1.96 of these.
+const LEFT: f64 = 1.0 / 3.0;
+/// Share of the strain itself that may be off besides, 1 sd, each entry by itself: gauges that `place` finds are those where halving the width
+/// changes next to nothing, by chance too, and what is left there has nothing to do with the change (the same frames).
+const SLIGHT: f64 = 0.003;
+/// The same where the mesh was divided round the gauges alone: what that doesn't see comes on top, half of what it sees.
+const LEFT_IN_PART: f64 = 0.5;
+/// Beyond this a gauge's mesh error is more than angle, place and gauge factor of a gauge glued with care make together.
+const LARGE: f64 = 0.05;
+/// Entries of S, beyond which their covariance would take more than 128 MB: the rest of the error is then not weighed.
+const MOST_ENTRIES: usize = 4_000;
+
+/// The mesh error of a gauge.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaugeMeshError {
+    /// Gauge or channel.
+    pub name: String,
+    /// Root mean square over the loads at their expected size of the deck's mesh less the limit, over that of the reading; positive where the
+    /// mesh reads too much.
+    pub mesh_error_rel: f64,
+    /// By load.
+    pub by_load: Vec<LoadMeshError>,
+}
+
+/// The mesh error of a gauge under one load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadMeshError {
+    /// Load.
+    pub name: String,
+    /// Reading on the deck's mesh less the limit, over the limit; `None` where the load does not strain the gauge.
+    pub mesh_error_rel: Option<f64>,
+}
+
+/// What the mesh made of the strain of the unit loads.
+pub struct MeshError {
+    /// By load: strain on the deck's mesh less the limit.
+    pub cases: Vec<CaseResult>,
+    /// Share of it that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern of each load.
+    pub left: f64,
+}
+
+/// Where the strain is wanted without what the mesh makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WantedAt {
+    /// At the job's gauges: a large mesh is divided round them alone.
+    Gauges,
+    /// Wherever a gauge might be laid.
+    Anywhere,
+}
+
+/// The model on a mesh half as wide: everywhere up to [`MOST_SHELLS`], beyond it in [`ROWS`] of elements round `gauges`, where these are
+/// known.
+///
+/// # Errors
+/// Why none was made, in words.
+pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedModel, String> {
+    let n = model.shells.len();
+    let count = |divided: &Vec<bool>| divided.iter().filter(|d| **d).count();
+    let divided = if n <= MOST_SHELLS {
+        vec![true; n]
+    } else {
+        let shells = shells_under(gauges.unwrap_or_default());
+        if shells.is_empty() {
+            return Err(format!(
+                "the model has {n} shells, beyond {MOST_SHELLS} four times as many are not solved, and no shell is known to bear a gauge"
+            ));
+        }
+        let mut near = ROWS.iter().map(|rows| model.shells_near(&shells, *rows));
+        near.find(|d| count(d) <= MOST_SHELLS).ok_or_else(|| {
+            format!(
+                "the gauges stand on so many of {n} shells that more than {MOST_SHELLS} lie round them, and four times as many are not solved"
+            )
+        })?
+    };
+    model.refined_at(&divided).ok_or_else(|| {
+        "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in displacement frames of their own, or no shells)"
+            .to_owned()
+    })
+}
+
+/// Shells that gauges read.
+fn shells_under(gauges: &[Gauge]) -> Vec<ShellIx> {
+    let arms = gauges.iter().flat_map(|g| &g.arms);
+    let shells = arms.filter_map(|arm| match arm.spot {
+        Spot::Shell { shell, .. } => Some(shell),
+        _ => None,
+    });
+    shells.collect()
+}
+
+/// The job's gauges as far as they can be laid; who reads them says which can't.
+fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
+    let laid = job.gauges.iter().filter_map(|g| {
+        let spec = corrected_spec_of(model, job, g).ok()?;
+        Some(build(model, &spec, CornerRows::Absent).ok()?.0)
+    });
+    laid.flatten().collect()
+}
+
+/// Takes the mesh error out of the strain of a job's unit loads, and gives it: by load, strain on the deck's mesh less the limit. `None`
+/// where the job doesn't ask, or no finer mesh could be solved, which a finding then says.
+pub(super) fn take_out(
+    work: &mut Work,
+    job: &Job,
+    deck: &DeckModel,
+    (solution, at): (&mut Solution, WantedAt),
+) -> Option<MeshError> {
+    if !job.model.as_ref().is_some_and(|m| m.mesh_error) {
+        return None;
+    }
+    match finer(work, job, deck, (solution, at)) {
+        Ok((changes, left)) => {
+            let cases: Vec<CaseResult> = changes.into_iter().map(|c| times(c, -WHOLE)).collect();
+            for (case, error) in solution.cases.iter_mut().zip(&cases) {
+                subtract(&mut case.shells, &error.shells);
+            }
+            Some(MeshError { cases, left })
+        }
+        Err(why) => {
+            work.findings
+                .push(not_checked(&format!("no finer mesh was solved: {why}")));
+            None
+        }
+    }
+}
+
+/// Says that what the mesh makes stays unknown though the job asks for it.
+pub(super) fn not_checked(why: &str) -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "mesh-not-checked",
+        "model.mesh_error",
+        format!("what the mesh makes of the strain is not known: {why}"),
+        "state `model_uncertainty_rel`, or compare with a finer deck",
+    )
+}
+
+/// By load, the strain on a mesh half as wide less that on the deck's; and the share of the error that may be left.
+fn finer(
+    work: &mut Work,
+    job: &Job,
+    deck: &DeckModel,
+    (solution, at): (&Solution, WantedAt),
+) -> Result<(Vec<CaseResult>, f64), String> {
+    let of_fault = |f: crate::host::fault::Faults| {
+        f.first()
+            .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong))
+    };
+    let refined = work.stage("refine", |_| {
+        let gauges = (at == WantedAt::Gauges).then(|| gauges_of(job, &deck.model));
+        refined_mesh(&deck.model, gauges.as_deref())
+    })?;
+    let support = support_of_job(job, &deck.model).map_err(of_fault)?;
+    let loads = super::unit_loads::unit_loads(job, &deck.model).map_err(of_fault)?;
+    let fine = work
+        .stage("solve the finer mesh", |w| {
+            let made = (deck, "mesh half as wide");
+            unit_loads_kept(w, made, (&refined.model, support), &loads)
+        })
+        .map_err(of_fault)?;
+    let pairs: Vec<_> = solution.cases.iter().zip(&fine.cases).collect();
+    let left = match refined.is_whole() {
+        true => LEFT,
+        false => LEFT_IN_PART,
+    };
+    let changes = work.stage("mesh error", |_| {
+        change_by_refining(&deck.model, &refined, &pairs)
+    });
+    Ok((changes, left))
+}
+
+/// A strain field times a number.
+fn times(mut case: CaseResult, factor: f64) -> CaseResult {
+    let shells = &mut case.shells;
+    let corners = shells.corners.iter_mut().flatten();
+    let sides = shells.centre.iter_mut().chain(corners);
+    sides.flatten().flatten().for_each(|v| *v *= factor);
+    case
+}
+
+fn subtract(from: &mut ShellField, what: &ShellField) {
+    let corners = from.corners.iter_mut().flatten();
+    let others = what.corners.iter().flatten();
+    let sides = from.centre.iter_mut().chain(corners);
+    for (a, b) in sides.zip(what.centre.iter().chain(others)) {
+        for (a, b) in a.iter_mut().flatten().zip(b.iter().flatten()) {
+            *a -= b;
+        }
+    }
+}
+
+/// What may be left of the error of a mesh that was divided everywhere in a reading, 1 sd, strain: root of the sum of squares over loads of the
+/// size `scales`; 0 without `errors`.
+pub fn left_in_reading(
+    gauge: &Gauge,
+    (loads, errors): (&[LoadCaseOf], &[LoadCaseOf]),
+    scales: &[f64],
+) -> f64 {
+    if errors.is_empty() {
+        return 0.0;
+    }
+    let squares = |cases: &[LoadCaseOf]| -> f64 {
+        let of = |(e, f): (&LoadCaseOf, &f64)| {
+            let strain = reading(gauge, e.case).unwrap_or(0.0);
+            (strain * f / e.applied).powi(2)
+        };
+        cases.iter().zip(scales).map(of).sum()
+    };
+    let [of_error, of_strain] = left_squared();
+    (of_error * squares(errors) + of_strain * squares(loads)).sqrt()
+}
+
+/// Shares that may be left once it is taken out, squared: of the error, its own part and that of the load's pattern; of the strain.
+pub fn left_squared() -> [f64; 2] {
+    [2.0 * LEFT * LEFT, SLIGHT * SLIGHT]
+}
+
+/// The mesh error of every gauge of S; empty where none was computed.
+pub fn mesh_errors(
+    gauges: &[Gauge],
+    s: &Sensitivity,
+    errors: &[LoadCaseOf],
+) -> Vec<GaugeMeshError> {
+    let scales = s.scales();
+    let of_gauge = |(g, gauge): (usize, &Gauge)| {
+        let (mut off, mut read, mut sign) = (0.0, 0.0, 0.0);
+        let by_load = errors.iter().enumerate().map(|(l, e)| {
+            let error = reading(gauge, e.case).unwrap_or(f64::NAN) / e.applied;
+            let limit = s.values[(g, l)];
+            let scale = scales.get(l).copied().unwrap_or(1.0);
+            off += (error * scale).powi(2);
+            read += (limit * scale).powi(2);
+            sign += error * limit * scale * scale;
+            LoadMeshError {
+                name: e.load.name.clone(),
+                mesh_error_rel: Some(error / limit).filter(|r| r.is_finite()),
+            }
+        });
+        let by_load = by_load.collect();
+        let size = if read > 0.0 { (off / read).sqrt() } else { 0.0 };
+        GaugeMeshError {
+            name: gauge.name.clone(),
+            mesh_error_rel: size.copysign(sign),
+            by_load,
+        }
+    };
+    if errors.is_empty() {
+        return Vec::new();
+    }
+    gauges.iter().enumerate().map(of_gauge).collect()
+}
+
+/// Says where the mesh is too coarse for the gauges on it.
+pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) -> Option<Finding> {
+    let mut large: Vec<(&Gauge, f64)> = gauges
+        .iter()
+        .zip(errors)
+        .map(|(g, e)| (g, e.mesh_error_rel))
+        .filter(|(_, e)| e.abs() > LARGE)
+        .collect();
+    large.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
+    let worst = large.first()?.1.abs();
+    let n = large.len();
+    let named: Vec<String> = large
+        .iter()
+        .map(|(g, e)| format!("`{}` {:+.0} % (element {})", g.name, 100.0 * e, g.element))
+        .collect();
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "mesh-coarse-at-gauges",
+            "model",
+            format!(
+                "the deck's mesh is too coarse at {n} of {} gauges: it reads {}. This is taken out of S, and {:.0} % of it counts as not known",
+                gauges.len(),
+                few(&named),
+                100.0 * left
+            ),
+            "refine the deck around these elements, elements half as wide leave a quarter of it; or move the gauges",
+        )
+        .with_numbers(worst, LARGE),
+    )
+}
+
+/// How far S may be off by what the model's error and the mesh leave; `None` where no mesh error was computed, or S is too large, which a
+/// finding then says.
+pub(super) fn uncertainty(
+    work: &mut Work,
+    measured: Option<&Measured>,
+    gauges: &[Gauge],
+    s: &Sensitivity,
+    (errors, left_share): (&[LoadCaseOf], f64),
+) -> Option<Uncertainty> {
+    let measured = measured?;
+    let (n, k) = s.values.shape();
+    if errors.len() != k || gauges.len() != n {
+        return None;
+    }
+    if n * k > MOST_ENTRIES {
+        let message = format!(
+            "S has {} entries, and beyond {MOST_ENTRIES} their covariance is not kept: the mesh's error is taken out, what may be left of it is not weighed",
+            n * k
+        );
+        let remedy = "use fewer gauges at a time, or state the rest in `model_uncertainty_rel`";
+        let code = "mesh-error-not-weighed";
+        work.findings.push(
+            Finding::new(Severity::Warning, code, "model.mesh_error", message, remedy)
+                .with_numbers((n * k) as f64, MOST_ENTRIES as f64),
+        );
+        return None;
+    }
+    let left = crate::linalg::Matrix::from_fn(n, k, |g, l| {
+        let error = reading(&gauges[g], errors[l].case).unwrap_or(0.0);
+        left_share * error / errors[l].applied
+    });
+    Some(Uncertainty::of_model(
+        &s.values,
+        measured.model_uncertainty_rel,
+        (&left, SLIGHT),
+    ))
+}

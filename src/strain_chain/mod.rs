@@ -1,0 +1,210 @@
+//! What the strain commands share: the model with its unit-load strain, gauges laid onto it, S from there or from a table.
+
+mod alternative_rows;
+pub(crate) mod combined_subcases;
+mod covariance;
+pub mod deck;
+mod deck_loads;
+mod fields;
+mod gauges;
+mod given;
+pub(crate) mod job_deck;
+mod load_cases;
+mod mesh;
+pub(crate) mod named_results;
+pub(crate) mod not_solved;
+pub(crate) mod solved;
+mod specs;
+mod unit_loads;
+mod units;
+
+pub use alternative_rows::{alternative_rows, alternatives_of};
+pub use covariance::{covariance_bytes, read_covariance};
+pub use fields::{Beside, Fields, read_fields, read_fields_beside};
+pub use gauges::{lay_gauges, not_laid, off_their_elements, without_strain};
+pub use given::read_given;
+pub use mesh::{
+    GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
+    mesh_errors, refined_mesh,
+};
+pub use specs::corrected_spec_of;
+pub use unit_loads::unit_loads;
+pub use units::{LoadSigma, LoadUnits, load_units};
+
+use crate::finding::{Finding, Severity};
+use crate::gauge::Gauge;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::finite;
+use crate::host::work::Work;
+use crate::job::correct::{check_channels, noted};
+use crate::job::{Job, Measured};
+use crate::recovery::ErrorModel;
+use crate::sensitivity::{Sensitivity, from_cases};
+use crate::strain_chain::named_results::{Absent, check_named};
+use crate::units::MICROSTRAIN;
+use serde::Serialize;
+
+/// S of the job's gauges with all there is to know of them.
+pub struct Prepared {
+    /// S.
+    pub sensitivity: Sensitivity,
+    /// Model and strain fields; `None` where S is given.
+    pub fields: Option<Fields>,
+    /// Gauges on the model; empty where S is given.
+    pub gauges: Vec<Gauge>,
+    /// By gauge, what the deck's mesh made; empty where that was not computed. S is without it.
+    pub mesh_error: Vec<GaugeMeshError>,
+}
+
+impl Prepared {
+    /// Keeps these rows of S, with what belongs to their gauges.
+    pub fn retain(&mut self, rows: &[usize]) {
+        if rows.len() == self.sensitivity.gauges.len() {
+            return;
+        }
+        self.sensitivity = self.sensitivity.of_gauges(rows);
+        let names = &self.sensitivity.gauges;
+        self.gauges.retain(|g| names.contains(&g.name));
+        self.mesh_error.retain(|g| names.contains(&g.name));
+    }
+}
+
+/// S of the job's gauges: from the table of `[sensitivity]`, else from the model and its results.
+///
+/// # Errors
+/// Every fault on the way.
+pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    prepare_beside(work, job, None)
+}
+
+/// As [`prepare`], and solves the model for the loads `beside` where the built-in solver makes S ([`Fields::beside`]).
+///
+/// # Errors
+/// As [`prepare`]; those of `beside`.
+pub fn prepare_beside(
+    work: &mut Work,
+    job: &Job,
+    beside: Option<Beside<'_>>,
+) -> Result<Prepared, Faults> {
+    work.findings.extend(noted(job));
+    let prepared = if job.sensitivity.is_some() {
+        let sensitivity = given_as_asked(work, job)?;
+        // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
+        let (fields, gauges) = match &job.model {
+            Some(_) if has_covariance(job) => {
+                let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
+                let mut gauges = lay_gauges(work, job, &fields)?;
+                gauges.retain(|g| sensitivity.gauges.contains(&g.name));
+                (Some(fields), gauges)
+            }
+            _ => {
+                check_named(work, job, Absent::Refused)?;
+                (None, Vec::new())
+            }
+        };
+        Prepared {
+            sensitivity,
+            fields,
+            gauges,
+            mesh_error: Vec::new(),
+        }
+    } else {
+        let fields = read_fields_beside(work, job, WantedAt::Gauges, beside)?;
+        let gauges = lay_gauges(work, job, &fields)?;
+        let mut sensitivity = from_cases(&gauges, &fields.load_cases(job))
+            .map_err(|missing| without_strain(job, &missing))?;
+        let errors = fields.mesh_cases(job);
+        let measured = job.measured.as_ref();
+        sensitivity.uncertainty = mesh::uncertainty(
+            work,
+            measured,
+            &gauges,
+            &sensitivity,
+            (&errors, fields.mesh_left()),
+        );
+        let mesh_error = mesh_errors(&gauges, &sensitivity, &errors);
+        work.findings
+            .extend(coarse_at_gauges(&gauges, &mesh_error, fields.mesh_left()));
+        Prepared {
+            sensitivity,
+            fields: Some(fields),
+            gauges,
+            mesh_error,
+        }
+    };
+    Ok(prepared)
+}
+
+/// S from the table of `[sensitivity]`, where nothing of it is to be turned.
+///
+/// # Errors
+/// As [`read_given`]; gauges that the job turns.
+pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
+    if let Some(c) = job.corrections.iter().find(|c| c.angle_deg.is_some()) {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            c.line,
+            "correction.angle_deg",
+            format!(
+                "S is given, so the row of gauge `{}` can't be turned",
+                c.gauge
+            ),
+            "turn it in the table of [sensitivity], or give a [model]",
+        )));
+    }
+    let given = read_given(work, job)?;
+    check_channels(job, &given.gauges, "the table of [sensitivity]")?;
+    Ok(given)
+}
+
+/// What `[measured]` states of errors: those of the model stand in the uncertainty of S where that has one.
+pub fn stated_errors(measured: &Measured, s: &Sensitivity, fields: Option<&Fields>) -> ErrorModel {
+    let in_s = s.uncertainty.is_some() && fields.is_some_and(|f| f.mesh_error.is_some());
+    ErrorModel {
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model_rel: if in_s {
+            0.0
+        } else {
+            measured.model_uncertainty_rel
+        },
+    }
+}
+
+/// Whether the job's S is a calibrated one.
+pub fn has_covariance(job: &Job) -> bool {
+    let given = job.sensitivity.as_ref();
+    given.is_some_and(|s| s.covariance.is_some())
+}
+
+/// Rank and condition numbers of S, as they stand in `result.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Conditioning {
+    /// Rank.
+    pub rank: usize,
+    /// S in strain per job unit.
+    pub condition_number: Option<f64>,
+    /// Columns times `expected`, else of unit norm.
+    pub condition_number_scaled: Option<f64>,
+}
+
+impl Conditioning {
+    /// Of S.
+    pub fn of(s: &Sensitivity) -> Self {
+        Self {
+            rank: s.rank(),
+            condition_number: finite(s.condition_number()),
+            condition_number_scaled: finite(s.condition_number_scaled()),
+        }
+    }
+}
+
+/// A finding that says where the strain comes from.
+pub fn source_finding(source: &str) -> Finding {
+    Finding::new(
+        Severity::Info,
+        "strain-source",
+        "model",
+        format!("strain of the unit loads: {source}"),
+        "",
+    )
+}

@@ -1,0 +1,60 @@
+//! Units of loads: job units inside, report units outside.
+
+use crate::job::Job;
+use crate::job::quantity::quantity_of_name;
+use crate::units::factor;
+use serde::Serialize;
+
+/// Unit of one load in reports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadUnits {
+    /// Its name; empty for a load set, which is counted in times the set.
+    pub name: String,
+    /// Its name in the job's own units.
+    pub of_job: String,
+    /// Report value = job value times this.
+    pub factor: f64,
+}
+
+/// One standard deviation of a load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadSigma {
+    /// Load.
+    pub name: String,
+    /// One standard deviation, report units: what `recover` states for loads of their expected size, from noise and model uncertainty.
+    pub sigma: f64,
+    /// The same with the tolerances of gluing and of the gauge factor, where the job states some.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sigma_as_glued: Option<f64>,
+    /// Report unit.
+    pub unit: String,
+}
+
+/// Units by load, in job order. A load that only a given S names is a moment where its name says so (`.M`, `_M`, leading `M`).
+pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
+    names
+        .iter()
+        .map(|name| match job.loads.iter().find(|l| &l.name == name) {
+            Some(l) => match l.report_unit(&job.report_units) {
+                Some(u) => LoadUnits {
+                    name: u.name.to_owned(),
+                    of_job: job.units.unit(u.quantity).name.to_owned(),
+                    factor: factor(job.units, u),
+                },
+                None => LoadUnits {
+                    name: String::new(),
+                    of_job: String::new(),
+                    factor: 1.0,
+                },
+            },
+            None => {
+                let unit = job.report_units.unit(quantity_of_name(name));
+                LoadUnits {
+                    name: unit.name.to_owned(),
+                    of_job: job.units.unit(unit.quantity).name.to_owned(),
+                    factor: factor(job.units, unit),
+                }
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,325 @@
+//! The answer of `ballast`, and what is to be said of it.
+
+use super::completed::MassCards;
+use super::task::{CompletedDeck, DECK, Task, force, length, mass};
+use crate::finding::{Finding, Severity};
+use crate::host::outcome::Answer;
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::payload::{BallastFit, BallastSpec};
+use crate::units::number;
+use serde::Serialize;
+
+/// Masses that complete a model, report units.
+#[derive(Serialize)]
+pub struct Ballasted {
+    /// The masses.
+    pub masses: Vec<HungMass>,
+    /// Reactions by wheel.
+    pub reactions: Vec<Reaction>,
+    /// The run whose reactions are met.
+    pub run: String,
+    /// How many of the numbers the reactions fix.
+    pub numbers_fixed: usize,
+    /// How many were asked for: three a mass.
+    pub numbers_asked: usize,
+    /// All masses together, from statics alone.
+    pub together: Together,
+    /// Name of the completed deck.
+    pub completed_deck: String,
+    /// Height of the masses (no influence on a level floor).
+    #[serde(skip)]
+    pub height: f64,
+    /// The completed deck.
+    #[serde(skip)]
+    pub deck: CompletedDeck,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Ballasted {
+    const COMMAND: &'static str = "ballast";
+}
+
+/// One lumped mass, with what the data leave each number when the others are adjusted (95 %).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HungMass {
+    /// Mass.
+    pub mass: f64,
+    /// Its range.
+    pub mass_range: [f64; 2],
+    /// Place in plan.
+    pub position: [f64; 2],
+    /// Its ranges.
+    pub position_range: [[f64; 2]; 2],
+    /// Grid of the completed deck.
+    pub grid: u32,
+    /// RBE3 that ties it.
+    pub rbe3: u32,
+    /// CONM2 of it.
+    pub conm2: u32,
+}
+
+/// A wheel's reaction.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reaction {
+    /// Load.
+    pub name: String,
+    /// As measured.
+    pub measured: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+    /// Of the deck as it was.
+    pub before: f64,
+    /// Of the completed deck, read back and solved.
+    pub after: f64,
+}
+
+/// What is missing as a whole: the resultant of the measured reactions less the model's own.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Together {
+    /// Mass.
+    pub mass: f64,
+    /// Its standard deviation.
+    pub mass_sigma: f64,
+    /// Place in plan.
+    pub position: [f64; 2],
+    /// Its standard deviations.
+    pub position_sigma: [f64; 2],
+}
+
+/// What was sized, job units.
+pub(super) struct Sized<'a> {
+    pub run: String,
+    pub measured: &'a [f64],
+    pub sigma: &'a [f64],
+    pub before: &'a [f64],
+    pub after: &'a [f64],
+    pub fit: &'a BallastFit,
+    pub cards: &'a [MassCards],
+    pub height: f64,
+}
+
+/// The answer in report units, once it has its deck.
+pub(super) fn ballasted(
+    task: &Task,
+    sized: &Sized,
+) -> impl FnOnce(CompletedDeck) -> Ballasted + use<> {
+    let (job, g) = (task.job.clone(), task.gravity);
+    let (f, l, m) = (force(&job), length(&job), mass(&job));
+    let masses: Vec<HungMass> = sized
+        .fit
+        .masses
+        .iter()
+        .zip(sized.cards)
+        .map(|(b, c)| HungMass {
+            mass: b.weight / g * m,
+            mass_range: b.weight_range.map(|v| v / g * m),
+            position: b.at.map(|v| v * l),
+            position_range: b.at_range.map(|r| r.map(|v| v * l)),
+            grid: c.grid,
+            rbe3: c.rbe3,
+            conm2: c.conm2,
+        })
+        .collect();
+    let reactions = task.wheels.loads.iter().enumerate();
+    let reactions = reactions
+        .map(|(i, w)| Reaction {
+            name: job.loads[*w].name.clone(),
+            measured: sized.measured[i] * f,
+            sigma: sized.sigma[i] * f,
+            before: sized.before[i] * f,
+            after: sized.after[i] * f,
+        })
+        .collect();
+    let (run, numbers_fixed, height) = (sized.run.clone(), sized.fit.fixed, sized.height * l);
+    let together = together(task, sized);
+    move |deck| Ballasted {
+        numbers_asked: 3 * masses.len(),
+        masses,
+        reactions,
+        run,
+        numbers_fixed,
+        together,
+        completed_deck: format!("{DECK}.bdf"),
+        height,
+        deck,
+        job,
+    }
+}
+
+/// Statics alone: the reactions' resultant less the model's own.
+fn together(task: &Task, sized: &Sized) -> Together {
+    let (job, g) = (task.job, task.gravity);
+    let (l, m) = (length(job), mass(job));
+    let pairs = sized.measured.iter().zip(sized.before);
+    let lacking: Vec<f64> = pairs.map(|(m, b)| m - b).collect();
+    let total: f64 = lacking.iter().sum();
+    let spread = sized.sigma.iter().map(|s| s * s).sum::<f64>().sqrt();
+    let (b, c) = ((task.wheels.axis + 1) % 3, (task.wheels.axis + 2) % 3);
+    let centre = [b, c].map(|axis| {
+        let x = task.standing.floor.positions().iter().map(|x| x[axis]);
+        let at = x.clone().zip(&lacking).map(|(x, r)| x * r).sum::<f64>() / total;
+        let var: f64 = x
+            .zip(sized.sigma)
+            .map(|(x, s)| ((x - at) * s).powi(2))
+            .sum();
+        [at * l, var.sqrt() / total.abs() * l]
+    });
+    Together {
+        mass: total / g * m,
+        mass_sigma: spread / g * m,
+        position: [centre[0][0], centre[1][0]],
+        position_sigma: [centre[0][1], centre[1][1]],
+    }
+}
+
+/// Weight of the masses over that of the model from which a unit is wrong: the lightest structures carry some tens of times what they
+/// weigh, and a unit that is mistaken for another makes a thousand.
+const FAR_BEYOND: f64 = 100.0;
+
+/// Density of steel, kg/m^3: of what carries a ballast, the heaviest that is common.
+const STEEL_KG_M3: f64 = 7850.0;
+
+/// What the structure weighs in steel, job units, where no property of it has mass; 0 where one has. Lumped masses are no measure of what it
+/// carries: an accelerometer may be all that has mass.
+fn in_steel(task: &Task) -> f64 {
+    let mut structure = task.read.model.clone();
+    structure.masses.clear();
+    if structure.weight().mass > 0.0 {
+        return 0.0;
+    }
+    let units = task.job.units;
+    let density = STEEL_KG_M3 * units.length_m().powi(3) / units.mass_kg();
+    structure.params.wtmass = 1.0;
+    structure.materials.iter_mut().for_each(|m| m.rho = density);
+    structure.weight().mass * task.gravity
+}
+
+/// The finding on masses that no structure of the model's mass carries.
+pub(super) fn far_beyond(
+    task: &Task,
+    run: &str,
+    before: &[f64],
+    fit: &BallastFit,
+) -> Option<Finding> {
+    let steel = in_steel(task);
+    let own = before.iter().sum::<f64>().max(0.0) + steel;
+    let hung: f64 = fit.masses.iter().map(|m| m.weight).sum();
+    let in_words = |weight: f64| number(weight / task.gravity * mass(task.job));
+    let times = hung / own;
+    let weighs = match steel > 0.0 {
+        true => "would weigh in steel",
+        false => "weighs",
+    };
+    (own > 0.0 && times > FAR_BEYOND).then(|| {
+        Finding::new(
+            Severity::Error,
+            "ballast-beyond-model",
+            run,
+            format!(
+                "the masses weigh {} times what the model {weighs}: {} against {} {}",
+                number(times),
+                in_words(hung),
+                in_words(own),
+                task.job.report_units.mass.name
+            ),
+            "check the unit of the reactions ([runs] units), `units` of the job, and the densities of the deck",
+        )
+        .with_numbers(times, FAR_BEYOND)
+    })
+}
+
+/// Misfit of a reaction above which the masses do not explain it, of the measured value.
+const MATCHED: f64 = 0.02;
+
+/// What is to be said of the masses.
+pub(super) fn judge(
+    work: &mut Work,
+    task: &Task,
+    run: &str,
+    measured: &[f64],
+    after: &[f64],
+    fit: &BallastFit,
+    spec: &BallastSpec,
+) {
+    let job = task.job;
+    work.findings.push(Finding::new(
+        Severity::Info,
+        "flat-floor",
+        "reactions",
+        "the model stands on a flat, level, frictionless floor; its own springs decide how the wheels share the weight, tyres are rigid",
+        "",
+    ));
+    let (mut worst, mut name) = (0.0_f64, "");
+    for ((l, m), a) in task.wheels.loads.iter().zip(measured).zip(after) {
+        let off = ((a - m) / m).abs();
+        if off > worst {
+            (worst, name) = (off, &job.loads[*l].name);
+        }
+        if *a < 0.0 {
+            work.findings.push(Finding::new(
+                Severity::Error,
+                "wheel-lifts-off",
+                &job.loads[*l].name,
+                "the completed model pulls at the floor here: the wheel would lift off, and the reactions do not hold",
+                "check masses and stations, or the measured reactions",
+            ));
+        }
+    }
+    if worst > MATCHED {
+        let explained = fit.chi2 <= 2.0 * measured.len() as f64;
+        work.findings.push(
+            Finding::new(
+                if explained { Severity::Info } else { Severity::Warning },
+                "reactions-not-matched",
+                name,
+                format!(
+                    "no {} masses in the region bring every reaction of run `{run}` closer: spring rates, the ground or friction share the \
+                     weight otherwise than the model does",
+                    spec.masses
+                ),
+                "measure on level ground after rolling; check how the suspension shares load between axles and sides",
+            )
+            .with_numbers(worst, MATCHED),
+        );
+    }
+    let numbers = 3 * spec.masses;
+    if fit.fixed < numbers {
+        let ranges: Vec<String> = fit
+            .masses
+            .iter()
+            .enumerate()
+            .map(|(k, b)| {
+                format!(
+                    "mass {} {} to {} {}, {} to {} and {} to {} {}",
+                    k + 1,
+                    number(b.weight_range[0] / task.gravity * mass(job)),
+                    number(b.weight_range[1] / task.gravity * mass(job)),
+                    job.report_units.mass.name,
+                    number(b.at_range[0][0] * length(job)),
+                    number(b.at_range[0][1] * length(job)),
+                    number(b.at_range[1][0] * length(job)),
+                    number(b.at_range[1][1] * length(job)),
+                    job.report_units.length.name,
+                )
+            })
+            .collect();
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "masses-not-separable",
+                "ballast",
+                format!(
+                    "the reactions fix {} of the {numbers} numbers: the total and where its centre lies, not how it is split. With the others \
+                     adjusted, equally good are {}",
+                    fit.fixed,
+                    ranges.join("; ")
+                ),
+                "state where the heavy parts are (a smaller `region`, a `max_mass`), or ask for fewer masses",
+            )
+            .with_numbers(fit.fixed as f64, numbers as f64),
+        );
+    }
+}

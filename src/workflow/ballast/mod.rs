@@ -1,0 +1,288 @@
+//! `ballast`: lumped masses that bring the model's reactions to the measured ones, and the deck with them in it.
+
+mod answer;
+mod completed;
+mod task;
+
+pub use answer::{Ballasted, HungMass, Reaction, Together};
+pub use task::CompletedDeck;
+
+use crate::fe::floor::solve_standing;
+use crate::finding::{Finding, Severity};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::{Ballast, Job};
+use crate::measured::runs_file::read_runs;
+use crate::measured::wheels::{floor_fault, wheels_of};
+use crate::model::{GridIx, Vec3};
+use crate::payload::{BallastFit, BallastSpec, Carriers, size_ballast, spread};
+use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::job_deck::read_deck;
+use crate::strain_chain::named_results::{Absent, check_named, check_tables};
+use crate::units::{Quantity, number};
+use nastran::bdf::{Edits, write_edited};
+use task::{Task, force};
+
+/// Noise of a measured reaction where the job states none, of the mean reaction.
+const ASSUMED_NOISE: f64 = 0.01;
+
+/// Lumped masses that bring the model's reactions to the measured ones, and the deck with them in it, read back and solved.
+///
+/// # Errors
+/// Every fault of the job and its deck; a region that can't hold a mass; a model that already weighs more.
+pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let (ballast, read) = read_asked(&mut work, job)?;
+    let wheels = wheels_of(job, &read.model)?;
+    let standing = work
+        .stage("solve", |_| {
+            solve_standing(&read.model, wheels.axis, &wheels.grids, &[], None)
+        })
+        .map_err(|e| floor_fault(job, &e))?;
+    let task = Task {
+        job,
+        ballast,
+        read: &read,
+        wheels,
+        standing,
+        gravity: ballast.gravity_m_s2 / job.units.length_m(),
+    };
+    let (run, measured, sigma) = measured(&mut work, &task)?;
+    let carriers = Carriers::of(&read.model, task.wheels.axis, |p| {
+        ballast
+            .properties
+            .as_ref()
+            .is_none_or(|ids| ids.contains(p))
+    });
+    let (region, height) = region(&task, &carriers)?;
+    let before = task.standing.under_weight(&read.model, task.gravity);
+    let lacking: f64 = measured.iter().sum::<f64>() - before.iter().sum::<f64>();
+    let largest = largest(&task, &run, lacking)?;
+    let spec = BallastSpec {
+        masses: ballast.masses,
+        region,
+        largest,
+        sigma: sigma.clone(),
+    };
+    let fit = work.stage("size", |_| {
+        size(&task, &carriers, height, [&before, &measured], &spec)
+    })?;
+    let (cards, text) = completed::cards(&task, &carriers, &fit, height);
+    let mut edits = Edits::default();
+    edits.insert_cards(&read.deck, &text);
+    let edited = write_edited(&read.deck, &edits);
+    let after = work.stage("solve completed deck", |s| {
+        completed::after(s, &task, &edited)
+    })?;
+    answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
+    work.findings
+        .extend(answer::far_beyond(&task, &run, &before, &fit));
+    let sized = answer::Sized {
+        run,
+        measured: &measured,
+        sigma: &sigma,
+        before: &before,
+        after: &after,
+        fit: &fit,
+        cards: &cards,
+        height,
+    };
+    let answer = answer::ballasted(&task, &sized);
+    let deck = CompletedDeck {
+        deck: read.deck,
+        edited,
+    };
+    let answer = answer(deck);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// What the job asks for, and its deck, whose findings go to the work.
+fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckModel), Faults> {
+    let missing = |field: &str, example: &str| {
+        Faults::from(Fault::of(
+            &*job.file,
+            field,
+            format!("the job has no [{field}]"),
+            example,
+        ))
+    };
+    let ballast = job.ballast.as_ref().ok_or_else(|| {
+        missing(
+            "ballast",
+            "state what is looked for: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
+        )
+    })?;
+    let files = job
+        .model
+        .as_ref()
+        .ok_or_else(|| missing("model", "name the deck: [model] deck = \"model.bdf\""))?;
+    check_named(work, job, Absent::Refused)?;
+    check_tables(work, job)?;
+    let read = work.stage("read model", |s| read_deck(s, job, files))?;
+    if read.deck.sources.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model.deck",
+            "an OP2 is no deck that could be completed",
+            "name the deck",
+        )));
+    }
+    Ok((ballast, read))
+}
+
+/// Weight of one mass at most, in job units: as the job says, else all that the model lacks.
+fn largest(task: &Task, run: &str, lacking: f64) -> Result<f64, Faults> {
+    let (job, ballast) = (task.job, task.ballast);
+    let largest = ballast
+        .max_mass
+        .map_or(lacking.max(0.0), |m| m * task.gravity);
+    if !(largest > 0.0) {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            ballast.line,
+            "ballast",
+            format!(
+                "the model already weighs {} {} more than run `{run}` measured",
+                number(-lacking * force(job)),
+                job.report_units.force.name
+            ),
+            "take masses out of the deck, or check the units of the runs file",
+        )));
+    }
+    Ok(largest)
+}
+
+/// Masses that bring the reactions from those `before` to the `measured` ones.
+fn size(
+    task: &Task,
+    carriers: &Carriers,
+    height: f64,
+    [before, measured]: [&[f64]; 2],
+    spec: &BallastSpec,
+) -> Result<BallastFit, Faults> {
+    let model = &task.read.model;
+    let on_a_line = std::cell::Cell::new(false);
+    let fit = size_ballast(
+        before,
+        measured,
+        |place| match hung(task, carriers, place, height, 1.0) {
+            Some(forces) => task.standing.under_forces(model, &forces),
+            None => {
+                on_a_line.set(true);
+                vec![0.0; measured.len()]
+            }
+        },
+        spec,
+    );
+    if on_a_line.get() {
+        return Err(Faults::from(Fault::at(
+            &*task.job.file,
+            task.ballast.line,
+            "ballast.region",
+            "the grids near part of the region lie on a line and can't hold a mass",
+            "name properties of both rails in `properties`, or narrow the region",
+        )));
+    }
+    Ok(fit)
+}
+
+/// Name, reactions and their sd in job units of the run asked for, in the order of the wheels.
+fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>), Faults> {
+    let job = task.job;
+    let Some(runs) = &job.runs else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "runs",
+            "the job has no [runs]",
+            "name the measured reactions: [runs] file = \"runs.csv\"",
+        )));
+    };
+    let rows = read_runs(&mut work.inputs, job, runs)?;
+    let row = match &task.ballast.run {
+        Some(name) => rows.iter().find(|r| r.run == *name),
+        None => rows.first(),
+    };
+    let Some(row) = row else {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            task.ballast.line,
+            "ballast.run",
+            format!("`{}` has no such run", runs.file.given),
+            "name a run of the runs file",
+        )));
+    };
+    let newton = job.units.si(Quantity::Force);
+    let mut faults = FaultList::new();
+    let mut values = Vec::new();
+    for l in &task.wheels.loads {
+        let name = &job.loads[*l].name;
+        match row.loads_si.get(name) {
+            Some(v) => values.push(v / newton),
+            None => faults.push(Fault::at(
+                &*runs.file.given,
+                row.line,
+                name.clone(),
+                format!("run `{}` has no reaction of `{name}`", row.run),
+                "measure every wheel, or take its load out of the job",
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    let mean = values.iter().sum::<f64>().abs() / values.len() as f64;
+    let sigma = match runs.noise.force.filter(|s| *s > 0.0) {
+        Some(s) => s * runs.units.force.si / newton,
+        None => {
+            work.findings.push(
+                Finding::new(
+                    Severity::Info,
+                    "reaction-noise-assumed",
+                    "runs.noise.force",
+                    "the job does not say how well the reactions are measured: 1 % of their mean is taken",
+                    "state [runs] noise = { force = 0.06 }",
+                )
+                .with_numbers(ASSUMED_NOISE * mean * force(job), 0.0),
+            );
+            ASSUMED_NOISE * mean
+        }
+    };
+    let n = values.len();
+    Ok((row.run.clone(), values, vec![sigma; n]))
+}
+
+/// Where masses may sit in plan, and their height.
+fn region(task: &Task, carriers: &Carriers) -> Result<([[f64; 2]; 2], f64), Faults> {
+    let Some([b, c, up]) = carriers.extent() else {
+        return Err(Faults::from(Fault::at(
+            &*task.job.file,
+            task.ballast.line,
+            "ballast.properties",
+            "no shell, bar or beam has such a property",
+            "name properties that can carry a mass",
+        )));
+    };
+    Ok(match task.ballast.region.as_deref() {
+        Some([x, y]) => ([*x, *y], up[1]),
+        Some([x, y, z, ..]) => ([*x, *y], (z[0] + z[1]) / 2.0),
+        _ => ([b, c], up[1]),
+    })
+}
+
+/// Forces of a unit weight times `weight` at a place on the grids that carry it.
+fn hung(
+    task: &Task,
+    carriers: &Carriers,
+    place: [f64; 2],
+    height: f64,
+    weight: f64,
+) -> Option<Vec<(GridIx, Vec3)>> {
+    let mut down = Vec3::zeros();
+    down[task.wheels.axis] = -weight;
+    spread(
+        &task.read.model,
+        &carriers.arms(place),
+        carriers.point(place, height),
+        down,
+    )
+}

@@ -1,0 +1,51 @@
+//! What is asked of ballast, and the deck that comes of it.
+
+use crate::fe::floor::Standing;
+use crate::job::{Ballast, Job};
+use crate::measured::wheels::Wheels;
+use crate::strain_chain::deck::DeckModel;
+use crate::units::factor;
+use crate::workflow::cases::relocated;
+use nastran::bdf::Deck;
+use std::path::Path;
+
+/// The completed deck.
+pub(super) const DECK: &str = "completed";
+
+/// The deck with the masses in it.
+pub struct CompletedDeck {
+    pub(super) deck: Deck,
+    pub(super) edited: Vec<(String, Vec<u8>)>,
+}
+
+impl CompletedDeck {
+    /// Name and bytes of every file of the completed deck, its INCLUDEs as they are found from `folder`; the first is `completed.bdf`.
+    pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
+        relocated(&self.deck, self.edited.clone(), folder, DECK)
+    }
+}
+
+/// What is asked, on its model.
+pub(super) struct Task<'a> {
+    pub job: &'a Job,
+    pub ballast: &'a Ballast,
+    pub read: &'a DeckModel,
+    pub wheels: Wheels,
+    pub standing: Standing,
+    pub gravity: f64,
+}
+
+/// Report force per job unit.
+pub(super) fn force(job: &Job) -> f64 {
+    factor(job.units, job.report_units.force)
+}
+
+/// Report length per job unit.
+pub(super) fn length(job: &Job) -> f64 {
+    factor(job.units, job.report_units.length)
+}
+
+/// Report mass per job unit.
+pub(super) fn mass(job: &Job) -> f64 {
+    factor(job.units, job.report_units.mass)
+}

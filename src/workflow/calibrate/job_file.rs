@@ -1,0 +1,67 @@
+//! `calibrated.toml`: the job with the calibrated S in it.
+
+use super::Calibrated;
+use crate::host::fault::{Fault, Faults};
+use crate::workflow::reconcile::redirect::redirect;
+use crate::workflow::reconcile::relative::relative;
+use std::path::Path;
+use toml::{Table, Value};
+
+/// The job as it stands in folder `out`: everything kept, file names found from there, S and its covariance from `calibrate`. The model's
+/// error, which is in the covariance now, is no longer added.
+///
+/// # Errors
+/// A job that is no TOML, which is a mistake of the program.
+pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults> {
+    let job = &answer.job;
+    let mistake = |e: String| {
+        Faults::from(Fault::of(
+            &*job.file,
+            "job",
+            e,
+            "report this as an error of the program",
+        ))
+    };
+    let mut table: Table = answer
+        .job_text
+        .parse()
+        .map_err(|e: toml::de::Error| mistake(e.to_string()))?;
+    redirect(&mut table, &relative(out, &job.folder));
+    let mut s = match table.remove("sensitivity") {
+        Some(Value::Table(given)) => given,
+        _ => Table::new(),
+    };
+    s.remove("per");
+    s.remove("columns");
+    s.insert("file".into(), Value::String("sensitivity.csv".into()));
+    s.insert("covariance".into(), Value::String("calibration.bin".into()));
+    table.insert("sensitivity".into(), Value::Table(s));
+    table.remove("calibration");
+    // How gauges are turned is in the rows of S now.
+    if let Some(Value::Array(list)) = table.get_mut("correction") {
+        for c in list.iter_mut().filter_map(Value::as_table_mut) {
+            c.remove("angle_deg");
+        }
+        list.retain(|c| c.as_table().is_none_or(|c| c.keys().any(|k| k != "gauge")));
+        if list.is_empty() {
+            table.remove("correction");
+        }
+    }
+    if let Some(Value::Table(measured)) = table.get_mut("measured") {
+        measured.remove("model_uncertainty_rel");
+    }
+    if job.loads.is_empty() {
+        let name = |l: &crate::sensitivity::Load| {
+            Value::Table(Table::from_iter([(
+                "name".to_owned(),
+                Value::String(l.name.clone()),
+            )]))
+        };
+        let loads = answer.sensitivity.loads.iter().map(name).collect();
+        table.insert("load".into(), Value::Array(loads));
+    }
+    let body = toml::to_string(&table).map_err(|e| mistake(e.to_string()))?;
+    Ok(format!(
+        "# The job with S as calibrated: `strainbridge recover calibrated.toml`.\n{body}"
+    ))
+}

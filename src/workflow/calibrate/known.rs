@@ -1,0 +1,477 @@
+//! Known loads of the runs file: values, their sd, sums, repeats.
+
+use super::payloads::{Payloads, add_columns};
+use crate::calibrate::KnownLoads;
+use crate::finding::{Finding, Severity};
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::work::Work;
+use crate::job::suggest;
+use crate::job::table::{Table, read_table};
+use crate::job::{HoldOut, Job, Measured, Runs};
+use crate::measured::runs_columns::{
+    asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
+};
+use crate::sensitivity::Load;
+use crate::series::record::Column;
+use crate::units::{Quantity, Unit, factor, number};
+
+/// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind: nothing is known of it.
+const UNKNOWN: f64 = 10.0;
+
+/// A run that teaches.
+pub(super) struct Known {
+    /// Row of the strain table.
+    pub row: usize,
+    /// Its loads, job units.
+    pub loads: KnownLoads,
+    /// Number of its group of repeats.
+    pub group: usize,
+}
+
+/// What the runs file says.
+pub(super) struct KnownRuns {
+    /// Runs that teach, in the order of the strain table.
+    pub runs: Vec<Known>,
+    /// Name and values, a run each (NaN where blank), of the column that the scale may depend on.
+    pub column: Option<(String, Vec<f64>)>,
+}
+
+/// A quantity of the runs file: a load or a sum of loads.
+struct Stated {
+    name: String,
+    terms: Vec<(usize, f64)>,
+    value: usize,
+    /// Column of its sd, job units of one unit of that, and SI units.
+    sd: Option<(usize, f64, f64)>,
+    /// Job units of one unit of the column.
+    unit: f64,
+    /// Sd where no column states it, job units.
+    noise: f64,
+    /// What it measures, and SI units of one unit of the column.
+    size: (Option<Quantity>, f64),
+}
+
+/// The runs that teach, with their loads.
+///
+/// # Errors
+/// Columns that the job names and the file lacks, fields that are no numbers, runs without strain or without known loads.
+pub(super) fn read_known(
+    work: &mut Work,
+    job: &Job,
+    (runs, measured): (&Runs, &Measured),
+    strain: &[String],
+    loads: &[Load],
+    origin: [f64; 2],
+) -> Result<KnownRuns, Faults> {
+    let text = work
+        .inputs
+        .read_named_text(job, &runs.file)
+        .map_err(Faults::from)?;
+    let mut table = read_table(&runs.file.given, &text)?;
+    let mut headers = take_units(&mut table);
+    table.check_rows()?;
+    let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
+    note_unread_runs(&mut work.inputs, job, (&table, &headers), &names);
+    let payloads = add_columns(work, (job, runs), &mut table, &mut headers, loads, origin)?;
+    let mut faults = FaultList::new();
+    let key = run_column(job, &table, &headers)?;
+    let stated = stated(job, runs, &table, &headers, loads, &mut faults);
+    let place = |name: &str, key: &str, faults: &mut FaultList| {
+        column(job, &table, &headers, name, key, faults)
+    };
+    let mut repeats = Vec::new();
+    for name in &job.calibration.repeats {
+        repeats.extend(place(name, "calibration.repeats", &mut faults));
+    }
+    let depends = job.calibration.depends_on.as_ref();
+    let depends = depends.and_then(|name| {
+        let at = place(name, "calibration.depends_on", &mut faults)?;
+        Some((name.clone(), at))
+    });
+    let name_of = |row: usize| {
+        let cell = table.rows.get(row).and_then(|r| r.1.get(key));
+        cell.map_or("", String::as_str)
+    };
+    faults.extend(named_twice(&table, key));
+    let asked = asked_rows(job, &table, key, strain, &mut faults);
+    let largest = largest_known(&table, &stated, loads.len(), &mut faults);
+    let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
+    let (mut out, mut groups): (Vec<Known>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
+    let (mut values, mut partly, mut teaching) = (Vec::new(), Vec::new(), Vec::new());
+    for (row, run) in strain.iter().enumerate() {
+        let Some(at) = (0..table.rows.len()).find(|i| name_of(*i) == run) else {
+            continue;
+        };
+        let listed = asked.as_ref().is_some_and(|a| a.contains(&at));
+        let left_out = match asked {
+            Some(_) => !listed,
+            None => held_out(run),
+        };
+        if left_out {
+            continue;
+        }
+        let found = loads_of((&table, at), &stated, payloads.as_ref(), loads, &largest);
+        let known = found.unwrap_or_else(|fault| {
+            faults.push(fault);
+            None
+        });
+        let Some(known) = known else {
+            if listed {
+                let line = table.rows.get(at).map_or(0, |r| r.0);
+                let wrong = format!("run `{run}` is to teach and its loads are not known");
+                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs`"));
+            } else if stated
+                .iter()
+                .any(|s| matches!(cell(&table, at, s), Ok(Some(_))))
+            {
+                partly.push(run);
+            }
+            continue;
+        };
+        let cells = |columns: &[usize]| -> Vec<String> {
+            columns
+                .iter()
+                .map(|c| table.rows[at].1.get(*c).cloned().unwrap_or_default())
+                .collect()
+        };
+        let alike = match cells(&repeats) {
+            _ if repeats.is_empty() => known.mean.iter().map(|f| format!("{f:.6e}")).collect(),
+            // Nothing is said of it: like no other.
+            blank if blank.iter().all(String::is_empty) => vec![String::new(), run.clone()],
+            stated => stated,
+        };
+        let group = groups.iter().position(|g| *g == alike).unwrap_or_else(|| {
+            groups.push(alike);
+            groups.len() - 1
+        });
+        if let Some((_, c)) = &depends {
+            match table.number(at, *c) {
+                Ok(v) => values.push(v.unwrap_or(f64::NAN)),
+                Err(f) => faults.push(f),
+            }
+        }
+        teaching.push(at);
+        out.push(Known {
+            row,
+            loads: known,
+            group,
+        });
+    }
+    faults.extend(payloads.and_then(|p| p.unaccounted(job, &table, &teaching)));
+    if out.is_empty() && faults.is_empty() {
+        faults.push(nothing_known(&table, loads));
+    }
+    Faults::check(faults)?;
+    work.findings.extend(partly_known(&table.file, &partly));
+    Ok(KnownRuns {
+        runs: out,
+        column: depends.map(|(name, _)| (name, values)),
+    })
+}
+
+/// The finding on runs of which some loads are known and others neither by themselves nor in a sum: they teach nothing.
+fn partly_known(file: &str, runs: &[&String]) -> Option<Finding> {
+    let first = runs.first()?;
+    let others = match runs.len() - 1 {
+        0 => String::new(),
+        n => format!(" and {n} more"),
+    };
+    Some(Finding::new(
+        Severity::Warning,
+        "run-partly-known",
+        file,
+        format!(
+            "run `{first}`{others}: some loads are known and others blank; such runs are left out"
+        ),
+        "fill in what is blank (0 where nothing acted), with its sd where it is estimated, or state a sum in [[combination]]",
+    ))
+}
+
+/// The fault of a file with no run that teaches.
+fn nothing_known(table: &Table, loads: &[Load]) -> Fault {
+    let names: Vec<&str> = loads.iter().map(|l| l.name.as_str()).collect();
+    Fault::of(
+        &*table.file,
+        "run",
+        "no run has both strain and known loads",
+        format!(
+            "name its columns after the loads ({}), or map them in [runs] columns; blank: unknown, 0: known to be zero",
+            names.join(", ")
+        ),
+    )
+}
+
+/// A fault for every run whose name stood before.
+fn named_twice(table: &Table, key: usize) -> FaultList {
+    let name_of = |row: &(u32, Vec<String>)| row.1.get(key).cloned().unwrap_or_default();
+    let rows = table.rows.iter().enumerate();
+    let again = rows.filter(|(i, row)| {
+        table
+            .rows
+            .iter()
+            .take(*i)
+            .any(|r| name_of(r) == name_of(row))
+    });
+    again
+        .map(|(_, row)| {
+            let wrong = format!("run `{}` stands twice", name_of(row));
+            Fault::at(
+                &*table.file,
+                row.0,
+                "run",
+                wrong,
+                "give every run its own name",
+            )
+        })
+        .collect()
+}
+
+/// Rows of the runs that `[calibration] runs` names; `None` where it names none.
+fn asked_rows(
+    job: &Job,
+    table: &Table,
+    key: usize,
+    strain: &[String],
+    faults: &mut FaultList,
+) -> Option<Vec<usize>> {
+    let list = job.calibration.runs.as_ref()?;
+    let names: Vec<&str> = table
+        .rows
+        .iter()
+        .filter_map(|r| r.1.get(key))
+        .map(String::as_str)
+        .collect();
+    let mut out = Vec::new();
+    for run in list {
+        let place = names.iter().position(|n| n == run);
+        let known = [
+            (place.is_some(), &*table.file, names.clone()),
+            (
+                strain.contains(run),
+                "the strain file",
+                strain.iter().map(String::as_str).collect(),
+            ),
+        ];
+        for (found, file, choices) in known {
+            if !found {
+                let wrong = format!("`{file}` has no run `{run}`");
+                faults.push(Fault::at(
+                    &*job.file,
+                    job.calibration.line,
+                    "calibration.runs",
+                    wrong,
+                    suggest::remedy(run, choices),
+                ));
+            }
+        }
+        out.extend(place);
+    }
+    Some(out)
+}
+
+/// The column that a key of `[calibration]` names.
+fn column(
+    job: &Job,
+    table: &Table,
+    headers: &[Column],
+    name: &str,
+    key: &str,
+    faults: &mut FaultList,
+) -> Option<usize> {
+    let at = (job.calibration.line, key);
+    asked_column(job, at, table, headers, name, faults)
+}
+
+/// Columns of loads and of combinations that the file has.
+fn stated(
+    job: &Job,
+    runs: &Runs,
+    table: &Table,
+    headers: &[Column],
+    loads: &[Load],
+    faults: &mut FaultList,
+) -> Vec<Stated> {
+    let place = |name: &str| loads.iter().position(|l| l.name == name);
+    let mut wanted: Vec<(&str, Vec<(usize, f64)>)> = loads
+        .iter()
+        .enumerate()
+        .map(|(i, l)| (l.name.as_str(), vec![(i, 1.0)]))
+        .collect();
+    for c in &job.combinations {
+        let terms = c
+            .terms
+            .iter()
+            .filter_map(|(n, f)| Some((place(n)?, *f)))
+            .collect();
+        wanted.push((c.name.as_str(), terms));
+    }
+    let mut out = Vec::new();
+    for (name, terms) in wanted {
+        let first = terms
+            .first()
+            .and_then(|t| loads.get(t.0))
+            .map_or(name, |l| l.name.as_str());
+        let quantity = job.quantity_of_load(first);
+        let Some((value, unit)) =
+            known_column(job, runs, table, headers, name, quantity, faults).map(|c| (c.at, c.unit))
+        else {
+            continue;
+        };
+        let given = runs.columns.get(name).map_or(name, String::as_str);
+        let own = [name, given].map(|n| format!("{n}_sd"));
+        let sd = own
+            .iter()
+            .find(|n| !matches!(column_called(job, table, headers, n), Ok(None)));
+        let sd = sd.and_then(|n| known_column(job, runs, table, headers, n, quantity, faults));
+        let of = |unit: Option<Unit>| unit.map_or(1.0, |u| 1.0 / factor(job.units, u));
+        let of_file = of(quantity.map(|q| runs.units.unit(q)));
+        let noise = match quantity {
+            Some(Quantity::Force) => runs.noise.force,
+            Some(Quantity::Moment) => runs.noise.moment,
+            _ => None,
+        };
+        out.push(Stated {
+            name: name.to_owned(),
+            terms,
+            value,
+            // In the unit of what it is the sd of, unless it states its own.
+            sd: sd.map(|c| {
+                let unit = if c.is_stated { c.unit } else { unit };
+                (c.at, of(unit), unit.map_or(1.0, |u| u.si))
+            }),
+            unit: of(unit),
+            noise: noise.unwrap_or(0.0) * of_file,
+            size: (quantity, unit.map_or(1.0, |u| u.si)),
+        });
+    }
+    out
+}
+
+/// Value and sd of a quantity in a row, job units; `None` where it is blank.
+fn cell(table: &Table, row: usize, s: &Stated) -> Result<Option<(f64, f64)>, Fault> {
+    let Some(value) = table.size(row, s.value, s.size)? else {
+        return Ok(None);
+    };
+    let sd = match s.sd {
+        Some((c, unit, si)) => table.sd(row, c, (s.size.0, si))?.map(|v| v * unit),
+        None => None,
+    };
+    Ok(Some((value * s.unit, sd.unwrap_or(s.noise))))
+}
+
+/// The largest known value of any quantity; every fault of its cells on the way.
+fn largest_known(
+    table: &Table,
+    stated: &[Stated],
+    n_loads: usize,
+    faults: &mut FaultList,
+) -> Vec<f64> {
+    let mut largest = 0.0_f64;
+    for s in stated {
+        for row in 0..table.rows.len() {
+            match cell(table, row, s) {
+                Ok(v) => largest = largest.max(v.map_or(0.0, |v| v.0.abs())),
+                Err(f) => faults.push(f),
+            }
+        }
+    }
+    vec![if largest > 0.0 { largest } else { 1.0 }; n_loads]
+}
+
+/// Loads of one run, unknown ones wide, conditioned on the sums that are known; `None` where a wanted load is in nothing that is known.
+///
+/// # Errors
+/// A sum that is not that of its loads.
+fn loads_of(
+    (table, row): (&Table, usize),
+    stated: &[Stated],
+    payloads: Option<&Payloads>,
+    loads: &[Load],
+    largest: &[f64],
+) -> Result<Option<KnownLoads>, Fault> {
+    let k = loads.len();
+    let mut mean = vec![0.0; k];
+    let mut covariance = vec![0.0; k * k];
+    let mut known = vec![false; k];
+    let mut sums = Vec::new();
+    for s in stated {
+        let Ok(Some((value, sd))) = cell(table, row, s) else {
+            continue;
+        };
+        match s.terms.as_slice() {
+            [(l, f)] if *f == 1.0 => {
+                mean[*l] = value;
+                covariance[l * k + l] = sd * sd;
+                known[*l] = true;
+            }
+            _ => sums.push((s, value, sd)),
+        }
+    }
+    if let Some(payloads) = payloads {
+        payloads.share_error(row, &mut covariance, k);
+    }
+    for l in (0..k).filter(|l| !known[*l]) {
+        let in_sum = sums
+            .iter()
+            .any(|s| s.0.terms.iter().any(|t| t.0 == l && t.1 != 0.0));
+        if loads[l].wanted && !in_sum {
+            return Ok(None);
+        }
+        let sd = loads[l].expected.unwrap_or(UNKNOWN * largest[l]);
+        covariance[l * k + l] = sd * sd;
+    }
+    if !known.iter().any(|k| *k) && sums.is_empty() {
+        return Ok(None);
+    }
+    for (s, value, sd) in sums {
+        let parts = s.terms.iter().map(|(l, f)| (f * mean[*l]).abs());
+        let size = parts.sum::<f64>().max(value.abs());
+        let (left, variance) = condition(&mut mean, &mut covariance, &s.terms, value, sd);
+        if left.abs() > ROUNDED * size + CONTRADICTS * variance.sqrt() {
+            let line = table.rows.get(row).map_or(0, |r| r.0);
+            let [said, made] = [value, value - left].map(|v| number(v / s.unit));
+            return Err(Fault::at(
+                &*table.file,
+                line,
+                &*s.name,
+                format!(
+                    "`{}` is {said}, and the loads of this run make {made}",
+                    s.name
+                ),
+                "correct the one or the other, or state how well they are known in columns `<load>_sd`",
+            ));
+        }
+    }
+    Ok(Some(KnownLoads { mean, covariance }))
+}
+
+/// Share of a sum by which its loads may miss it: numbers of two or three digits are rounded by as much.
+const ROUNDED: f64 = 0.01;
+/// Standard deviations from which a sum contradicts its loads: once in two million sums that are right.
+const CONTRADICTS: f64 = 5.0;
+
+/// Gaussian loads given that a sum of them is `value` to within `sd`; how far it was from what they made before, and the variance of that.
+fn condition(
+    mean: &mut [f64],
+    covariance: &mut [f64],
+    terms: &[(usize, f64)],
+    value: f64,
+    sd: f64,
+) -> (f64, f64) {
+    let k = mean.len();
+    let carried: Vec<f64> = (0..k)
+        .map(|l| terms.iter().map(|(m, f)| f * covariance[l * k + m]).sum())
+        .collect();
+    let variance: f64 = terms.iter().map(|(m, f)| f * carried[*m]).sum::<f64>() + sd * sd;
+    let left = value - terms.iter().map(|(m, f)| f * mean[*m]).sum::<f64>();
+    if !(variance > 0.0) {
+        return (left, 0.0);
+    }
+    for l in 0..k {
+        mean[l] += carried[l] * left / variance;
+        for m in 0..k {
+            covariance[l * k + m] -= carried[l] * carried[m] / variance;
+        }
+    }
+    (left, variance)
+}

@@ -1,0 +1,312 @@
+//! `calibrate`: S from runs of known load, fused with the model's where there is one; the job that the other workflows run with it.
+
+mod glued;
+mod job_file;
+mod known;
+mod outcome;
+mod payloads;
+mod said;
+
+pub use job_file::calibrated_job;
+pub use outcome::*;
+
+use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::readings::stated_readings;
+use crate::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
+use crate::linalg::Matrix;
+use crate::measured::faults::no_gauge_column;
+use crate::measured::strain_table::StrainTable;
+use crate::measured::zero::{Zeroed, judged_to_learn, read_zeroed, reads_strain, some_left};
+use crate::recovery::Readings;
+use crate::sensitivity::{Load, Sensitivity};
+use crate::strain_chain::named_results::check_tables;
+use crate::strain_chain::{Prepared, given_as_asked, prepare};
+use crate::units::MICROSTRAIN;
+use crate::workflow::reconcile::redirect::text_of;
+use crate::workflow::recover::listed;
+
+/// S of a job's gauges learnt from its runs of known load.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; runs without known loads.
+pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    check_tables(&work, job)?;
+    let (measured, runs) = sections(job)?;
+    let zeroed = work.stage("read strain", |w| strain_of_runs(w, job, measured))?;
+    let (prepared, prior) = prior(&mut work, job, &zeroed.table)?;
+    let s = &prepared.sensitivity;
+    let listed = listed(job, s)?;
+    let origin = payload_place(job, &prepared);
+    let (known, strain) = read(&mut work, job, (measured, runs), &zeroed, s, origin)?;
+    let names = zeroed.runs()?;
+    let noise_factor = &zeroed.noise_factor;
+    let task = Task {
+        gauges: prepared.sensitivity.gauges.clone(),
+        loads: prepared.sensitivity.loads.clone(),
+        noise: measured.noise_microstrain * MICROSTRAIN,
+        model: prior,
+        runs: known
+            .runs
+            .iter()
+            .map(|k| KnownRun {
+                run: names[k.row].clone(),
+                strain: strain[k.row].strain.clone(),
+                noise_factor: noise_factor[k.row],
+                loads: k.loads.clone(),
+                group: k.group,
+            })
+            .collect(),
+        sums: sums(job, &prepared.sensitivity.loads),
+    };
+    let sites = match glued::tolerance(&job.calibration) {
+        Some(t) => Some((t, glued::Sites::of(job, &prepared, t)?)),
+        None => None,
+    };
+    let found = work
+        .stage("calibrate", |_| match &sites {
+            Some((t, sites)) => calibrate_as_glued(&task, *t, |g, offset| sites.row(g, offset)),
+            None => crate::calibrate::calibrate(&task),
+        })
+        .map_err(|wrong| {
+            Faults::from(Fault::of(
+                &*runs.file.given,
+                "runs",
+                wrong,
+                "give known loads in the runs file, and strain of the same runs",
+            ))
+        })?;
+    work.findings.extend(found.findings.iter().cloned());
+    work.findings.extend(said::unchecked(&task, &listed));
+    work.findings.extend(said::uneven(&task, &found, &listed));
+    let units = &listed.units[..task.loads.len()];
+    let next = work.stage("next run", |_| said::next_run(&task, &found, units));
+    let dependence = known
+        .column
+        .as_ref()
+        .map(|column| said::dependence(&task, &found, column));
+    work.findings.extend(
+        dependence
+            .iter()
+            .flatten()
+            .filter_map(DependenceSummary::finding),
+    );
+    let calibration = said::words(&task, &found, &listed, next, dependence.flatten());
+    work.findings.extend(glued::untold(&calibration.gauges));
+    let glued = found.as_glued.iter().enumerate();
+    let answer = Calibrated {
+        calibration,
+        glued: glued
+            .map(|(g, a)| sites.as_ref().and_then(|(_, s)| s.found(g, a)))
+            .collect(),
+        sensitivity: found.sensitivity.clone(),
+        model: task.model.as_ref().map(|m| m.values.clone()),
+        found,
+        job_text: text_of(&mut work, job)?,
+        job: job.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Reads what [`calibrate`] learns from, as far as no model is solved for it, and drops it: of a job that is to be calibrated, as its section says
+/// or as nothing else can be done with it.
+///
+/// # Errors
+/// Every fault of these files.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    let (Some(measured), Some(runs)) = (&job.measured, &job.runs) else {
+        return Ok(());
+    };
+    let alone = !reads_strain(job) && job.vehicle.is_none() && !job.loads.is_empty();
+    if job.calibration.line == 0 && !alone {
+        return Ok(());
+    }
+    let zeroed = strain_of_runs(work, job, measured)?;
+    let s = match &job.sensitivity {
+        Some(_) => given_as_asked(work, job)?,
+        None => stated_alone(job, &zeroed.table),
+    };
+    listed(job, &s)?;
+    read(work, job, (measured, runs), &zeroed, &s, [0.0; 2]).map(|_| ())
+}
+
+/// Runs of strain less their zero.
+///
+/// # Errors
+/// Those of the file; a record.
+fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<Zeroed, Faults> {
+    let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
+    zeroed.runs()?;
+    Ok(zeroed)
+}
+
+/// Known loads, and the strain of all rows by gauge of `s`, judged.
+///
+/// # Errors
+/// Faults of the files; no reading at all.
+fn read(
+    work: &mut Work,
+    job: &Job,
+    (measured, runs): (&Measured, &Runs),
+    zeroed: &Zeroed,
+    s: &Sensitivity,
+    origin: [f64; 2],
+) -> Result<(known::KnownRuns, Vec<Readings>), Faults> {
+    let names = zeroed.runs()?;
+    let known = known::read_known(work, job, (runs, measured), names, &s.loads, origin)?;
+    check_readings(job, measured, &zeroed.table, &s.gauges)?;
+    let read = zeroed.readings(&s.gauges);
+    let strain = judged_to_learn(work, job, measured, &s.gauges, read);
+    some_left(&zeroed.table.file, &strain)?;
+    Ok((known, strain))
+}
+
+/// Place in plan, m, of the grid where the payload acts; zeros without a model.
+fn payload_place(job: &Job, prepared: &Prepared) -> [f64; 2] {
+    let model = prepared.fields.as_ref().map(|f| f.model());
+    let grid = model.zip(job.payload_grid()).and_then(|(model, id)| {
+        let at = model.grids.get(model.grid_ix(id)?.us())?;
+        Some([at.x[0], at.x[1]].map(|x| x * job.units.length_m()))
+    });
+    grid.unwrap_or([0.0; 2])
+}
+
+/// What calibration can't do without.
+fn sections(job: &Job) -> Result<(&Measured, &Runs), Faults> {
+    let lacks = |section: &str, remedy: &str| {
+        Fault::of(
+            &*job.file,
+            section,
+            format!("the job has no [{section}]"),
+            remedy,
+        )
+    };
+    match (&job.measured, &job.runs) {
+        (Some(m), Some(r)) => Ok((m, r)),
+        (m, r) => {
+            let mut list = Vec::new();
+            if m.is_none() {
+                list.push(lacks(
+                    "measured",
+                    "name the strain of the runs: [measured] strain = \"strain.csv\"",
+                ));
+            }
+            if r.is_none() {
+                list.push(lacks(
+                    "runs",
+                    "name the known loads: [runs] file = \"runs.csv\"",
+                ));
+            }
+            Err(Faults::or(
+                list,
+                lacks("runs", "name the known loads: [runs] file = \"runs.csv\""),
+            ))
+        }
+    }
+}
+
+/// Gauges and loads with the model's S as prior, or with none.
+fn prior(
+    work: &mut Work,
+    job: &Job,
+    table: &StrainTable,
+) -> Result<(Prepared, Option<ModelPrior>), Faults> {
+    if job.model.is_some() || job.sensitivity.is_some() {
+        let prepared = prepare(work, job)?;
+        let prior = ModelPrior {
+            values: prepared.sensitivity.values.clone(),
+            moves: Vec::new(),
+            off_drawing: glued::off_drawing(job, &prepared)?,
+            uncertainty_rel: job.calibration.model_uncertainty_rel,
+        };
+        return Ok((prepared, Some(prior)));
+    }
+    if job.loads.is_empty() {
+        return Err(Fault::of(
+            &*job.file,
+            "load",
+            "the job names no loads",
+            "add [[load]] with a `name` for each load that acts",
+        )
+        .into());
+    }
+    let prepared = Prepared {
+        sensitivity: stated_alone(job, table),
+        fields: None,
+        gauges: Vec::new(),
+        mesh_error: Vec::new(),
+    };
+    Ok((prepared, None))
+}
+
+/// Gauges and loads that the job states, gauges of the strain file where it states none; S is not known. Of a gauge that the file has no column
+/// of nothing can be learnt.
+fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
+    let mut gauges = stated_readings(job);
+    match gauges.is_empty() {
+        true => gauges.clone_from(&table.gauges),
+        false => gauges.retain(|g| table.gauges.contains(g)),
+    }
+    let load = |l: &JobLoad| Load {
+        expected: l.expected,
+        wanted: l.role == LoadRole::Wanted,
+        quantity: l.quantity(),
+        ..Load::named(&l.name)
+    };
+    let loads: Vec<Load> = job.loads.iter().map(load).collect();
+    Sensitivity {
+        values: Matrix::zeros(gauges.len(), loads.len()),
+        gauges,
+        loads,
+        uncertainty: None,
+    }
+}
+
+/// That known loads are changes from zero, and that the strain file has a gauge.
+///
+/// # Errors
+/// Another reference; no column named after a gauge.
+fn check_readings(
+    job: &Job,
+    measured: &Measured,
+    table: &StrainTable,
+    gauges: &[String],
+) -> Result<(), Faults> {
+    if measured.reference != Reference::None {
+        let wrong = "known loads are changes from the state at which the gauges read zero";
+        return Err(Fault::at(
+            &*job.file,
+            measured.line,
+            "measured.reference",
+            wrong,
+            "write reference = \"none\"",
+        )
+        .into());
+    }
+    match gauges.iter().any(|g| table.gauges.contains(g)) {
+        true => Ok(()),
+        false => Err(no_gauge_column(job, &measured.strain.given, &table.gauges, gauges).into()),
+    }
+}
+
+/// Coefficients of the job's combinations; where it names none, the sum of all wanted loads, whose interval is to hold all the same.
+fn sums(job: &Job, loads: &[Load]) -> Vec<Vec<f64>> {
+    let of = |terms: &[(String, f64)]| -> Vec<f64> {
+        let factor = |l: &Load| terms.iter().filter(|t| t.0 == l.name).map(|t| t.1).sum();
+        loads.iter().map(factor).collect()
+    };
+    if job.combinations.is_empty() && loads.len() > 1 {
+        return vec![
+            loads
+                .iter()
+                .map(|l| if l.wanted { 1.0 } else { 0.0 })
+                .collect(),
+        ];
+    }
+    job.combinations.iter().map(|c| of(&c.terms)).collect()
+}

@@ -1,0 +1,207 @@
+//! Weighed payloads as known loads: mass and place of the runs file make the columns of the payload's loads.
+
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::work::Work;
+use crate::job::payload_loads::part_of;
+use crate::job::table::Table;
+use crate::job::{Job, Runs};
+use crate::measured::runs_columns::{column_called, known_column};
+use crate::measured::runs_file::{RunRow, read_runs};
+use crate::sensitivity::Load;
+use crate::series::record::{Column, name_and_unit};
+use crate::units::Quantity;
+
+/// Names of the columns that state how heavy a payload is, and what they measure.
+const STATES: [(&str, Quantity); 2] = [
+    ("payload_mass", Quantity::Mass),
+    ("payload_force", Quantity::Force),
+];
+
+/// Payloads of the runs file.
+pub(super) struct Payloads {
+    /// By row of the table: weight, N, and line of the file.
+    weights: Vec<(f64, u32)>,
+    /// The column that states them.
+    column: &'static str,
+    /// Whether the job has loads that are the payload's.
+    taught: bool,
+    /// Loads that are made of the weight and its place.
+    made: Vec<Made>,
+}
+
+/// A load that is the weight times an arm.
+struct Made {
+    /// Its number.
+    load: usize,
+    /// By row of the table: the arm, where an sd of the weight is stated.
+    arms: Vec<Option<f64>>,
+}
+
+/// Adds a column for each load that is the payload's and has none: `W = m g` at its place, `W dx` and `W dy` from the nominal one, which is
+/// `origin` (m) where the job states none. A blank place is the nominal one.
+///
+/// # Errors
+/// Fields that are no numbers or no mass, force or place.
+pub(super) fn add_columns(
+    work: &mut Work,
+    (job, runs): (&Job, &Runs),
+    table: &mut Table,
+    headers: &mut Vec<Column>,
+    loads: &[Load],
+    origin: [f64; 2],
+) -> Result<Option<Payloads>, Faults> {
+    let has = |t: &Table, h: &[Column], name: &str| {
+        runs.columns.contains_key(name) || !matches!(column_called(job, t, h, name), Ok(None))
+    };
+    let Some(states) = STATES.iter().find(|s| has(table, headers, s.0)) else {
+        return Ok(None);
+    };
+    let rows = read_runs(&mut work.inputs, job, runs)?;
+    let weight = |r: &RunRow| {
+        let of_mass = r.payload_mass_kg.map(|m| m * job.gravity_m_s2());
+        r.payload_force_n.or(of_mass)
+    };
+    let mut faults = FaultList::new();
+    let sd = weight_sd(job, runs, (table, headers), *states, &mut faults);
+    Faults::check(faults)?;
+    let nominal = job.payload.as_ref().map(|p| [p.nominal_x, p.nominal_y]);
+    let metre = job.units.length_m();
+    let arm = |at: Option<f64>, axis: usize| {
+        let stated = nominal.and_then(|n| n[axis]).map(|n| n * metre);
+        at.map_or(0.0, |x| x - stated.unwrap_or(origin[axis]))
+    };
+    let mut taught = false;
+    let mut made = Vec::new();
+    for (number, load) in loads.iter().enumerate() {
+        let Some(part) = part_of(job, &load.name) else {
+            continue;
+        };
+        taught = true;
+        if has(table, headers, &load.name) {
+            continue;
+        }
+        let is_weight = part[0] != 0.0;
+        let quantity = if is_weight {
+            Quantity::Force
+        } else {
+            Quantity::Moment
+        };
+        let si = runs.units.unit(quantity).si;
+        let of = |r: &RunRow| -> f64 {
+            part[0] + part[1] * arm(r.payload_x_m, 0) + part[2] * arm(r.payload_y_m, 1)
+        };
+        let value = |(_, r): (usize, &RunRow)| weight(r).map(|w| w * of(r) / si);
+        push(
+            table,
+            headers,
+            &load.name,
+            rows.iter().enumerate().map(value),
+        );
+        let spread = |(i, r): (usize, &RunRow)| Some(sd.get(i).copied()?? * of(r).abs() / si);
+        let name = format!("{}_sd", load.name);
+        push(table, headers, &name, rows.iter().enumerate().map(spread));
+        let stated = rows.iter().zip(&sd);
+        made.push(Made {
+            load: number,
+            arms: stated.map(|(r, sd)| sd.map(|_| of(r))).collect(),
+        });
+    }
+    let weights = rows.iter().map(|r| (weight(r).unwrap_or(0.0), r.line));
+    Ok(Some(Payloads {
+        weights: weights.collect(),
+        column: states.0,
+        taught,
+        made,
+    }))
+}
+
+/// Adds a column of numbers, blank where there is none.
+fn push(
+    table: &mut Table,
+    headers: &mut Vec<Column>,
+    name: &str,
+    values: impl Iterator<Item = Option<f64>>,
+) {
+    let width = table.header.len();
+    table.header.push(name.to_owned());
+    headers.push(name_and_unit(name));
+    for ((_, fields), value) in table.rows.iter_mut().zip(values) {
+        fields.resize(width, String::new());
+        fields.push(value.map_or_else(String::new, |v| format!("{v:e}")));
+    }
+}
+
+/// By row: sd of the weight, N, of `payload_mass_sd` or `payload_force_sd`, else of the noise that the job states of masses or forces.
+fn weight_sd(
+    job: &Job,
+    runs: &Runs,
+    (table, headers): (&Table, &[Column]),
+    (name, quantity): (&str, Quantity),
+    faults: &mut FaultList,
+) -> Vec<Option<f64>> {
+    let newtons = match quantity {
+        Quantity::Mass => job.gravity_m_s2(),
+        _ => 1.0,
+    };
+    let value = known_column(job, runs, table, headers, name, Some(quantity), faults);
+    let given = runs.columns.get(name).map_or(name, String::as_str);
+    let own = [name, given].map(|n| format!("{n}_sd"));
+    let named = own
+        .iter()
+        .find(|n| !matches!(column_called(job, table, headers, n), Ok(None)));
+    let column = named.and_then(|n| {
+        let sd = known_column(job, runs, table, headers, n, Some(quantity), faults)?;
+        let unit = match sd.is_stated {
+            true => sd.unit,
+            false => value.and_then(|v| v.unit),
+        };
+        Some((sd.at, unit.map_or(1.0, |u| u.si)))
+    });
+    let noise = match quantity {
+        Quantity::Mass => runs.noise.mass,
+        _ => runs.noise.force,
+    };
+    let noise = noise.map(|n| n * runs.units.unit(quantity).si * newtons);
+    let mut one = |row: usize| {
+        let stated = column.and_then(|(at, si)| {
+            let read = table.sd(row, at, (Some(quantity), si));
+            read.map_err(|f| faults.push(f)).ok()?.map(|v| v * si)
+        });
+        stated.map(|v| v * newtons).or(noise)
+    };
+    (0..table.rows.len()).map(&mut one).collect()
+}
+
+impl Payloads {
+    /// Puts into the covariance of a row's `k` known loads, so far that of independent ones, that those made of one weight share its error:
+    /// `Cov(W a, W b) = sd_W^2 a b`.
+    pub fn share_error(&self, row: usize, covariance: &mut [f64], k: usize) {
+        let arm = |m: &Made| Some((m.load, m.arms.get(row).copied()??));
+        let made: Vec<(usize, f64)> = self.made.iter().filter_map(arm).collect();
+        for (l, a) in &made {
+            for (m, b) in made.iter().filter(|m| m.0 != *l) {
+                let size = (covariance[l * k + l] * covariance[m * k + m]).sqrt();
+                covariance[l * k + m] = size * a.signum() * b.signum();
+            }
+        }
+    }
+
+    /// A fault where runs that teach carry a payload whose strain no load of the job makes: it would be taken for that of the others.
+    pub fn unaccounted(&self, job: &Job, table: &Table, teaching: &[usize]) -> Option<Fault> {
+        let in_readings = job.payload.as_ref().is_none_or(|p| p.weight_in_model);
+        let heavy = |row: &&usize| self.weights.get(**row).is_some_and(|w| w.0 != 0.0);
+        let row = teaching
+            .iter()
+            .find(heavy)
+            .filter(|_| !self.taught && in_readings)?;
+        let line = self.weights.get(*row).map_or(0, |w| w.1);
+        Some(Fault::at(
+            &*table.file,
+            line,
+            self.column,
+            "a run of known loads carries a payload, and no load of the job is its",
+            "add its weight as a load: [[load]] name = \"payload\", and where its place varies \"payload.MY\" (weight times x) and \"payload.MX\" \
+             (less weight times y); with a model, loads at `[payload] grid`. Known mass and place make their columns",
+        ))
+    }
+}

@@ -1,0 +1,267 @@
+//! The calibration in the units of reports.
+
+use super::outcome::*;
+use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, known_of, next_runs};
+use crate::estimate::student_95;
+use crate::finding::{Finding, Severity};
+use crate::strain_chain::LoadUnits;
+use crate::units::number;
+use crate::workflow::recover::Listed;
+use std::collections::BTreeMap;
+
+/// Chance under which a dependence is worth a word.
+const SIGNIFICANT: f64 = 0.01;
+
+impl DependenceSummary {
+    /// A finding where the dependence is no chance.
+    pub(super) fn finding(&self) -> Option<Finding> {
+        (self.chance < SIGNIFICANT).then(|| {
+            let message = format!(
+                "the strain of the runs depends on `{}`: loads come out {:+.2} % per unit of it (+- {:.2}, chance {:.1e})",
+                self.column,
+                100.0 * self.slope_rel,
+                100.0 * student_95(self.dof) * self.sigma,
+                self.chance
+            );
+            Finding::new(
+                Severity::Warning,
+                "calibration-depends-on-column",
+                &self.column,
+                message,
+                "calibrate with the runs of one setting, or keep the width that the scatter gives",
+            )
+            .with_numbers(self.chance, SIGNIFICANT)
+        })
+    }
+}
+
+/// The largest known load of each unit, where there is no model that its strain could be held against.
+pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
+    if task.model.is_some() {
+        return None;
+    }
+    let own = (0..task.loads.len()).map(|l| vec![(l, 1.0)]);
+    let rows: Vec<Vec<(usize, f64)>> = own.chain(listed.sums.iter().cloned()).collect();
+    let mut largest: BTreeMap<&str, (f64, String)> = BTreeMap::new();
+    for (i, terms) in rows.iter().enumerate() {
+        let unit = &listed.units[i];
+        for r in 0..task.runs.len() {
+            let size = known_of(task, r, terms).map_or(0.0, |v| (v * unit.factor).abs());
+            if size > largest.get(unit.name.as_str()).map_or(0.0, |l| l.0) {
+                let said = format!(
+                    "{} {} (`{}` in run `{}`)",
+                    number(size),
+                    unit.name,
+                    listed.names[i],
+                    task.runs[r].run
+                );
+                largest.insert(&unit.name, (size, said));
+            }
+        }
+    }
+    let most = largest.values().map(|l| l.0).fold(0.0, f64::max);
+    let each: Vec<String> = largest.into_values().map(|l| l.1).collect();
+    let message = format!(
+        "no model says how much strain the known loads make: nothing checks their unit. The largest is {}",
+        each.join("; ")
+    );
+    (!each.is_empty()).then(|| {
+        Finding::new(
+            Severity::Info,
+            "known-loads-unchecked",
+            "runs",
+            message,
+            "look whether that is the load that was applied, and the unit it is read in ([runs] units)",
+        )
+        .with_numbers(most, 0.0)
+    })
+}
+
+/// How many times less strain than another load of its unit a load may make: the largest strain of vertical, lateral and longitudinal wheel
+/// forces on the frames of nine trucks differs by 8 to 20 times; units that are mixed up (kN and N) by 1,000.
+const UNEVEN: f64 = 300.0;
+/// In units of the noise: less strain than this is no sign of a load.
+const CLEAR: f64 = 6.0;
+
+/// The largest known size of a load; 0 of one that no run has.
+fn largest(task: &Task, l: usize) -> f64 {
+    let known = task.runs.iter().map(|r| r.loads.mean[l].abs());
+    known.fold(0.0, f64::max)
+}
+
+/// A load that by the runs makes far less strain than others of its unit, and still strain that is read, where there is no model that says so too.
+pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Option<Finding> {
+    if task.model.is_some() {
+        return None;
+    }
+    let values = &found.sensitivity.values;
+    let size = |l: usize| {
+        values
+            .column(l)
+            .iter()
+            .fold(0.0, |a: f64, v| a.max(v.abs()))
+    };
+    let all = 0..task.loads.len();
+    let odd = all.clone().find_map(|a| {
+        let others = all
+            .clone()
+            .filter(|&b| listed.units[b].name == listed.units[a].name);
+        let most = others.max_by(|b, c| size(*b).total_cmp(&size(*c)))?;
+        let times = size(most) / size(a);
+        let read = size(a) * largest(task, a) > CLEAR * task.noise;
+        (read && times > UNEVEN).then_some((a, most, times))
+    });
+    odd.map(|(a, most, times)| {
+        Finding::new(
+            Severity::Warning,
+            "known-loads-uneven",
+            listed.names[a].clone(),
+            format!(
+                "by the runs {} of it makes {} times less strain than of `{}`: is it noted in the same unit?",
+                listed.units[a].name,
+                number(times),
+                listed.names[most]
+            ),
+            "look at the known loads of both in the runs file, and at [runs] units",
+        )
+        .with_numbers(times, UNEVEN)
+    })
+}
+
+/// The best next run.
+pub(super) fn next_run(
+    task: &Task,
+    found: &Calibration,
+    units: &[LoadUnits],
+) -> Option<NextRunSummary> {
+    let size = |l: usize| match largest(task, l) {
+        known if known > 0.0 => Some(known),
+        _ => task.loads[l].expected,
+    };
+    let sizes: Vec<Option<f64>> = (0..task.loads.len()).map(size).collect();
+    let other = sizes.iter().flatten().copied().fold(0.0, f64::max);
+    let sizes: Vec<f64> = sizes.into_iter().map(|s| s.unwrap_or(other)).collect();
+    let best = next_runs(found, task.noise, &sizes)
+        .ok()?
+        .into_iter()
+        .next()?;
+    let unit = &units[best.load];
+    Some(NextRunSummary {
+        loads: task
+            .loads
+            .iter()
+            .zip(units)
+            .zip(&best.loads)
+            .map(|((l, u), f)| (l.name.clone(), f * u.factor))
+            .collect(),
+        information: best.information,
+        load: task.loads[best.load].name.clone(),
+        sigma_before: best.sigma_before * unit.factor,
+        sigma_after: best.sigma_after * unit.factor,
+        unit: unit.name.clone(),
+    })
+}
+
+/// The test on a column.
+pub(super) fn dependence(
+    task: &Task,
+    found: &Calibration,
+    column: &(String, Vec<f64>),
+) -> Option<DependenceSummary> {
+    let Dependence {
+        slope_rel,
+        sigma,
+        chance,
+        dof,
+    } = depends_on(task, &found.left_out, &column.1)?;
+    Some(DependenceSummary {
+        column: column.0.clone(),
+        slope_rel,
+        sigma,
+        chance,
+        dof,
+    })
+}
+
+/// `calibration` of `result.json`.
+pub(super) fn words(
+    task: &Task,
+    found: &Calibration,
+    listed: &Listed,
+    next_run: Option<NextRunSummary>,
+    dependence: Option<DependenceSummary>,
+) -> CalibrationSummary {
+    let left_out = |l: &LeftOut| {
+        let mut estimate = l.estimate.clone();
+        let k = task.loads.len();
+        estimate.widen(found.coverage.factor);
+        estimate.add_sums(&listed.names[k..], &listed.sums);
+        let own = (0..k).map(|l| vec![(l, 1.0)]);
+        let rows = own.chain(listed.sums.iter().cloned());
+        let one = |(i, terms): (usize, Vec<(usize, f64)>)| {
+            let unit = &listed.units[i];
+            let [low, high] = estimate.interval(i);
+            LeftOutLoad {
+                name: listed.names[i].clone(),
+                known: known_of(task, l.number, &terms).map(|known| known * unit.factor),
+                value: estimate.values[i] * unit.factor,
+                sigma: estimate.sigma(i) * unit.factor,
+                unit: unit.name.clone(),
+                low: low * unit.factor,
+                high: high * unit.factor,
+            }
+        };
+        LeftOutSummary {
+            run: estimate.run.clone(),
+            distance: (l.distance / l.loads.max(1) as f64).sqrt(),
+            loads: rows.enumerate().map(one).collect(),
+        }
+    };
+    let terms = |u: &crate::calibrate::Undetermined| -> BTreeMap<String, f64> {
+        task.loads
+            .iter()
+            .zip(&u.terms)
+            .map(|(l, t)| (l.name.clone(), *t))
+            .collect()
+    };
+    CalibrationSummary {
+        runs: task.runs.len() - found.refused.len(),
+        prior: if task.model.is_some() {
+            "model"
+        } else {
+            "none"
+        },
+        gauges: found
+            .shifts
+            .iter()
+            .enumerate()
+            .map(|(g, s)| CalibratedGauge {
+                name: s.name.clone(),
+                shift: s.shift,
+                scale: s.scale,
+                looks_like: s.word.name(),
+                as_glued: found.as_glued.get(g).map(super::glued::summary),
+            })
+            .collect(),
+        repeat_scatter_rel: found.repeat_scatter_rel,
+        noise_rel: found.noise_rel,
+        coverage: CoverageSummary {
+            held: found.coverage.held,
+            of: found.coverage.of,
+            factor: found.coverage.factor,
+        },
+        next_run,
+        model_error: found.model_error.map(|e| ModelErrorSummary {
+            common_rel: e.common,
+            entry_rel: e.entry,
+        }),
+        left_out: found.left_out.iter().map(left_out).collect(),
+        refused: found
+            .refused
+            .iter()
+            .map(|r| task.runs[*r].run.clone())
+            .collect(),
+        undetermined: found.undetermined.iter().map(terms).collect(),
+        dependence,
+    }
+}

@@ -1,0 +1,79 @@
+//! What the commands come to on a job that reads well: its deck is solved or its results are opened, gauges are laid or places for them looked
+//! for, and readings judged, by the code of the commands.
+
+use crate::finding::{Finding, Severity};
+use crate::host::fault::Faults;
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::strain_chain::{WantedAt, has_covariance, prepare, read_fields};
+use crate::workflow::{recover, sensitivity};
+
+/// Grids of a deck up to which `check` solves it: a few seconds of work on one core. `check` is asked often, and answers at once.
+const MOST_GRIDS: usize = 10_000;
+/// Grids that a mesh half as wide has for each of the deck's.
+const FINER: usize = 4;
+
+/// What `sensitivity` and `recover` find on the way to their answers; `grids` are those of the job's deck. Whoever asks has read
+/// everything else.
+///
+/// # Errors
+/// Faults of these commands.
+pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults> {
+    let measured = job.measured.as_ref().filter(|_| recovers(job));
+    let placed = job.sensitivity.is_none() && job.gauges.is_empty();
+    // S that is given needs a model for responses alone; masses that are missing are what `ballast` finds.
+    let of_model = match placed {
+        true => job.ballast.is_none(),
+        false => job.sensitivity.is_none() || has_covariance(job),
+    };
+    let solves = of_model && job.model.is_some() && !job.loads.is_empty();
+    if solves && grids > most_grids(job) {
+        work.findings.push(not_asked(job, grids));
+        return Ok(());
+    }
+    match measured {
+        Some(measured) if !placed && (solves || job.sensitivity.is_some()) => {
+            let prepared = prepare(work, job)?;
+            recover::judged_alone(work, job, measured, &prepared)
+        }
+        _ if !solves => Ok(()),
+        // A job that asks for no places may be one for `solve` alone.
+        _ if placed && job.candidates.line == 0 && job.placement.line == 0 => {
+            read_fields(work, job, WantedAt::Anywhere).map(|_| ())
+        }
+        _ if placed || recovers(job) => sensitivity::prepared(work, job).map(|_| ()),
+        _ => prepare(work, job).map(|_| ()),
+    }
+}
+
+/// Whether a job is one for `recover`. What is weighed, reconciled or taught has strain that its loads alone don't explain, and what is studied
+/// may be gauges that don't tell the loads.
+fn recovers(job: &Job) -> bool {
+    let taught = job.calibration.line == 0 || has_covariance(job);
+    let others = job.reconcile.is_some() || job.payload.is_some() || job.vehicle.is_some();
+    taught && !others && job.study.is_none() && job.ballast.is_none()
+}
+
+/// Grids up to which a job is solved.
+fn most_grids(job: &Job) -> usize {
+    match job.model.as_ref().is_some_and(|m| m.mesh_error) {
+        true => MOST_GRIDS / FINER,
+        false => MOST_GRIDS,
+    }
+}
+
+/// Says what was left to the commands.
+fn not_asked(job: &Job, grids: usize) -> Finding {
+    let readings = match job.measured {
+        Some(_) => " and what the readings come to",
+        None => "",
+    };
+    Finding::new(
+        Severity::Info,
+        "solution-not-checked",
+        job.model.as_ref().map_or("model", |m| &m.deck.given),
+        format!("the deck is not solved here: whether it can be, where gauges may go{readings} is not checked"),
+        "run `sensitivity` or `place` on the job: the solution is kept for the commands that follow",
+    )
+    .with_numbers(grids as f64, most_grids(job) as f64)
+}

@@ -1,0 +1,194 @@
+//! Decks in `result.json` and in words.
+
+use crate::fe::{check_shapes, contradictions, held_dependents};
+use crate::host::fault::FaultList;
+use crate::host::words::short;
+use crate::host::work::Work;
+use crate::model::{Model, UnsupportedCard};
+use crate::strain_chain::deck::{DeckModel, model_of_deck};
+use crate::strain_chain::solved::find_repeated_subcases;
+use nastran::bdf::vocabulary::{Effect, effect_of_card};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// Elements of any kind, with and without a struct of their own; masses, rigid elements and plot elements aren't counted.
+const ELEMENTS: [&str; 53] = [
+    "CBAR", "CBEAM", "CBEAM3", "CBEND", "CBUSH", "CBUSH1D", "CBUSH2D", "CDAMP1", "CDAMP2",
+    "CDAMP3", "CDAMP4", "CDAMP5", "CELAS1", "CELAS2", "CELAS3", "CELAS4", "CFAST", "CGAP", "CHEXA",
+    "CPENTA", "CPYRAM", "CTETRA", "CONROD", "CQUAD", "CQUAD4", "CQUAD8", "CQUADR", "CQUADX",
+    "CQUADX4", "CQUADX8", "CROD", "CTUBE", "CSHEAR", "CTRIA3", "CTRIA6", "CTRIAR", "CTRIAX",
+    "CTRIAX6", "CTRAX3", "CTRAX6", "CVISC", "CRAC2D", "CRAC3D", "CWELD", "CSEAM", "CPLSTN3",
+    "CPLSTN4", "CPLSTN6", "CPLSTN8", "CPLSTS3", "CPLSTS4", "CPLSTS6", "CPLSTS8",
+];
+
+/// One deck.
+#[derive(Serialize)]
+pub struct DeckEntry {
+    path: String,
+    /// Number of cards by name.
+    cards: BTreeMap<String, usize>,
+    /// Number of cards without influence on linear statics, mass and modes, by reason.
+    without_influence: BTreeMap<&'static str, usize>,
+    grids: usize,
+    elements: usize,
+    /// WTMASS applied.
+    mass: f64,
+    cg: [f64; 3],
+    solution: Option<String>,
+    subcases: Vec<u32>,
+    wtmass: f64,
+    property_names: BTreeMap<u32, String>,
+    faults: usize,
+    #[serde(skip)]
+    pub(super) model: Option<Model>,
+}
+
+pub(super) fn look(
+    work: &mut Work,
+    base: &Path,
+    given: &str,
+    bytes: &[u8],
+) -> (DeckEntry, FaultList) {
+    let read = model_of_deck(&mut work.inputs, base, given, bytes);
+    work.findings.extend(read.findings.iter().cloned());
+    work.findings.extend(find_repeated_subcases(&read));
+    work.findings.extend(check_shapes(&read.model));
+    let held = supports(&read);
+    work.findings.extend(
+        held.into_iter()
+            .filter_map(|s| contradictions(&read.model, Some(s))),
+    );
+    let both = sets(&read).into_iter().filter_map(|(spc, mpc)| {
+        let finding = held_dependents(&read.model, spc, mpc)?;
+        Some((spc, finding))
+    });
+    work.findings
+        .extend(both.collect::<BTreeMap<_, _>>().into_values());
+    let faults = read.faults.clone();
+    (DeckEntry::of(read), faults)
+}
+
+/// SPC sets that case control selects; all of the deck where it selects none.
+fn supports(read: &DeckModel) -> BTreeSet<u32> {
+    let case_control = &read.deck.case_control;
+    let all = std::iter::once(&case_control.global).chain(&case_control.subcases);
+    let selected: BTreeSet<u32> = all.filter_map(|c| c.spc).collect();
+    match selected.is_empty() {
+        true => read.model.spcs.iter().map(|s| s.sid).collect(),
+        false => selected,
+    }
+}
+
+/// SPC and MPC sets that act together: those of the subcases; each SPC set of the deck where case control selects none.
+fn sets(read: &DeckModel) -> BTreeSet<(Option<u32>, Option<u32>)> {
+    let subcases = read.deck.case_control.effective_subcases();
+    let selected: BTreeSet<_> = subcases.iter().map(|s| (s.spc, s.mpc)).collect();
+    match selected.iter().any(|s| s.0.is_some()) {
+        true => selected,
+        false => {
+            let mpc = read.model.mpc;
+            let all = supports(read).into_iter().map(|spc| (Some(spc), mpc));
+            all.chain([(None, mpc)]).collect()
+        }
+    }
+}
+
+/// Counts the cards without influence by reason; `model` lists the cards that act and are not carried.
+fn without_influence(
+    cards: &BTreeMap<String, usize>,
+    model: &Model,
+) -> BTreeMap<&'static str, usize> {
+    let mut counted = BTreeMap::new();
+    for (name, n) in cards {
+        let (reason, n) = match effect_of_card(name) {
+            Some(Effect::None(reason)) => (reason, *n),
+            Some(Effect::ActsWith(_)) => {
+                // `MDLPRM OFFDEF`: the name of the card comes first
+                let of_name =
+                    |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name.as_str());
+                let acting = model.unsupported_cards.iter().filter(of_name);
+                let acting: BTreeSet<_> = acting.map(|u| u.at).collect();
+                ("acts on nothing in this deck", n - acting.len().min(*n))
+            }
+            _ => continue,
+        };
+        if n > 0 {
+            *counted.entry(reason).or_default() += n;
+        }
+    }
+    counted
+}
+
+impl DeckEntry {
+    pub(super) fn of(d: DeckModel) -> Self {
+        let cards = d.deck.counts.clone();
+        let weight = d.model.weight();
+        let m = &d.model;
+        let in_mesh = m.n_elements() - m.masses.len() - m.scalar_masses.len() - m.rigids.len();
+        let counted: usize = ELEMENTS.iter().filter_map(|e| cards.get(*e)).sum();
+        Self {
+            path: d.given,
+            grids: m.grids.iter().filter(|g| !g.is_scalar()).count(),
+            // Where the mesh came from an OP2 there are no cards to count.
+            elements: if cards.is_empty() { in_mesh } else { counted },
+            without_influence: without_influence(&cards, &d.model),
+            cards,
+            mass: weight.mass,
+            cg: weight.cg.into(),
+            solution: d.deck.sol_text.clone(),
+            subcases: d.deck.case_control.subcases.iter().map(|s| s.id).collect(),
+            wtmass: m.params.wtmass,
+            property_names: m.property_names.iter().cloned().collect(),
+            faults: d.faults.len(),
+            model: Some(d.model),
+        }
+    }
+
+    /// Its mesh.
+    pub fn model(&self) -> Option<&Model> {
+        self.model.as_ref()
+    }
+
+    /// The line about cards without influence; empty where there are none.
+    fn idle(&self) -> String {
+        let counted = self.without_influence.iter();
+        let parts: Vec<String> = counted.map(|(why, n)| format!("{why} {n}")).collect();
+        match parts.is_empty() {
+            true => String::new(),
+            false => format!("  without influence: {}\n", parts.join("; ")),
+        }
+    }
+
+    /// For people.
+    pub fn text(&self) -> String {
+        let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
+        let wtmass = if self.wtmass == 1.0 {
+            String::new()
+        } else {
+            format!(" (PARAM,WTMASS,{} applied)", self.wtmass)
+        };
+        let solution = self
+            .solution
+            .as_ref()
+            .map_or(String::new(), |s| format!(", SOL {s}"));
+        let [x, y, z] = self.cg.map(short);
+        let weight = match self.mass.is_finite() && self.cg.iter().all(|v| v.is_finite()) {
+            true => format!(
+                "{}{wtmass}, centre of gravity {x}, {y}, {z}",
+                short(self.mass)
+            ),
+            false => "more than numbers can be".to_owned(),
+        };
+        format!(
+            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
+            self.path,
+            self.grids,
+            self.elements,
+            self.subcases.len(),
+            cards.join(", "),
+            self.idle(),
+            self.faults
+        )
+    }
+}

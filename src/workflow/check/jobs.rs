@@ -1,0 +1,274 @@
+//! A job: its own faults, the files it names, and what the commands read of them, by their own readers.
+
+use super::asked::ask;
+use super::checked::Checked;
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::outcome::StatedUnits;
+use crate::host::work::Work;
+use crate::job::readings::stated_readings;
+use crate::job::{self, GivenSensitivity, HoldOut, Job, Measured, NamedFile};
+use crate::linalg::Matrix;
+use crate::measured::runs_file;
+use crate::measured::zero::read_zeroed;
+use crate::model::Model;
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::job_deck::against_units;
+use crate::strain_chain::solved::{relief_of_job, support_finding, support_of_job};
+use crate::strain_chain::{given_as_asked, off_their_elements};
+use crate::workflow::{calibrate, identify, reconcile, recover, respond};
+use std::collections::HashSet;
+use std::path::Path;
+
+/// Looks into a file: of a folder, as named.
+type Look = fn(&mut Work, &Path, &str, &mut Checked);
+
+pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked, into: Look) {
+    let job = match job::read_job(&mut work.inputs, &base.join(given)) {
+        Ok(job) => job,
+        Err(f) => return found.faults.extend(f),
+    };
+    found.units = StatedUnits::of(job.units, &job.report_units);
+    found.candidates = Some(job.candidates.clone());
+    let (decks, of_others) = (found.decks.len(), found.faults.len());
+    let results = found.results.len();
+    files(work, &job, found, into);
+    let of_job = found.results.iter_mut().skip(results);
+    of_job.for_each(|r| r.is_of_job = true);
+    let mut faults = std::mem::take(&mut found.faults);
+    let s = job.sensitivity.as_ref().and_then(|_| {
+        let read = given_as_asked(work, &job);
+        kept(read, &mut faults)
+    });
+    let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
+    found.jobs.push(format!(
+        "job `{given}`: {} loads, {} gauges, units {}",
+        s.as_ref().map_or(job.loads.len(), |s| s.loads.len()),
+        match (&s, job.gauges.len()) {
+            (None, stated @ 1..) => stated,
+            _ => gauges.len(),
+        },
+        job.units.name()
+    ));
+    if let Some(m) = &job.measured {
+        faults.extend(measured(work, &job, m, s.as_ref(), &gauges));
+    }
+    if let Some((given, _)) = job.sensitivity.as_ref().zip(s.as_ref()) {
+        faults.extend(signatures(work, &job, given, &gauges));
+    }
+    if let Some(r) = &job.runs {
+        kept(runs_file::read_runs(&mut work.inputs, &job, r), &mut faults);
+    }
+    if job.vehicle.is_some() {
+        kept(identify::look(work, &job), &mut faults);
+    }
+    kept(respond::look(work, &job), &mut faults);
+    if let Some(job) = kept(job.estimating(), &mut faults) {
+        kept(reconcile::look(work, &job), &mut faults);
+        kept(calibrate::look(work, &job), &mut faults);
+    }
+    if faults.len() == of_others {
+        let deck = found.decks.get(decks).and_then(|d| d.model());
+        let grids = deck.map_or(0, |m| m.grids.len());
+        kept(ask(work, &job, grids), &mut faults);
+    }
+    // Two commands say the same of one file.
+    each_once(&mut faults, ToString::to_string);
+    each_once(&mut work.findings, |f| {
+        format!("{} {} {}", f.code, f.subject, f.message)
+    });
+    found.faults = faults;
+}
+
+/// What was read; faults are added to the list.
+fn kept<T>(read: Result<T, Faults>, faults: &mut FaultList) -> Option<T> {
+    read.map_err(|f| faults.extend(f)).ok()
+}
+
+/// Keeps the first of those that are called alike.
+fn each_once<T>(list: &mut Vec<T>, called: impl Fn(&T) -> String) {
+    let mut seen = HashSet::with_capacity(list.len());
+    list.retain(|entry| seen.insert(called(entry)));
+}
+
+/// Names of the readings: those of a given S, of the gauges that the job states, of the strain file.
+fn gauges_of(
+    work: &mut Work,
+    job: &Job,
+    s: Option<&Sensitivity>,
+    faults: &mut FaultList,
+) -> Vec<String> {
+    if let Some(s) = s {
+        return s.gauges.clone();
+    }
+    let stated = stated_readings(job);
+    match &job.measured {
+        Some(m) if stated.is_empty() => {
+            kept(recover::gauges_of_file(work, job, m), faults).unwrap_or_default()
+        }
+        _ => stated,
+    }
+}
+
+/// What is wrong with measured strain, its zero, and the runs that are held out in a file of their own.
+fn measured(
+    work: &mut Work,
+    job: &Job,
+    m: &Measured,
+    s: Option<&Sensitivity>,
+    gauges: &[String],
+) -> FaultList {
+    let s = s.cloned().unwrap_or_else(|| Sensitivity {
+        gauges: gauges.to_vec(),
+        loads: Vec::new(),
+        values: Matrix::zeros(gauges.len(), 0),
+        uncertainty: None,
+    });
+    // Where not even the names can be had, that is a fault already.
+    let mut faults = match gauges.is_empty() {
+        true => FaultList::new(),
+        false => recover::look(work, job, m, s),
+    };
+    if let HoldOut::File(named) = &m.hold_out {
+        kept(read_zeroed(work, job, m, named), &mut faults);
+    }
+    faults
+}
+
+/// What is wrong with the signatures beside a given S, of the gauges that are measured.
+fn signatures(
+    work: &mut Work,
+    job: &Job,
+    given: &GivenSensitivity,
+    gauges: &[String],
+) -> FaultList {
+    let mut faults = FaultList::new();
+    if given.signatures != job::Signatures::default() && job.reconcile.is_none() {
+        let mut unread = FaultList::new();
+        let file = job.measured.as_ref();
+        let file = file.and_then(|m| kept(recover::gauges_of_file(work, job, m), &mut unread));
+        let is_measured = |g: &&String| file.as_ref().is_none_or(|f| f.contains(g));
+        let names: Vec<String> = gauges.iter().filter(is_measured).cloned().collect();
+        kept(
+            reconcile::look_at_signatures(work, job, given, &names),
+            &mut faults,
+        );
+    }
+    faults
+}
+
+/// Opens every file that the job names; decks and results are looked into.
+fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
+    if let Some(m) = &job.model {
+        let before = found.decks.len();
+        for named in std::iter::once(&m.deck).chain(&m.results) {
+            match work.inputs.read_named(job, named) {
+                Ok(_) => into(work, &job.folder, &named.given, found),
+                Err(f) => found.faults.push(f),
+            }
+        }
+        if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
+            work.findings.extend(against_units(job, model));
+            work.findings.extend(off_their_elements(model, job));
+            match support_of_job(job, model) {
+                Ok(support) => {
+                    work.findings.push(support_finding(&m.deck.given, support));
+                    work.findings
+                        .extend(relief_of_job(job, model).ok().flatten());
+                }
+                Err(faults) => found.faults.extend(faults.into_list()),
+            }
+            found.faults.extend(missing_ids(job, model));
+        }
+    }
+    for named in other_files(job) {
+        if let Err(f) = work.inputs.read_named(job, named) {
+            found.faults.push(f);
+        }
+    }
+}
+
+/// Files beside model, measured strain, runs and gauges.
+fn other_files(job: &Job) -> Vec<&NamedFile> {
+    let mut out: Vec<&NamedFile> = Vec::new();
+    if let Some(s) = &job.sensitivity {
+        out.push(&s.file);
+        out.extend(s.signatures.files());
+    }
+    if let Some(v) = &job.vehicle {
+        out.push(&v.data);
+        out.extend(&v.hold_out);
+    }
+    out.extend(&job.respond.loads);
+    out
+}
+
+/// Grids, elements and sets that the job names and the deck lacks.
+fn missing_ids(job: &Job, model: &Model) -> Vec<Fault> {
+    let mut out = Vec::new();
+    for l in &job.loads {
+        match l.acts {
+            job::LoadActs::AtGrid { grid, cid, .. } => {
+                if model.grid_ix(grid).is_none() {
+                    out.push(lacks(
+                        &job.file,
+                        l.line,
+                        "load.grid",
+                        &format!("grid {grid}"),
+                        &l.name,
+                    ));
+                }
+                if model.frame_ix(cid).is_none() {
+                    out.push(lacks(
+                        &job.file,
+                        l.line,
+                        "load.cid",
+                        &format!("coordinate system {cid}"),
+                        &l.name,
+                    ));
+                }
+            }
+            job::LoadActs::Set(sid) if !model.load_sets.iter().any(|s| s.sid == sid) => {
+                out.push(lacks(
+                    &job.file,
+                    l.line,
+                    "load.load_set",
+                    &format!("load set {sid}"),
+                    &l.name,
+                ));
+            }
+            job::LoadActs::Set(_) | job::LoadActs::Named => {}
+        }
+    }
+    for g in &job.gauges {
+        let element = match g.place {
+            job::StatedPlace::Element(e) if model.shell_ix(e).is_none() => {
+                Some(format!("shell {e}"))
+            }
+            job::StatedPlace::BeamPoint { element, .. } if model.beam_ix(element).is_none() => {
+                Some(format!("bar or beam {element}"))
+            }
+            _ => None,
+        };
+        let second = g
+            .pair
+            .map(|p| p.0)
+            .filter(|e| model.shell_ix(*e).is_none() && model.beam_ix(*e).is_none());
+        for missing in element
+            .into_iter()
+            .chain(second.map(|e| format!("element {e}")))
+        {
+            out.push(lacks(&g.file, g.line, "element", &missing, &g.name));
+        }
+    }
+    out
+}
+
+fn lacks(file: &str, line: u32, field: &str, what: &str, name: &str) -> Fault {
+    Fault::at(
+        file,
+        line,
+        field,
+        format!("`{name}`: the deck has no {what}"),
+        "correct the id, or name the deck of these results",
+    )
+}

@@ -1,0 +1,71 @@
+//! `check`: what is in the files, every fault, and whether deck and results belong together.
+//!
+//! [`kind`] finds the kind of a file; [`checked`] is the answer; [`decks`], [`results`] and [`records`] describe them; [`jobs`] follows a job to
+//! the files it names, and [`asked`] asks what commands make of them; [`together`] compares.
+
+mod asked;
+mod checked;
+mod decks;
+mod jobs;
+mod kind;
+mod records;
+mod results;
+mod together;
+
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::Outcome;
+use crate::host::work::Work;
+pub use checked::Checked;
+pub use decks::DeckEntry;
+use kind::{Kind, kind_of};
+pub use records::RecordEntry;
+pub use results::ResultEntry;
+use std::path::{Path, PathBuf};
+
+/// What is in decks, results and jobs, every fault, and whether they belong together. Faults of the files are part of the answer.
+///
+/// # Errors
+/// None of the files' own.
+pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<Checked>, Faults> {
+    let mut work = Work::new(cx);
+    let mut found = Checked::default();
+    for file in files {
+        let given = file.display().to_string();
+        work.stage("read", |w| look(w, Path::new(""), &given, &mut found));
+    }
+    work.stage("compare", |w| together::compare(w, &mut found));
+    let units = found.units.clone();
+    Ok(work.finish(units, found))
+}
+
+/// Looks into one file.
+fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checked) {
+    let bytes = match work.inputs.read(base, given) {
+        Ok(b) => b,
+        Err(f) => return found.faults.push(f),
+    };
+    match kind_of(given, &bytes) {
+        Kind::Job => jobs::look(work, base, given, found, look),
+        Kind::Deck => {
+            let (entry, faults) = decks::look(work, base, given, &bytes);
+            found.faults.extend(faults);
+            found.decks.push(entry);
+        }
+        Kind::Results => {
+            let (entry, faults) = results::look(work, given, bytes);
+            found.faults.extend(faults);
+            found.results.extend(entry);
+        }
+        Kind::Table => match records::look(work, base, given) {
+            Ok(entry) => found.records.push(entry),
+            Err(faults) => found.faults.extend(faults),
+        },
+        Kind::Other(kind) => found.faults.push(Fault::of(
+            given,
+            "file",
+            format!("it is {kind}"),
+            "name a deck, results, a job, a record or a table",
+        )),
+    }
+}

@@ -1,0 +1,56 @@
+//! What a finding means, by its code.
+
+use crate::finding::explain::{self, Code};
+use crate::host::fault::{Fault, Faults};
+use crate::job::suggest::remedy;
+
+/// What every finding means, by code.
+pub fn explain_all() -> &'static [Code] {
+    explain::codes()
+}
+
+/// What a finding means: cause, limit, remedy, an example.
+///
+/// # Errors
+/// A fault where no finding has the code, with the closest that one has.
+pub fn explain(code: &str) -> Result<&'static Code, Faults> {
+    explain::code(code).ok_or_else(|| {
+        let wrong = format!("no finding has the code `{code}`");
+        let closest = closest(code);
+        Fault::of("explain", "code", wrong, closest).into()
+    })
+}
+
+/// The closest code, else those that share a word, else where all are listed.
+fn closest(code: &str) -> String {
+    let names = explain::codes().iter().map(|c| c.code);
+    let meant = remedy(code, names.clone());
+    if meant.starts_with("did you mean") {
+        return meant;
+    }
+    let alike = |name: &&str| {
+        let mut words = code.split(['-', '_', ' ']).filter(|w| w.len() > 3);
+        words.any(|w| name.contains(&w.to_lowercase()))
+    };
+    let some: Vec<String> = names.filter(alike).map(|n| format!("`{n}`")).collect();
+    match some.as_slice() {
+        [] => "`strainbridge explain --list` lists all codes".to_owned(),
+        some => format!("did you mean one of {}?", some.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_code_is_answered_by_the_one_that_was_meant() {
+        assert!(explain("loads-not-separable").is_ok());
+        let faults = explain("loads-not-seperable").unwrap_err();
+        assert_eq!(faults[0].remedy, "did you mean `loads-not-separable`?");
+        let faults = explain("separable").unwrap_err();
+        assert!(faults[0].remedy.contains("`loads-weakly-separable`"));
+        let faults = explain("zzz").unwrap_err();
+        assert!(faults[0].remedy.contains("--list"));
+    }
+}

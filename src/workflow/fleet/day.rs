@@ -1,0 +1,188 @@
+//! What is kept of one file: a few kilobytes that merge to the result of a vehicle.
+
+use crate::finding::Finding;
+use crate::host::whole_file::Stamp;
+use crate::recovery::UNEXPLAINED;
+use crate::series::rainflow::Tally;
+use crate::series::rainflow::absent::number;
+use serde::{Deserialize, Serialize};
+
+/// One load over the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LoadDay {
+    /// Its name.
+    pub name: String,
+    /// Unit of every number of it.
+    pub unit: String,
+    /// Standard deviation of the noise in a sample.
+    pub noise: f64,
+    /// Covariance of its errors of scale with every load, row-major, `n_loads x n_loads`.
+    pub scale: Vec<f64>,
+    /// Cycles, levels, extremes and sums of damage.
+    pub tally: Tally,
+}
+
+/// One gauge over the record.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct GaugeDay {
+    /// Its name.
+    pub name: String,
+    /// Mean reading less the job's zero, microstrain.
+    #[serde(deserialize_with = "number")]
+    pub mean: f64,
+    /// Standard deviation of its readings, microstrain.
+    #[serde(deserialize_with = "number")]
+    pub sd: f64,
+    /// Noise from second differences of its readings, microstrain.
+    #[serde(deserialize_with = "number")]
+    pub noise: f64,
+    /// What the loads leave unexplained, rms, microstrain.
+    #[serde(deserialize_with = "number")]
+    pub residual: f64,
+    /// Its reading over what the loads recovered from all gauges predict for it, by least squares.
+    #[serde(deserialize_with = "number")]
+    pub gain: f64,
+    /// Mean of its reading less what the other gauges predict for it, microstrain.
+    #[serde(deserialize_with = "number")]
+    pub offset: f64,
+    /// Its share in its own prediction: of an error of it, `1 - leverage` stands in its residual.
+    #[serde(deserialize_with = "number")]
+    pub leverage: f64,
+    /// Samples without a reading.
+    pub missing: u64,
+    /// Parts of the record in which it is dead, hours from the first sample: it gives nothing, or one and the same value.
+    pub dead: Vec<[f64; 2]>,
+}
+
+impl GaugeDay {
+    /// That of a gauge that gives nothing, or one and the same value: neither tells anything.
+    pub fn silent(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            mean: f64::NAN,
+            sd: f64::NAN,
+            noise: f64::NAN,
+            residual: f64::NAN,
+            gain: f64::NAN,
+            offset: f64::NAN,
+            leverage: f64::NAN,
+            missing: u64::MAX,
+            dead: Vec::new(),
+        }
+    }
+}
+
+/// Findings with their chances, which results leave out and a merge needs.
+mod with_chances {
+    use crate::finding::Finding;
+    use serde::{Deserialize, Deserializer, Serializer};
+
+    pub fn serialize<S: Serializer>(findings: &[Finding], to: S) -> Result<S::Ok, S::Error> {
+        to.collect_seq(findings.iter().map(|f| (f, f.chance)))
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Finding>, D::Error> {
+        let kept: Vec<(Finding, Option<f64>)> = Deserialize::deserialize(from)?;
+        let finding = |(f, chance)| Finding { chance, ..f };
+        Ok(kept.into_iter().map(finding).collect())
+    }
+}
+
+/// What a record came to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Day {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Time of the samples that give a load, hours.
+    pub hours: f64,
+    /// Samples missing in gaps.
+    pub missing: usize,
+    /// Loads, in the order of the job.
+    pub loads: Vec<LoadDay>,
+    /// Gauges, in the order of the job.
+    pub gauges: Vec<GaugeDay>,
+    /// Findings of the record.
+    #[serde(with = "with_chances")]
+    pub findings: Vec<Finding>,
+}
+
+impl Day {
+    /// Time of the samples that give a load of it, hours: where the gauges that read tell some of the loads alone, it is less than that of the day.
+    pub fn hours_of(&self, load: &LoadDay) -> f64 {
+        let known = |l: &LoadDay| l.tally.samples.saturating_sub(l.tally.missing) as f64;
+        let most = self.loads.iter().map(known).fold(0.0, f64::max);
+        let share = if most > 0.0 { known(load) / most } else { 1.0 };
+        self.hours * share
+    }
+
+    /// Whether the loads don't explain its strain: what they are, and what damage they do, can't be relied on.
+    pub fn is_doubtful(&self) -> bool {
+        self.findings.iter().any(|f| f.code == UNEXPLAINED)
+    }
+}
+
+/// A file and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FileResult {
+    /// Path as given.
+    pub path: String,
+    /// Digest of its bytes; empty where it can't be read.
+    pub sha256: String,
+    /// As it was when they were read.
+    pub stamp: Option<Stamp>,
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day.
+    pub day: String,
+    /// What it came to, or why to nothing.
+    pub result: Result<Day, String>,
+}
+
+/// What a record came to but for its loads and gauges, which are large.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct DayHead {
+    /// Samples a second.
+    pub rate_hz: f64,
+    /// Time of the samples that give a load, hours.
+    pub hours: f64,
+    /// Samples missing in gaps.
+    pub missing: usize,
+    /// Findings of the record.
+    #[serde(deserialize_with = "with_chances::deserialize")]
+    pub findings: Vec<Finding>,
+}
+
+/// A file and what became of it, in a few hundred bytes: all files of a fleet are in memory as these.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FileHead {
+    /// Path as given.
+    pub path: String,
+    /// Digest of its bytes; empty where it can't be read.
+    pub sha256: String,
+    /// As it was when they were read.
+    pub stamp: Option<Stamp>,
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day.
+    pub day: String,
+    /// What it came to, or why to nothing.
+    pub result: Result<DayHead, String>,
+}
+
+impl From<FileResult> for FileHead {
+    fn from(file: FileResult) -> Self {
+        Self {
+            path: file.path,
+            sha256: file.sha256,
+            stamp: file.stamp,
+            vehicle: file.vehicle,
+            day: file.day,
+            result: file.result.map(|d| DayHead {
+                rate_hz: d.rate_hz,
+                hours: d.hours,
+                missing: d.missing,
+                findings: d.findings,
+            }),
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! Gauges that are dead in a part of a record: their readings are left out there, and their days say so.
+
+use super::day::GaugeDay;
+use super::judged::Judged;
+use super::recovering::Recovering;
+use crate::finding::Finding;
+use crate::host::fault::Fault;
+use crate::measured::faults::record_fault;
+use crate::recovery::ErrorModel;
+use crate::recovery::stuck::check;
+use crate::series::record::{Clock, Record};
+use crate::series::still::{Gives, extent};
+use crate::workflow::recover::silent_in_part;
+use std::ops::Range;
+
+/// A gauge (of those used), what it gives in a part of the record, and the samples of that part.
+pub(super) type DeadPart = (usize, Gives, Range<usize>);
+
+/// Dead parts by the samples spread over the record, to the sample.
+///
+/// # Errors
+/// What can't be decoded.
+pub(super) fn dead_parts(
+    record: &Record,
+    r: &Recovering,
+    judged: &Judged,
+    errors: ErrorModel,
+    noise_factor: f64,
+) -> Result<Vec<DeadPart>, Fault> {
+    let samples: Vec<(usize, &[f64])> = judged.numbered().collect();
+    check(&r.sensitivity, &samples, errors, noise_factor)
+        .into_iter()
+        .map(|stuck| {
+            let column = r.columns.get(stuck.gauge).copied().flatten();
+            let span = extent(record, column, stuck.gives, stuck.span, stuck.within);
+            let span = span.map_err(|e| record_fault("record", &e))?;
+            Ok((stuck.gauge, stuck.gives, span))
+        })
+        .collect()
+}
+
+/// The readings that are left out.
+pub(super) fn blank_of(dead: &[DeadPart]) -> Vec<(usize, Range<usize>)> {
+    let of_one_value = dead.iter().filter(|d| d.1 == Gives::OneValue);
+    of_one_value
+        .map(|(g, _, span)| (*g, span.clone()))
+        .collect()
+}
+
+/// Findings of the record, one a part, noted with the gauges as well.
+pub(super) fn told_dead(dead: &[DeadPart], gauges: &mut [GaugeDay], clock: &Clock) -> Vec<Finding> {
+    let mut out = Vec::new();
+    for (g, gives, span) in dead {
+        let Some(gauge) = gauges.get_mut(*g) else {
+            continue;
+        };
+        let hours = |at: usize| at as f64 / clock.rate_hz / 3600.0;
+        gauge.dead.push([hours(span.start), hours(span.end)]);
+        let times = [span.start, span.end - 1].map(|at| clock.time_s(at));
+        out.push(silent_in_part(&gauge.name, *gives, times));
+    }
+    out
+}

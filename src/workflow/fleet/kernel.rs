@@ -1,0 +1,474 @@
+//! One record to what is kept of it: no file, no printing; as many threads as the pool it runs in.
+
+use super::day::{Day, GaugeDay, LoadDay};
+use super::dead_parts::{blank_of, dead_parts, told_dead};
+use super::exchange::exchanged;
+use super::health::Health;
+use super::judged::{Judged, findings_of};
+use super::recovering::{Part, Recovering, UnderWay, counted};
+use super::scale::{noise_of, scales};
+use crate::finding::{Finding, Severity, few};
+use crate::host::fault::{Fault, Faults};
+use crate::host::files::may_be_cut;
+use crate::job::StrainCorrection;
+use crate::job::correct::{Channel, channel_of, column_of, columns_wanted};
+use crate::linalg::Matrix;
+use crate::measured::columns::{gauge_without_column, strain_without_gauge, unknown_columns};
+use crate::measured::faults::record_fault;
+use crate::measured::gauge_columns::find_gauge_columns;
+use crate::recovery::ErrorModel;
+use crate::recovery::clock;
+use crate::recovery::history::{Filter, SampleLoads};
+use crate::recovery::stuck::is_told_dead;
+use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
+use crate::sensitivity::Sensitivity;
+use crate::series::SeriesError;
+use crate::series::rainflow::{Counter, Law, Marks};
+use crate::series::record::Record;
+use crate::series::still::{Gives, Still};
+use crate::units::MICROSTRAIN;
+use crate::workflow::recover::{Listed, silent_throughout};
+use rayon::prelude::*;
+use std::collections::{BTreeMap, HashMap};
+use std::ops::ControlFlow;
+
+/// Pieces of a record that are looked at beforehand.
+const LOOKED_AT: usize = 10;
+/// Samples of them that tell whether the vehicle moves.
+const ENOUGH: usize = 200;
+
+/// What a record gives in one pass.
+struct Pass {
+    counters: Vec<Counter>,
+    health: Health,
+    missing: Missing,
+    judged: Judged,
+    /// Samples in which some gauge gave nothing, by the gauges that read.
+    by_gauges: BTreeMap<Vec<usize>, u64>,
+    /// Of each load, report unit: what its cycles are counted with.
+    noise: Vec<f64>,
+}
+
+/// What all records of a job share.
+pub struct Kernel {
+    /// S of all gauges of the job.
+    pub sensitivity: Sensitivity,
+    /// Strain subtracted from readings, by gauge.
+    pub zero: Vec<f64>,
+    /// Stated errors.
+    pub errors: ErrorModel,
+    /// Noise variance of a reading less zero, in units of that of a reading.
+    pub noise_factor: f64,
+    /// What is counted: the loads of S, then sums of them, with their units.
+    pub listed: Listed,
+    /// Harm of a cycle.
+    pub law: Law,
+    /// Width of a class, by load and sum, report units.
+    pub widths: Vec<f64>,
+    /// Seconds in the unit of times in tables that state none; `None`: seconds.
+    pub time_unit_s: Option<f64>,
+    /// What is known to be wrong with channels.
+    pub corrections: Vec<StrainCorrection>,
+    /// Names of the readings of validation gauges, which are not read.
+    pub reserved: Vec<String>,
+    /// Records that are being recovered.
+    pub(super) under_way: UnderWay,
+}
+
+impl Kernel {
+    /// What a record comes to. Gauges that it lacks, or that give nothing, are said; the loads are recovered from the others.
+    ///
+    /// # Errors
+    /// Why loads can't be had of it.
+    pub fn day(&self, record: &Record) -> Result<Day, Faults> {
+        let mut findings = Vec::new();
+        let irregular = clock::irregular("time", &record.clock);
+        findings.extend(irregular);
+        let cut = record
+            .left_out()
+            .map(|_| may_be_cut("last line", Severity::Warning));
+        findings.extend(cut);
+        let mut r = self.prepared(record, &mut findings)?;
+        let mut pass = self.pass(record, &r)?;
+        let dead = dead_parts(record, &r, &pass.judged, self.errors, self.noise_factor)?;
+        r.blank = blank_of(&dead);
+        if !r.blank.is_empty() {
+            // Once more, without the readings of gauges where they are dead.
+            pass = self.pass(record, &r)?;
+        }
+        let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
+        findings.extend(gaps);
+        let judged = std::mem::take(&mut pass.judged);
+        let widened = self.judge(&r, judged, |i| record.clock.time_s(i), &mut findings);
+        let filter = widened.as_ref().unwrap_or(&r.filter);
+        let scales = scales(&r, filter, pass.missing.whole, &pass.by_gauges);
+        let loads = pass.counters.into_iter().zip(&self.listed.names);
+        let loads = loads
+            .zip(&self.listed.units)
+            .zip(pass.noise.iter().zip(scales))
+            .map(|(((c, name), unit), (noise, scale))| LoadDay {
+                name: name.clone(),
+                unit: unit.name.clone(),
+                noise: *noise,
+                scale,
+                tally: c.finish(),
+            });
+        let leverage = &r.filter.whole().leverage;
+        // A time without readings does no damage that is counted.
+        let missing = &pass.missing;
+        let known = missing.whole + missing.known_in_gaps.iter().max().copied().unwrap_or(0);
+        let mut gauges = pass.health.days(&r.sensitivity.gauges, leverage);
+        let hours = |samples: f64| samples / record.clock.rate_hz / 3600.0;
+        findings.extend(told_dead(&dead, &mut gauges, &record.clock));
+        gauges.extend(r.silent.iter().map(|name| GaugeDay::silent(name)));
+        let place = |g: &GaugeDay| self.sensitivity.gauges.iter().position(|n| *n == g.name);
+        gauges.sort_by_key(place);
+        Ok(Day {
+            rate_hz: record.clock.rate_hz,
+            hours: hours(known as f64),
+            missing: record.clock.missing,
+            loads: loads.collect(),
+            gauges,
+            findings,
+        })
+    }
+
+    /// The record, recovered and counted.
+    fn pass(&self, record: &Record, r: &Recovering) -> Result<Pass, Fault> {
+        let k = self.listed.names.len();
+        let noise = noise_of(r);
+        let counter = |l: usize| {
+            let at = |v: &[f64]| v.get(l).copied().unwrap_or(1.0);
+            Counter::new(l, k, at(&noise), at(&self.widths), self.law)
+        };
+        let marks = Marks::new(&noise);
+        let mut pass = Pass {
+            counters: (0..k).map(counter).collect(),
+            health: Health::new(&r.s),
+            missing: Missing::new(k),
+            judged: Judged::new(r.used.len(), k, record.clock.samples),
+            by_gauges: BTreeMap::new(),
+            noise,
+        };
+        let here = self.under_way.begin();
+        let mut pieces = 0..record.n_pieces();
+        let mut parts: Vec<Part> = Vec::new();
+        // While some pieces are decoded, the ones before them are counted.
+        while !pieces.is_empty() {
+            let group: Vec<usize> = pieces.by_ref().take(here.pieces()).collect();
+            let decode = || group.par_iter().map(|p| r.part(record, *p, &marks));
+            let (next, ()) = rayon::join(
+                || decode().collect::<Result<_, _>>(),
+                || counted(&mut pass.counters, &parts),
+            );
+            parts = next.map_err(|e: SeriesError| record_fault("record", &e))?;
+            for part in &mut parts {
+                pass.health.merge(&part.health);
+                pass.missing.merge(&part.missing);
+                pass.judged.merge(std::mem::take(&mut part.judged));
+                for (gauges, n) in std::mem::take(&mut part.by_gauges) {
+                    *pass.by_gauges.entry(gauges).or_insert(0) += n;
+                }
+            }
+        }
+        counted(&mut pass.counters, &parts);
+        Ok(pass)
+    }
+
+    /// What recovery's judge says of samples of the record, and the estimate with the intervals that its residuals call for; `None` where the
+    /// stated errors stay, or where no interval can be relied on.
+    fn judge(
+        &self,
+        r: &Recovering,
+        judged: Judged,
+        time_s: impl Fn(usize) -> f64,
+        findings: &mut Vec<Finding>,
+    ) -> Option<Filter> {
+        let samples = judged.spread();
+        let judgements = judged.recovered(&r.sensitivity, self.errors, self.noise_factor, time_s);
+        let widening = judgements.first()?.widening.clone();
+        let found = findings_of(judgements);
+        let explained = found.iter().all(|f| f.code != UNEXPLAINED);
+        let named = |f: &Finding| f.code == "inputs-exchanged";
+        if !explained && !found.iter().any(named) {
+            let rows = samples.iter().map(Vec::as_slice);
+            let pair = exchanged(&r.sensitivity, rows, self.errors.noise);
+            findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges)));
+        }
+        findings.extend(found);
+        if !explained || widening == Widening::none() {
+            return None;
+        }
+        let mut filter = Filter::new(
+            &r.sensitivity,
+            r.zero.clone(),
+            self.errors,
+            self.noise_factor,
+            &r.typical,
+            widening,
+        )?;
+        filter.combine(&self.listed.sums);
+        Some(filter)
+    }
+
+    /// The columns that a record is read for.
+    pub fn wanted(&self) -> Vec<String> {
+        let gauges = self.sensitivity.gauges.iter().chain(&self.reserved);
+        columns_wanted(&self.corrections, gauges)
+    }
+
+    /// The gauges that read, and the filter from them.
+    fn prepared(&self, record: &Record, findings: &mut Vec<Finding>) -> Result<Recovering, Faults> {
+        let all = &self.sensitivity;
+        let columns = find_gauge_columns("record", record.columns(), &self.wanted())?;
+        let names: Vec<String> = columns
+            .iter()
+            .map(|c| column_of(&self.corrections, &c.name).to_owned())
+            .collect();
+        let others = names.iter().filter(|n| !self.reserved.contains(n));
+        let others: Vec<String> = others.cloned().collect();
+        let unknown = strain_without_gauge("", &others, &all.gauges);
+        findings.extend(unknown);
+        let unknown = unknown_columns(&others, &all.gauges);
+        let named = columns.iter().enumerate();
+        let places: HashMap<&str, (usize, f64)> = named
+            .filter_map(|(i, c)| Some((c.name.as_str(), (i, c.microstrain?))))
+            .collect();
+        let mut found = Vec::new();
+        for (g, name) in all.gauges.iter().enumerate() {
+            let channel = channel_of(&self.corrections, name);
+            if channel.ignore {
+                continue;
+            }
+            match places.get(column_of(&self.corrections, name)) {
+                Some(&(c, micro)) => found.push((g, c, line_of(micro, channel))),
+                None => findings.push(gauge_without_column("", &[name], &unknown)),
+            }
+        }
+        let sampled = sampled(record, &found)?;
+        if !record.is_time_unit_stated() {
+            let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
+            if let Some(f) = wrong {
+                return Err(Fault::of("record", "time", f.message, f.remedy).into());
+            }
+        }
+        let n = found.len();
+        let mut alive = Vec::new();
+        let mut looked = Still::new(n);
+        looked.look(&sampled);
+        // What one gives in a part alone is told by those who read there.
+        let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
+        let given = looked.throughout(record, &columns);
+        let mut given = given.map_err(|e| record_fault("record", &e))?;
+        self.wake(&found, &sampled, &mut given);
+        for (&(g, c, scale), gives) in found.iter().zip(given) {
+            let name = all.gauges.get(g).map_or("", String::as_str);
+            match gives {
+                Gives::Signal => alive.push((g, c, scale)),
+                Gives::OneValue | Gives::Nothing => {
+                    findings.extend(silent_throughout(&[name], gives));
+                }
+            }
+        }
+        let alive_values = kept_columns(&sampled, &found, &alive);
+        let silent = found.iter().filter(|f| alive.iter().all(|a| a.0 != f.0));
+        let names = silent.filter_map(|f| all.gauges.get(f.0)).cloned();
+        Ok(Recovering {
+            silent: names.collect(),
+            samples: record.clock.samples,
+            ..self.recovering(&alive, &alive_values)?
+        })
+    }
+
+    /// Takes columns that give one value for signals where the others don't say that the strain there changes, nor that it is another: the vehicle
+    /// stands, or is loaded so little that a coarse reading stays what it is.
+    fn wake(&self, found: &[(usize, usize, [f64; 2])], sampled: &[f64], given: &mut [Gives]) {
+        let n_gauges = self.sensitivity.gauges.len();
+        let by_gauge = found.iter().zip(&*given);
+        let used = by_gauge.filter(|g| *g.1 == Gives::Signal).map(|g| g.0.0);
+        let used: Vec<usize> = used.collect();
+        let rows = sampled.chunks_exact(found.len().max(1));
+        let step = (rows.len() / ENOUGH).max(1);
+        let of_gauges = |row: &[f64]| {
+            let mut out = vec![f64::NAN; n_gauges];
+            for ((g, ..), v) in found.iter().zip(row) {
+                if let Some(slot) = out.get_mut(*g) {
+                    *slot = *v;
+                }
+            }
+            out
+        };
+        let rows: Vec<Vec<f64>> = rows.step_by(step).map(of_gauges).collect();
+        let whole = |row: &&Vec<f64>| {
+            used.iter()
+                .all(|g| row.get(*g).is_some_and(|v| v.is_finite()))
+        };
+        let rows: Vec<&Vec<f64>> = rows.iter().filter(whole).collect();
+        if used.is_empty() || rows.is_empty() {
+            return;
+        }
+        let (errors, factor) = (self.errors, self.noise_factor);
+        for (gives, (g, ..)) in given.iter_mut().zip(found) {
+            let dead = || is_told_dead(&self.sensitivity, &used, &rows, *g, errors, factor);
+            if *gives == Gives::OneValue && !dead() {
+                *gives = Gives::Signal;
+            }
+        }
+    }
+
+    fn recovering(
+        &self,
+        alive: &[(usize, usize, [f64; 2])],
+        sampled: &[f64],
+    ) -> Result<Recovering, Fault> {
+        let all = &self.sensitivity;
+        let k = all.loads.len();
+        let used: Vec<usize> = alive.iter().map(|a| a.0).collect();
+        if used.is_empty() {
+            return Err(Fault::of(
+                "record",
+                "gauge",
+                "no column is named after a gauge of the job, or none of them reads",
+                "name the columns after the gauges, and check the export of the record",
+            ));
+        }
+        let s = Sensitivity {
+            gauges: used
+                .iter()
+                .filter_map(|g| all.gauges.get(*g))
+                .cloned()
+                .collect(),
+            loads: all.loads.clone(),
+            values: Matrix::from_fn(used.len(), k, |i, l| all.values[(used[i], l)]),
+            uncertainty: all.uncertainty.as_ref().map(|u| u.of_gauges(&used)),
+        };
+        let zero: Vec<f64> = used
+            .iter()
+            .map(|g| self.zero.get(*g).copied().unwrap_or(0.0))
+            .collect();
+        let singular = || {
+            let wrong = "S holds numbers that are not finite";
+            Fault::of("record", "sensitivity", wrong, "check the table of S")
+        };
+        let plain = Filter::new(
+            &s,
+            zero.clone(),
+            self.errors,
+            self.noise_factor,
+            &vec![0.0; k],
+            Widening::none(),
+        )
+        .ok_or_else(singular)?;
+        if plain.whole().rank < k {
+            let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
+            let wrong = format!(
+                "its gauges don't separate the loads: only {} read",
+                few(&names)
+            );
+            return Err(Fault::of(
+                "record",
+                "gauge",
+                wrong,
+                "repair the other gauges",
+            ));
+        }
+        // Typical loads weigh the model's error: those of the job, so that the loads of a sample do not depend on where its record is cut.
+        let scaled: Vec<f64> = sampled.to_vec();
+        let (mut loads, mut sums) = (SampleLoads::default(), Sums::new(used.len(), k));
+        plain.apply(&scaled, 1.0, &mut loads, &mut sums);
+        let mean = |sum: f64, count: u64| (sum / count.max(1) as f64).sqrt();
+        let expected = s.loads.iter().map(|l| l.expected.filter(|e| *e > 0.0));
+        let typical = expected.collect::<Option<Vec<f64>>>().unwrap_or_else(|| {
+            let of_record = |l| mean(sums.sum_of_squares[l], sums.known(l));
+            (0..k).map(of_record).collect()
+        });
+        let noise = self.errors.noise;
+        if noise > 0.0
+            && sums.missing.whole > 0
+            && sums
+                .reading
+                .iter()
+                .enumerate()
+                .all(|(g, q)| mean(*q, sums.read(g)) < 1e-3 * noise)
+        {
+            return Err(Fault::of(
+                "record",
+                "readings-below-noise",
+                "every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?",
+                "state readings in microstrain (strain times 1e6)",
+            ));
+        }
+        let mut filter = Filter::new(
+            &s,
+            zero.clone(),
+            self.errors,
+            self.noise_factor,
+            &typical,
+            Widening::none(),
+        )
+        .ok_or_else(singular)?;
+        filter.combine(&self.listed.sums);
+        let factors: Vec<f64> = self.listed.units.iter().map(|u| u.factor).collect();
+        let row = |g: usize| factors.iter().enumerate().map(move |(l, f)| (g, l, *f));
+        // Sums strain nothing beyond their loads.
+        let values = |(g, l, f)| if l < k { s.values[(g, l)] / f } else { 0.0 };
+        let values = |g: usize| row(g).map(values).collect();
+        let by_row = (0..used.len()).map(values).collect();
+        Ok(Recovering {
+            filter,
+            silent: Vec::new(),
+            sensitivity: s,
+            typical,
+            columns: alive.iter().map(|a| Some(a.1)).collect(),
+            scale: [0, 1].map(|i| alive.iter().map(|a| a.2[i]).collect()),
+            zero,
+            blank: Vec::new(),
+            samples: 0,
+            s: by_row,
+            used,
+            factors,
+        })
+    }
+}
+
+/// Strain from a reading: it times the first, plus the second.
+fn line_of(micro: f64, channel: Channel) -> [f64; 2] {
+    [micro, -channel.offset].map(|v| v * MICROSTRAIN / channel.factor)
+}
+
+/// Readings of the first block of some pieces spread over the record, strain.
+fn sampled(record: &Record, found: &[(usize, usize, [f64; 2])]) -> Result<Vec<f64>, Fault> {
+    let columns: Vec<Option<usize>> = found.iter().map(|f| Some(f.1)).collect();
+    let n = record.n_pieces();
+    let taken = n.min(LOOKED_AT);
+    let looked_at: Vec<Vec<f64>> = (0..taken)
+        .into_par_iter()
+        .map(|i| {
+            let mut out = Vec::new();
+            record.head(i * n / taken, &columns, &mut |block| {
+                for row in block.values.chunks_exact(found.len().max(1)) {
+                    out.extend(row.iter().zip(found).map(|(v, (_, _, [a, b]))| v * a + b));
+                }
+                ControlFlow::Break(())
+            })?;
+            Ok(out)
+        })
+        .collect::<Result<_, SeriesError>>()
+        .map_err(|e| record_fault("record", &e))?;
+    Ok(looked_at.concat())
+}
+
+/// The columns of `found` that are in `alive`, row by row.
+fn kept_columns(
+    values: &[f64],
+    found: &[(usize, usize, [f64; 2])],
+    alive: &[(usize, usize, [f64; 2])],
+) -> Vec<f64> {
+    let keep: Vec<bool> = found
+        .iter()
+        .map(|f| alive.iter().any(|a| a.0 == f.0))
+        .collect();
+    let rows = values.chunks_exact(found.len().max(1));
+    rows.flat_map(|row| row.iter().zip(&keep).filter(|k| *k.1).map(|k| *k.0))
+        .collect()
+}

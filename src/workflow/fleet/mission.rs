@@ -1,0 +1,307 @@
+//! Damage of a mission from kinds of days and their shares: an extrapolation from the days that were measured.
+
+use super::day::{Day, FileHead};
+use crate::host::fault::{Fault, Faults};
+use crate::job::{Fleet as FleetKeys, MissionKind};
+use crate::series::rainflow::{DamageInterval, DamageParts, Law};
+use serde::Serialize;
+
+/// A load of the mission.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MissionLoad {
+    /// Its name.
+    pub load: String,
+    /// Its unit; damage is in its power.
+    pub unit: String,
+    /// Damage of the mission.
+    pub damage: f64,
+    /// Lower end of its 95 % interval by the errors of measurement.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+    /// Standard deviation from the error of S, the same on all days.
+    pub sigma_s: f64,
+    /// From the scatter of noise.
+    pub sigma_noise: f64,
+    /// Of the bias of noise that was taken off.
+    pub sigma_bias: f64,
+    /// From the scatter between days of one kind, outside of the interval; `None` where a kind has one day.
+    pub sigma_days: Option<f64>,
+    /// Damage an hour of each kind.
+    pub by_kind: Vec<f64>,
+    /// What cycles that close between days may add to the damage at most: they are left out of it.
+    pub between_days_at_most: f64,
+}
+
+/// A kind of days.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct KindAnswer {
+    /// Its name.
+    pub name: String,
+    /// Its share of the hours.
+    pub share: f64,
+    /// Records of it.
+    pub files: usize,
+    /// Their hours.
+    pub hours: f64,
+}
+
+/// The mission.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MissionAnswer {
+    /// That it is an extrapolation, and from what.
+    pub statement: String,
+    /// Its hours.
+    pub hours: f64,
+    /// Kinds of days, as the job has them.
+    pub kinds: Vec<KindAnswer>,
+    /// Loads, in the order of the job.
+    pub loads: Vec<MissionLoad>,
+}
+
+/// Sums over the days of a kind.
+struct KindSums {
+    key: MissionKind,
+    files: usize,
+    hours: f64,
+    loads: Vec<LoadSums>,
+}
+
+/// Of a load, sums over the days of a kind.
+struct LoadSums {
+    name: String,
+    unit: String,
+    damage: DamageParts,
+    /// Of the hours in which it is known, and of their squares.
+    hours: [f64; 2],
+    /// Of squares of the days' damages, and of products with their hours.
+    squares: [f64; 2],
+    /// Smallest and largest value.
+    ends: [f64; 2],
+    law: Law,
+}
+
+/// Sums over the days of every kind.
+pub(super) struct MissionSums {
+    hours: f64,
+    kinds: Vec<KindSums>,
+}
+
+/// Whether a name has the form of a pattern, in which `*` is any text.
+fn matches(pattern: &str, name: &str) -> bool {
+    let Some((first, rest)) = pattern.split_once('*') else {
+        return pattern == name;
+    };
+    let Some(left) = name.strip_prefix(first) else {
+        return false;
+    };
+    let ends = left.char_indices().map(|c| c.0).chain([left.len()]);
+    ends.filter_map(|i| left.get(i..))
+        .any(|end| matches(rest, end))
+}
+
+impl KindSums {
+    fn holds(&self, file: &FileHead) -> bool {
+        let any = |list: &[String], name: &str| {
+            list.is_empty() || list.iter().any(|pattern| matches(pattern, name))
+        };
+        any(&self.key.days, &file.day) && any(&self.key.vehicles, &file.vehicle)
+    }
+
+    fn add(&mut self, day: &Day) {
+        self.files += 1;
+        self.hours += day.hours;
+        for load in &day.loads {
+            let parts = DamageParts::of(&load.tally, &load.scale, load.noise);
+            let known = day.hours_of(load);
+            let hours = [known, known * known];
+            let squares = [parts.value * parts.value, parts.value * known];
+            let ends = [load.tally.min, load.tally.max].map(|e| e.map_or(f64::NAN, |e| e.value));
+            match self.loads.iter_mut().find(|l| l.name == load.name) {
+                Some(l) => {
+                    l.damage.add(1.0, &parts);
+                    l.squares.iter_mut().zip(squares).for_each(|(a, b)| *a += b);
+                    l.hours.iter_mut().zip(hours).for_each(|(a, b)| *a += b);
+                    l.ends = wider(l.ends, ends);
+                }
+                None => self.loads.push(LoadSums {
+                    name: load.name.clone(),
+                    unit: load.unit.clone(),
+                    damage: parts,
+                    hours,
+                    squares,
+                    ends,
+                    law: load.tally.law,
+                }),
+            }
+        }
+    }
+
+    /// Variance of the damage an hour of a load by the scatter between days: of `n` days with damage d and hours h, `r = sum d / sum h`,
+    /// `n / (n - 1) sum (d - r h)^2 / (sum h)^2`. `None` for one day.
+    ///
+    /// # Reference
+    /// W.G. Cochran, Sampling Techniques, 3rd ed. (1977), eq. 6.9.
+    fn between_days(&self, l: &LoadSums) -> Option<f64> {
+        let n = self.files as f64;
+        let ([hours, squared_hours], [squares, products]) = (l.hours, l.squares);
+        let rate = l.damage.value / hours;
+        let sum = squares - 2.0 * rate * products + rate * rate * squared_hours;
+        (self.files > 1).then(|| n / (n - 1.0) * sum.max(0.0) / (hours * hours))
+    }
+}
+
+impl MissionSums {
+    /// Nothing yet; `None` where the job has no mission.
+    pub fn of(keys: &FleetKeys) -> Option<Self> {
+        let kinds = keys.mission.iter().map(|key| KindSums {
+            key: key.clone(),
+            files: 0,
+            hours: 0.0,
+            loads: Vec::new(),
+        });
+        (!keys.mission.is_empty()).then(|| Self {
+            hours: keys.mission_hours,
+            kinds: kinds.collect(),
+        })
+    }
+
+    /// Adds a day to its kind.
+    ///
+    /// # Errors
+    /// A day of two kinds.
+    pub fn add(&mut self, job: &str, file: &FileHead, day: &Day) -> Result<(), Faults> {
+        let mut kinds = self.kinds.iter_mut().filter(|k| k.holds(file));
+        let Some(first) = kinds.next() else {
+            return Ok(());
+        };
+        if let Some(second) = kinds.next() {
+            let wrong = format!(
+                "day {} of {} is of the kinds `{}` and `{}`",
+                file.day, file.vehicle, first.key.name, second.key.name
+            );
+            let remedy = "let every day be of one kind";
+            let line = second.key.line;
+            return Err(Fault::at(job, line, "fleet.mission", wrong, remedy).into());
+        }
+        first.add(day);
+        Ok(())
+    }
+
+    /// Kinds of which no record is.
+    pub fn without_records(&self) -> impl Iterator<Item = &MissionKind> {
+        let none = self.kinds.iter().filter(|k| k.files == 0);
+        none.map(|k| &k.key)
+    }
+
+    /// Damage of the mission, `hours * sum of share_i damage_i / hours_i`; `None` where a kind has no record.
+    pub fn answer(&self) -> Option<MissionAnswer> {
+        let first = self.kinds.first()?;
+        if self.kinds.iter().any(|k| !(k.hours > 0.0)) {
+            return None;
+        }
+        let load = |of_first: &LoadSums| {
+            let (mut all, mut between) = (DamageParts::default(), Some(0.0));
+            let (mut by_kind, mut days, mut ends) = (Vec::new(), 0.0, [f64::NAN; 2]);
+            for k in &self.kinds {
+                let l = k.loads.iter().find(|l| l.name == of_first.name)?;
+                let [hours, _] = l.hours;
+                if !(hours > 0.0) {
+                    return None;
+                }
+                let weight = self.hours * k.key.share / hours;
+                all.add(weight, &l.damage);
+                days += self.hours * k.key.share / k.hours * k.files as f64;
+                ends = wider(ends, l.ends);
+                by_kind.push(l.damage.value.max(0.0) / hours);
+                let of_kind = k.between_days(l);
+                let times = (self.hours * k.key.share).powi(2);
+                between = between.zip(of_kind).map(|(a, b)| a + times * b);
+            }
+            let DamageInterval {
+                value,
+                low,
+                high,
+                sigma_s,
+                sigma_noise,
+                sigma_bias,
+                ..
+            } = all.interval();
+            Some(MissionLoad {
+                load: of_first.name.clone(),
+                unit: of_first.unit.clone(),
+                damage: value,
+                damage_low: low,
+                damage_high: high,
+                sigma_s,
+                sigma_noise,
+                sigma_bias,
+                sigma_days: between.map(f64::sqrt),
+                by_kind,
+                between_days_at_most: between_days_at_most(of_first.law, ends, days),
+            })
+        };
+        let kinds: Vec<KindAnswer> = self
+            .kinds
+            .iter()
+            .map(|k| KindAnswer {
+                name: k.key.name.clone(),
+                share: k.key.share,
+                files: k.files,
+                hours: k.hours,
+            })
+            .collect();
+        let measured: f64 = kinds.iter().map(|k| k.hours).sum();
+        Some(MissionAnswer {
+            statement: format!(
+                "An extrapolation: {} hours from {measured:.2} measured ones, as if every hour of a kind did what those measured did. Cycles that close between \
+                 days are left out; between_days_at_most bounds what they may add.",
+                self.hours
+            ),
+            hours: self.hours,
+            loads: first.loads.iter().filter_map(load).collect(),
+            kinds,
+        })
+    }
+}
+
+/// Both spans together, the numbers of either that are none left out.
+fn wider(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// What cycles that close between days may add to the sum of the damages of single days: half a cycle from the smallest to the largest value of all
+/// at each border of two days, by the straight line of the law.
+///
+/// The count of a history at levels u < v is half the number of its passages from u to v and back, and its damage `sum of d(range)` is the integral
+/// of that count with the weight `d''(v - u)`. Where two days meet, the passages are those of both and one more at most, and none where a level lies
+/// beyond the extremes: `d(max - min) / 2`. A knee, at which d is not convex, makes it an estimate.
+///
+/// # Reference
+/// I. Rychlik, Note on cycle counts in irregular loads, Fatigue Fract. Eng. Mater. Struct. 16 (1993) 377: passages of intervals.
+fn between_days_at_most(law: Law, ends: [f64; 2], days: f64) -> f64 {
+    let range = ends[1] - ends[0];
+    let of_one = 0.5 * Law::straight(law.slope).damage(range);
+    if range > 0.0 { days * of_one } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_star_is_any_text() {
+        for (pattern, name) in [
+            ("2026-05-01", "2026-05-01"),
+            ("2026-*", "2026-05-01"),
+            ("*", ""),
+            ("*road*", "a road b"),
+            ("a*b*b", "a b b"),
+        ] {
+            assert!(matches(pattern, name), "{pattern} {name}");
+        }
+        for (pattern, name) in [("2026", "2026-05"), ("*road", "roads"), ("a*b", "b a")] {
+            assert!(!matches(pattern, name), "{pattern} {name}");
+        }
+    }
+}

@@ -1,0 +1,460 @@
+//! `fleet`: records of many vehicles and days, one small result a file, merged by vehicle.
+//!
+//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`kept`] keeps it by the digest of what it
+//! depends on, so that a second run does what is new alone and many machines can share one folder; [`merge`] joins the days of a
+//! vehicle exactly.
+
+mod asked;
+mod compared;
+pub mod day;
+mod days;
+mod dead_parts;
+mod drift;
+mod exchange;
+mod found;
+mod gauge_history;
+mod health;
+mod judged;
+pub mod kept;
+pub mod kernel;
+pub mod merge;
+mod mission;
+pub mod name;
+mod other_scale;
+mod other_unit;
+mod outcome;
+mod prepared;
+mod recovering;
+mod scale;
+
+pub use compared::ReferenceAnswer;
+pub use gauge_history::{DeadPart, GaugeHistory};
+pub use kept::digests_of;
+pub use merge::{RecordOf, SampleOf};
+pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
+pub use outcome::{FileAnswer, Fleet, VehicleAnswer, VehicleLoadAnswer};
+pub use prepared::kernel_of;
+
+use crate::finding::{Finding, Severity, few};
+use crate::host::context::{Context, Files};
+use crate::host::fault::{Fault, Faults};
+use crate::host::files::Opened;
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::{Work, stopped};
+use crate::job::{Fleet as FleetKeys, Job};
+use crate::measured::faults::record_fault;
+use crate::series::record::{Options, open_source};
+use compared::{Compared, check_targets};
+use day::{Day, FileHead, FileResult};
+use days::DayOrder;
+use drift::drift;
+use kept::{KeptDays, digest};
+use kernel::Kernel;
+use merge::{Status, sorted, vehicle};
+use name::{NameForm, Shard};
+use other_scale::in_other_scale;
+use other_unit::in_other_units;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What is asked of a fleet.
+#[derive(Clone, Debug, Default)]
+pub struct FleetSpec {
+    /// Records, relative to the working folder; none: what the output folder holds is merged.
+    pub files: Vec<PathBuf>,
+    /// The part of them that is done here; all where `None`.
+    pub shard: Option<Shard>,
+    /// The output folder, where the results of single files are kept.
+    pub folder: PathBuf,
+    /// SHA-256 of records by path, as another process read them: one whose result is kept is not read again, as long as its size and the time of
+    /// its last change are those at which it was done. One that is out of reach here is what that process read.
+    pub digests: BTreeMap<String, String>,
+}
+
+/// Loads, cycles, damage and faults of many records, by vehicle.
+///
+/// A record that can't be read is a failed file and a finding of severity error; the others are done all the same.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; an output folder that can't be written.
+pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let Some(section) = &job.fleet else {
+        let remedy = "add [fleet] file_name = \"{vehicle}_{day}.parquet\"";
+        return Err(Fault::of(&*job.file, "fleet", "the job has no [fleet]", remedy).into());
+    };
+    let form = NameForm::of(&section.file_name.given).map_err(|wrong| {
+        let remedy = "write it as \"{vehicle}_{day}.parquet\"";
+        Faults::from(Fault::at(
+            &*job.file,
+            section.file_name.line,
+            "fleet.file_name",
+            wrong,
+            remedy,
+        ))
+    })?;
+    let kernel = kernel_of(&mut work, job)?;
+    let loads: Vec<&str> = kernel.listed.names.iter().map(String::as_str).collect();
+    check_targets(&job.file, section, &loads)?;
+    let kept = KeptDays::new(&spec.folder, job_digest(&mut work, job, section));
+    let order = |names: &mut dyn Iterator<Item = &str>| {
+        DayOrder::of(names).map_err(|e| {
+            let line = section.file_name.line;
+            Fault::at(&*job.file, line, "fleet.file_name", e.wrong, e.remedy)
+        })
+    };
+    // Before hours of work come to nothing.
+    let asked = spec.files.iter();
+    let asked: Vec<name::Named> = asked
+        .filter_map(|p| form.read(&p.display().to_string()))
+        .collect();
+    order(&mut asked.iter().map(|n| n.day.as_str()))?;
+    let (files, reused) = if spec.files.is_empty() {
+        held(&mut work, &kept, &spec.folder)?
+    } else {
+        work.sources.extend(spec.files.iter().cloned());
+        work.stage("records", |w| done(w, &kernel, &kept, &form, spec))?
+    };
+    let days_in = order(
+        &mut files
+            .iter()
+            .map(|f| f.day.as_str())
+            .filter(|d| !d.is_empty()),
+    )?;
+    let Merged {
+        vehicles,
+        status,
+        compared,
+    } = work.stage("merge", |w| {
+        merged(w, &kept, &files, days_in, &job.file, section)
+    })?;
+    if spec.shard.is_none() {
+        let is_all = spec.files.is_empty();
+        let absent = compared.check(&job.file, section, is_all)?;
+        work.findings.extend(absent);
+    }
+    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared, reused);
+    work.findings
+        .extend(answer.findings(&files, &status, days_in));
+    work.findings
+        .extend(in_other_units(&answer.vehicles, &kernel.errors));
+    for v in &answer.vehicles {
+        work.findings.extend(drift(v, &kernel.errors));
+        work.findings.extend(in_other_scale(v, &kernel.errors));
+    }
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// What the days come to.
+struct Merged {
+    vehicles: Vec<VehicleAnswer>,
+    status: Vec<Status>,
+    compared: Compared,
+}
+
+/// Vehicles by name, the status of every file, and what damage is held against. The days of one vehicle are in memory at a time.
+///
+/// # Errors
+/// A kept result that is gone; a day of two kinds of the mission; one fault where the work is stopped.
+fn merged(
+    work: &mut Work,
+    kept: &KeptDays,
+    files: &[FileHead],
+    days_in: DayOrder,
+    job: &str,
+    keys: &FleetKeys,
+) -> Result<Merged, Faults> {
+    let (by_vehicle, status) = sorted(files, days_in);
+    let mut compared = Compared::of(keys, kept, &by_vehicle);
+    let mut vehicles = Vec::with_capacity(by_vehicle.len());
+    for (name, list) in by_vehicle {
+        work.go_on()?;
+        let days: Result<Vec<(&FileHead, Day)>, Fault> = list
+            .par_iter()
+            .map(|file| match kept.day(file) {
+                Some(day) => Ok((*file, day)),
+                None => Err(Fault::of(
+                    &*file.path,
+                    "days",
+                    "its kept result was removed or changed while results were merged",
+                    "run again",
+                )),
+            })
+            .collect();
+        let days = days?;
+        if let Some(mission) = &mut compared.mission {
+            for (file, day) in &days {
+                mission.add(job, file, day)?;
+            }
+        }
+        let v = vehicle(name, &days, compared.reference.as_ref());
+        vehicles.push(VehicleAnswer::of(v, keys));
+    }
+    VehicleAnswer::compare(&mut vehicles);
+    Ok(Merged {
+        vehicles,
+        status,
+        compared,
+    })
+}
+
+/// A digest of what a record of the job depends on beside its bytes: what the job says of single records, and every other file read so far.
+fn job_digest(work: &mut Work, job: &Job, keys: &FleetKeys) -> String {
+    let read = work.inputs.files_read();
+    let others = read.iter().filter(|f| f.path != Path::new(&job.file));
+    let others = others.map(|f| f.sha256.as_str());
+    let parts: Vec<&str> = std::iter::once(keys.of_records.as_str())
+        .chain(others)
+        .collect();
+    digest(&parts)
+}
+
+/// What the output folder holds.
+fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead>, usize), Faults> {
+    let shown = folder.display().to_string();
+    let held = kept.all().map_err(|e| {
+        Faults::from(Fault::of(
+            &*shown,
+            "folder",
+            format!("can't be read ({e})"),
+            "check the path",
+        ))
+    })?;
+    if held.files.is_empty() {
+        let wrong = match held.damaged.first() {
+            None => "no results of this job are kept there".to_owned(),
+            Some(path) => format!(
+                "`{path}` is cut or was changed, and no other result of this job is kept there"
+            ),
+        };
+        let remedy = "name the records to be done, or the folder of an earlier run with --out";
+        return Err(Fault::of(&*shown, "days", wrong, remedy).into());
+    }
+    if held.others > 0 {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "fleet-other-results",
+            &shown,
+            format!(
+                "{} kept results are of another job or version and were left out",
+                held.others
+            ),
+            "remove them where they are no longer wanted",
+        ));
+    }
+    work.findings.extend(held.damaged.iter().map(|path| {
+        Finding::new(
+            Severity::Error,
+            "fleet-result-damaged",
+            path,
+            "this kept result is cut, or was changed after it was written: it counts for nothing",
+            "run the records again into this folder, then remove it if it is still there",
+        )
+    }));
+    let missing = held.asked.iter().filter_map(|a| a.missing(&held.files));
+    work.findings.extend(missing);
+    let n = held.files.len();
+    Ok((held.files, n))
+}
+
+/// The results of the asked files: kept ones, and the others done now.
+fn done(
+    work: &mut Work,
+    kernel: &Kernel,
+    kept: &KeptDays,
+    form: &NameForm,
+    spec: &FleetSpec,
+) -> Result<(Vec<FileHead>, usize), Faults> {
+    let mut paths: Vec<String> = spec.files.iter().map(|p| p.display().to_string()).collect();
+    paths.sort();
+    paths.dedup();
+    let mine: Vec<&String> = paths
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| spec.shard.is_none_or(|s| s.holds(*i)))
+        .map(|p| p.1)
+        .collect();
+    let asked = kept
+        .put_asked(&paths, spec.shard.map_or(1, |s| s.of))
+        .map_err(|e| not_kept(&spec.folder.display().to_string(), &e))?;
+    let (source, progress) = (work.cx.files, work.cx.progress);
+    progress.parts(mine.len());
+    let results: Vec<Result<(FileHead, Came), Fault>> = mine
+        .par_iter()
+        .map(|path| {
+            if progress.is_cancelled() {
+                return Err(stopped());
+            }
+            let told = spec.digests.get(*path);
+            let told = told.and_then(|d| kept.head(path, d));
+            let done = match told.filter(|before| is_as_then(source, before)) {
+                Some(before) => Ok((before, Came::Kept)),
+                None => one(kernel, kept, form, path, source),
+            };
+            progress.advance(1);
+            done
+        })
+        .collect();
+    work.go_on()?;
+    let mut files = Vec::new();
+    let (mut reused, mut replaced) = (0, Vec::new());
+    for result in results {
+        let (file, came) = result?;
+        match came {
+            Came::Kept => reused += 1,
+            Came::Replacing => replaced.push(file.path.clone()),
+            Came::New => {}
+        }
+        files.push(file);
+    }
+    work.findings.extend(told_replaced(&replaced));
+    // Of a part, the others are still to come.
+    if spec.shard.is_none() && files.iter().all(|f| kept.holds(f)) {
+        let _ = std::fs::remove_file(asked);
+    }
+    Ok((files, reused))
+}
+
+/// Whether a file is in the state in which it was done, as far as can be told without reading it; one that is out of reach is taken to be.
+fn is_as_then(source: &dyn Files, before: &FileHead) -> bool {
+    match source.stamp(Path::new(&before.path)) {
+        Ok(now) => before.stamp == Some(now),
+        Err(_) => true,
+    }
+}
+
+/// Whether a result was kept, or is new, or stands in place of that of other bytes under the same path.
+enum Came {
+    Kept,
+    New,
+    Replacing,
+}
+
+/// That results were replaced: of a record that was written anew, or of another that has the same path from another folder.
+fn told_replaced(paths: &[String]) -> Option<Finding> {
+    let n = paths.len();
+    (n > 0).then(|| {
+        Finding::new(
+            Severity::Info,
+            "fleet-record-replaced",
+            few(paths),
+            format!("{n} records hold other bytes than when they were done before under the same path: they were done anew, and count as they are now"),
+            "nothing, where they were written anew; records of another folder need paths of their own",
+        )
+        .with_numbers(n as f64, 0.0)
+    })
+}
+
+/// The result of one file, and how it came.
+fn one(
+    kernel: &Kernel,
+    kept: &KeptDays,
+    form: &NameForm,
+    path: &str,
+    source: &dyn Files,
+) -> Result<(FileHead, Came), Fault> {
+    // Before it is read: what changes it afterwards changes this too.
+    let stamp = source.stamp(Path::new(path)).ok();
+    let opened = source.open(Path::new(path));
+    let named = form.read(path);
+    let mut file = FileResult {
+        path: path.to_owned(),
+        sha256: String::new(),
+        stamp,
+        vehicle: named.as_ref().map_or(String::new(), |n| n.vehicle.clone()),
+        day: named.as_ref().map_or(String::new(), |n| n.day.clone()),
+        result: Err(String::new()),
+    };
+    let unread = |mut file: FileResult, e: &std::io::Error| {
+        file.sha256 = String::new();
+        file.result = Err(format!("it can't be read: {e}"));
+        Ok((file.into(), Came::New))
+    };
+    let opened = match opened {
+        Ok(opened) => opened,
+        Err(e) => return unread(file, &e),
+    };
+    let before = kept.latest(path);
+    let (hash, result) = match (&named, &before) {
+        (None, _) => {
+            let wrong = "its name is not of the form that [fleet] file_name states";
+            (opened.sha256(), Some(Err(wrong.to_owned())))
+        }
+        (Some(_), Some(_)) => (opened.sha256(), None),
+        // Nothing is kept of it, so that it is done whatever its digest is: while that is formed.
+        (Some(_), None) => {
+            let (hash, day) = rayon::join(
+                || opened.sha256(),
+                || day_of(kernel, &opened).map_err(reason),
+            );
+            (hash, Some(day))
+        }
+    };
+    match hash {
+        Ok(hash) => file.sha256 = hash,
+        Err(e) => return unread(file, &e),
+    }
+    // What failed is tried again: a build that reads more formats may be at it now.
+    let came = match before.filter(|_| named.is_some()) {
+        Some(before) if before.sha256 != file.sha256 => Came::Replacing,
+        Some(before) if before.result.is_ok() => return Ok((before, Came::Kept)),
+        _ => Came::New,
+    };
+    file.result = result.unwrap_or_else(|| day_of(kernel, &opened).map_err(reason));
+    if named.is_none() {
+        return Ok((file.into(), Came::New));
+    }
+    // Whatever was read of a file that changed meanwhile, or could not be read to its end, is worth nothing and not kept: it is tried again.
+    if let Err(e) = opened.check() {
+        return unread(file, &e);
+    }
+    kept.put(&file).map_err(|e| not_kept(path, &e))?;
+    // What is read back is what a later run would read, to the last digit: a merge of kept results has the same bytes.
+    Ok((
+        kept.head(path, &file.sha256).unwrap_or_else(|| file.into()),
+        came,
+    ))
+}
+
+fn not_kept(path: &str, e: &std::io::Error) -> Fault {
+    let wrong = format!("its result can't be kept ({e})");
+    Fault::of(path, "output", wrong, "choose another folder with --out")
+}
+
+/// Returns why a record comes to nothing in words: every fault with its line, its field and its remedy.
+fn reason(faults: Faults) -> String {
+    let words = |f: Fault| {
+        let line = f.line.map_or(String::new(), |l| format!("line {l}: "));
+        format!("{line}{}: {}: {}", f.field, f.wrong, f.remedy)
+    };
+    let each: Vec<String> = faults.into_iter().map(words).collect();
+    each.join("; ")
+}
+
+/// What a record comes to.
+///
+/// # Errors
+/// Why they come to nothing.
+pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
+    let options = Options {
+        declared_hz: None,
+        time_unit_s: kernel.time_unit_s,
+        wanted: kernel.wanted(),
+    };
+    let record = open_source(opened.source(), &options).map_err(|e| record_fault("record", &e))?;
+    let day = kernel.day(&record)?;
+    let is_number = |l: &&day::LoadDay| {
+        let sums = &l.tally.sums;
+        let [a, b, c] = sums.damage;
+        (a + b + c + sums.scatter).is_finite()
+    };
+    match day.loads.iter().find(|l| !is_number(l)) {
+        None => Ok(day),
+        Some(l) => {
+            let wrong = "its damage is larger than numbers can be";
+            let remedy = "report it in a larger unit, or state a lower slope";
+            Err(Fault::of("record", &*l.name, wrong, remedy).into())
+        }
+    }
+}

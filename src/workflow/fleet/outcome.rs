@@ -1,0 +1,435 @@
+//! The answer of `fleet`.
+
+use super::compared::{Compared, ReferenceAnswer};
+use super::day::FileHead;
+use super::days::DayOrder;
+use super::found::of_records;
+use super::gauge_history::{GainChange, GaugeHistory, moving_days};
+use super::kernel::Kernel;
+use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
+use super::mission::{MissionAnswer, MissionSums};
+use crate::finding::{Finding, Severity, few};
+use crate::host::outcome::Answer;
+use crate::job::{Fleet as FleetKeys, Job};
+use crate::series::rainflow::{DamageInterval, Ratio};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// A load of a vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VehicleLoadAnswer {
+    /// Its name.
+    pub load: String,
+    /// Unit of `max`, `min`; damage is in its power.
+    pub unit: String,
+    /// Hours in which it is known: those of its damage.
+    pub hours: f64,
+    /// Largest value, and its day.
+    pub max: Option<f64>,
+    /// Day of the largest value.
+    pub max_day: String,
+    /// Its record and its time there.
+    pub max_at: Option<SampleOf>,
+    /// Smallest value.
+    pub min: Option<f64>,
+    /// Day of the smallest value.
+    pub min_day: String,
+    /// Its record and its time there.
+    pub min_at: Option<SampleOf>,
+    /// Cycles; those of the residue count half.
+    pub cycles: f64,
+    /// Damage, the bias of noise taken off.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+    /// Damage as counted.
+    pub damage_counted: f64,
+    /// What noise added, in the mean.
+    pub noise_bias: f64,
+    /// Standard deviation from the error of S, the same on all days.
+    pub sigma_s: f64,
+    /// From the scatter of noise, which averages out.
+    pub sigma_noise: f64,
+    /// Of the bias that was taken off.
+    pub sigma_bias: f64,
+    /// Damage an hour over that of all vehicles together.
+    pub relative: f64,
+    /// Damage an hour over that of the reference day.
+    pub to_reference: Option<Ratio>,
+    /// Damage over the target's.
+    pub to_target: Option<Ratio>,
+    /// Damage of each day by itself.
+    pub by_day: Vec<f64>,
+    /// Share of it that days did whose loads can't be relied on.
+    pub doubtful_share: f64,
+    /// Width of a class.
+    #[serde(skip)]
+    pub width: f64,
+    /// Cycles by range in class widths.
+    #[serde(skip)]
+    pub range_pairs: Vec<(u32, f64)>,
+    /// Cycles by class of both reversals.
+    #[serde(skip)]
+    pub from_to: Vec<(i32, i32, u64)>,
+    /// Rises through the lower border of each class.
+    #[serde(skip)]
+    pub levels: Vec<(i32, u64)>,
+}
+
+/// A vehicle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct VehicleAnswer {
+    /// Its name.
+    pub name: String,
+    /// How many files count.
+    pub files: usize,
+    /// Their days, in order.
+    pub days: Vec<String>,
+    /// Their records, in order: what the numbers of each day come from.
+    pub records: Vec<RecordOf>,
+    /// Hours of them.
+    pub hours: f64,
+    /// Loads, in the order of the job.
+    pub loads: Vec<VehicleLoadAnswer>,
+    /// Days whose loads can't be relied on, as findings of their records say: they count, and are no better for it.
+    pub doubtful_days: Vec<String>,
+    /// Gauges.
+    pub gauges: Vec<GaugeHistory>,
+    /// Whether the record of a day names a cause that makes gains and zeros of that day what they are not.
+    #[serde(skip)]
+    pub misread: Vec<bool>,
+}
+
+/// A file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileAnswer {
+    /// Path as given.
+    pub path: String,
+    /// Digest of its bytes.
+    pub sha256: String,
+    /// The vehicle.
+    pub vehicle: String,
+    /// The day.
+    pub day: String,
+    /// `done`, `failed` or `copy`.
+    pub status: &'static str,
+    /// Why, where it does not count.
+    pub message: String,
+    /// Hours of it.
+    pub hours: Option<f64>,
+    /// Samples a second.
+    pub rate_hz: Option<f64>,
+    /// Samples missing in gaps.
+    pub missing: Option<usize>,
+    /// What was found in the record.
+    pub findings: Vec<Finding>,
+}
+
+impl FileAnswer {
+    /// Whether it counts though its loads can't be relied on.
+    pub fn is_doubtful(&self) -> bool {
+        let is_error = |f: &Finding| f.severity == Severity::Error;
+        self.status == Status::Done.word() && self.findings.iter().any(is_error)
+    }
+
+    /// Why it does not count, or else the codes of what was found in it.
+    pub fn words(&self) -> String {
+        let codes: BTreeSet<&str> = self.findings.iter().map(|f| f.code).collect();
+        match self.message.is_empty() {
+            true => codes.into_iter().collect::<Vec<_>>().join(", "),
+            false => self.message.clone(),
+        }
+    }
+}
+
+/// The answer.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Fleet {
+    /// Title of the job.
+    #[serde(skip)]
+    pub title: String,
+    /// Slope of the S-N line.
+    pub slope: f64,
+    /// Vehicles by name.
+    pub vehicles: Vec<VehicleAnswer>,
+    /// The day whose damage an hour is 1, where the job names one that is there.
+    pub reference: Option<ReferenceAnswer>,
+    /// Damage of the mission that the job mixes.
+    pub mission: Option<MissionAnswer>,
+    /// Files by path.
+    pub files: Vec<FileAnswer>,
+    /// How many results were kept from an earlier run.
+    #[serde(skip)]
+    pub reused: usize,
+}
+
+impl Answer for Fleet {
+    const COMMAND: &'static str = "fleet";
+}
+
+impl VehicleAnswer {
+    /// What is told of a vehicle; [`VehicleAnswer::compare`] sees the others.
+    pub(super) fn of(v: Vehicle, keys: &FleetKeys) -> Self {
+        let moves = moving_days(&v.gauges, v.days.len());
+        Self {
+            files: v.days.len(),
+            hours: v.hours,
+            gauges: v
+                .gauges
+                .iter()
+                .map(|(name, days)| GaugeHistory::of(name, days, &v.days, &moves))
+                .collect(),
+            loads: v
+                .loads
+                .into_iter()
+                .map(|l| VehicleLoadAnswer::of(l, keys))
+                .collect(),
+            doubtful_days: v
+                .days
+                .iter()
+                .zip(&v.doubtful)
+                .filter(|d| *d.1)
+                .map(|d| d.0.clone())
+                .collect(),
+            misread: v.misread,
+            records: v.records,
+            name: v.name,
+            days: v.days,
+        }
+    }
+
+    /// Gains that are other ones from some day on. A gauge whose gain changes draws along what the others say of each other: of those that change on
+    /// one day the one that changes most is told.
+    pub(super) fn gain_changes(&self) -> impl Iterator<Item = Finding> {
+        let mut largest: BTreeMap<usize, GainChange> = BTreeMap::new();
+        for g in &self.gauges {
+            let Some(change) = g.gain_change(&self.name, &self.days, &self.misread) else {
+                continue;
+            };
+            let known = largest.get(&change.from);
+            if known.is_none_or(|k| change.size > k.size) {
+                largest.insert(change.from, change);
+            }
+        }
+        largest.into_values().map(|c| c.finding)
+    }
+
+    /// Sets the damage of each relative to that of all.
+    pub(super) fn compare(all: &mut [Self]) {
+        let mut sums: BTreeMap<String, [f64; 2]> = BTreeMap::new();
+        for l in all.iter().flat_map(|v| &v.loads) {
+            let [damage, hours] = sums.entry(l.load.clone()).or_default();
+            *damage += l.damage;
+            *hours += l.hours;
+        }
+        for v in all {
+            for l in &mut v.loads {
+                let of_all = sums.get(&l.load).map_or(f64::NAN, |[d, hours]| d / hours);
+                l.relative = l.damage / l.hours / of_all;
+            }
+        }
+    }
+}
+
+impl VehicleLoadAnswer {
+    fn of(l: VehicleLoad, keys: &FleetKeys) -> Self {
+        let DamageInterval {
+            value,
+            low,
+            high,
+            counted,
+            noise_bias,
+            sigma_s,
+            sigma_noise,
+            sigma_bias,
+        } = l.damage;
+        let [max_at, min_at] = l.extremes;
+        let day = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), |s| s.day.clone());
+        let target = keys.target.iter().find(|t| t.load == l.name);
+        Self {
+            max: l.tally.max.map(|e| e.value),
+            max_day: day(&max_at),
+            max_at,
+            min: l.tally.min.map(|e| e.value),
+            min_day: day(&min_at),
+            min_at,
+            cycles: l.tally.n_cycles(),
+            damage: value,
+            damage_low: low,
+            damage_high: high,
+            damage_counted: counted,
+            noise_bias,
+            sigma_s,
+            sigma_noise,
+            sigma_bias,
+            relative: f64::NAN,
+            to_reference: l.to_reference,
+            to_target: target.map(|t| Ratio { value, low, high }.times(1.0 / t.damage)),
+            by_day: l.by_day,
+            doubtful_share: l.doubtful_share,
+            width: l.tally.width,
+            range_pairs: l.tally.range_pairs(),
+            from_to: l.tally.cycles,
+            levels: l.tally.levels,
+            load: l.name,
+            hours: l.hours,
+            unit: l.unit,
+        }
+    }
+}
+
+impl Fleet {
+    /// Every load of every vehicle.
+    pub fn rows(&self) -> impl Iterator<Item = (&VehicleAnswer, &VehicleLoadAnswer)> {
+        let vehicles = self.vehicles.iter();
+        vehicles.flat_map(|v| v.loads.iter().map(move |l| (v, l)))
+    }
+
+    /// The answer of merged vehicles.
+    pub(super) fn of(
+        job: &Job,
+        kernel: &Kernel,
+        vehicles: Vec<VehicleAnswer>,
+        files: &[FileHead],
+        status: &[Status],
+        compared: Compared,
+        reused: usize,
+    ) -> Self {
+        let mut listed: Vec<FileAnswer> = files
+            .iter()
+            .zip(status)
+            .map(|(f, s)| {
+                let day = f.result.as_ref().ok();
+                FileAnswer {
+                    path: f.path.clone(),
+                    sha256: f.sha256.clone(),
+                    vehicle: f.vehicle.clone(),
+                    day: f.day.clone(),
+                    status: s.word(),
+                    message: s.message().to_owned(),
+                    hours: day.map(|d| d.hours),
+                    rate_hz: day.map(|d| d.rate_hz),
+                    missing: day.map(|d| d.missing),
+                    findings: day.map_or_else(Vec::new, |d| d.findings.clone()),
+                }
+            })
+            .collect();
+        listed.sort_by(|a, b| a.path.cmp(&b.path));
+        Self {
+            title: job.title.clone(),
+            slope: kernel.law.slope,
+            vehicles,
+            reference: compared.reference.map(|r| r.answer),
+            mission: compared.mission.as_ref().and_then(MissionSums::answer),
+            files: listed,
+            reused,
+        }
+    }
+
+    /// What is to be known: files that don't count, gauges that died, findings of single records.
+    pub(super) fn findings(
+        &self,
+        files: &[FileHead],
+        status: &[Status],
+        days_in: DayOrder,
+    ) -> Vec<Finding> {
+        let mut out = Vec::new();
+        for (file, status) in files.iter().zip(status) {
+            let (severity, code, remedy) = match status {
+                Status::Done => continue,
+                Status::Failed(_) => (
+                    Severity::Error,
+                    "fleet-file-failed",
+                    "mend the file, or leave it out",
+                ),
+                Status::Copy(_) => (
+                    Severity::Warning,
+                    "fleet-second-copy",
+                    "keep one file a day",
+                ),
+                Status::Foreign(_) => (
+                    Severity::Error,
+                    "fleet-copy-of-another",
+                    "correct the vehicle in the name of one of them, or leave one out",
+                ),
+                // Its hours and damage were asked for, and are missing.
+                Status::Second(_) => (
+                    Severity::Error,
+                    "fleet-day-twice",
+                    "keep one file a day; where both count, let {day} in [fleet] file_name take in what tells them apart",
+                ),
+            };
+            out.push(Finding::new(
+                severity,
+                code,
+                &file.path,
+                status.message(),
+                remedy,
+            ));
+        }
+        out.extend(of_records(files, status, days_in));
+        for v in &self.vehicles {
+            let dead = v.gauges.iter();
+            out.extend(dead.filter_map(|g| g.dead(&v.name, v.days.len())));
+            out.extend(v.gain_changes());
+            out.extend(in_doubt(v));
+            out.extend(v.loads.iter().filter_map(|l| known_in_part(v, l)));
+            out.extend(v.loads.iter().filter_map(|l| mostly_noise(&v.name, l)));
+        }
+        out
+    }
+}
+
+/// Says that what noise makes of the ranges is most of the damage that was counted.
+fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
+    /// Of the damage counted.
+    const MOST: f64 = 0.5;
+    let share = l.noise_bias / l.damage_counted;
+    (share > MOST).then(|| {
+        let message = format!(
+            "{:.0} % of the damage that was counted is made by noise, and is taken off by what more noise makes: the rest is known as well as its interval says",
+            100.0 * share
+        );
+        let remedy = "filter the record below the noise, or place gauges that read this load better";
+        let subject = format!("{vehicle} {}", l.load);
+        Finding::new(Severity::Warning, "damage-of-noise", subject, message, remedy)
+            .with_numbers(share, MOST)
+    })
+}
+
+/// Says that a load is known for less time than others are: its damage is that of fewer hours.
+fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
+    /// Of the hours: so much damage more is well within what days differ by.
+    const MISSING: f64 = 0.05;
+    let missing = 1.0 - l.hours / v.hours;
+    (missing > MISSING).then(|| {
+        let message = format!(
+            "the gauges that read tell it in {:.4} of {:.4} hours alone, and its damage is that of these",
+            l.hours, v.hours
+        );
+        let remedy = "repair the gauges that its days lack, or add some; until then compare its damage an hour";
+        let subject = format!("{} {}", v.name, l.load);
+        let found = Finding::new(Severity::Warning, "load-known-in-part", subject, message, remedy);
+        found.with_numbers(missing, MISSING)
+    })
+}
+
+/// Says which share of a vehicle's damage days did whose loads can't be relied on.
+fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
+    let first = v.doubtful_days.first()?;
+    let share = |l: &VehicleLoadAnswer| format!("{} {:.1} %", l.load, 100.0 * l.doubtful_share);
+    let shares: Vec<String> = v.loads.iter().map(share).collect();
+    let most = v.loads.iter().map(|l| l.doubtful_share).fold(0.0, f64::max);
+    let message = format!(
+        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums \
+         know nothing of it",
+        v.doubtful_days.len(),
+        v.days.len(),
+        few(&shares)
+    );
+    let remedy = "put right what the findings of these records name, or leave the records out";
+    let found = Finding::new(Severity::Error, "damage-in-doubt", &v.name, message, remedy);
+    Some(found.with_numbers(most, 0.0))
+}

@@ -1,0 +1,238 @@
+//! `identify`: vehicle parameters and wheel loads from accelerations.
+
+use crate::host::context::Context;
+use crate::host::fault::Faults;
+use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::series::channels::Channels;
+use crate::series::detrend::rms;
+use crate::strain_chain::named_results::check_tables;
+use crate::vehicle::adjustment::Adjustment;
+use crate::vehicle::chassis::{ChassisForce, chassis_forces};
+use crate::vehicle::checks::MassClosure;
+use crate::vehicle::identify::{
+    ChannelFit, Estimate, Identification, check_records, identify as fit_vehicle,
+};
+use crate::vehicle::loads::{LoadHistory, static_loads, wheel_force_history};
+use crate::vehicle::motion::{Motion, Treatment, motion};
+use crate::vehicle::stretch::slow_stretches;
+use crate::workflow::vehicle::{VehicleRecords, read_vehicle, vehicle_fault};
+use serde::Serialize;
+
+/// Parameters of a vehicle and its wheel loads.
+#[derive(Serialize)]
+pub struct Identified {
+    /// The vehicle model.
+    pub model: String,
+    /// The band of every equation, Hz.
+    pub band_hz: [f64; 2],
+    /// Parameters and ratios.
+    pub parameters: Vec<Estimate>,
+    /// What the data can't tell, in words.
+    pub unidentifiable: Vec<String>,
+    /// How well each channel is explained.
+    pub fit: Vec<ChannelFit>,
+    /// Identified over weighed mass.
+    pub mass_closure: Option<f64>,
+    /// The same with what it is made of.
+    pub mass_closure_detail: Option<MassClosure>,
+    /// Smallest over largest singular value, worst component, columns of unit norm.
+    pub conditioning: Option<f64>,
+    /// Wheel loads.
+    pub loads: Vec<WheelLoad>,
+    /// Forces on sprung bodies.
+    pub chassis_forces: Vec<ChassisForceOf>,
+    /// Everything that was identified.
+    #[serde(skip)]
+    pub found: Identification,
+    /// Wheel forces of the fitted record.
+    #[serde(skip)]
+    pub fitted: Driven,
+    /// Wheel forces of the record that judges.
+    #[serde(skip)]
+    pub held_out: Option<Driven>,
+    /// Force histories on sprung bodies.
+    #[serde(skip)]
+    pub forces: Vec<ChassisForce>,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Identified {
+    const COMMAND: &'static str = "identify";
+}
+
+/// A record with the wheel forces recovered from it.
+pub struct Driven {
+    /// Wheel forces.
+    pub loads: LoadHistory,
+    /// Accelerations, travels and measured forces.
+    pub motion: Motion,
+}
+
+/// A recovered load: dynamic part of a wheel force over its record, and its mean where masses tell it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WheelLoad {
+    /// The record.
+    pub run: String,
+    /// The load.
+    pub name: String,
+    /// Mean, where masses tell it.
+    pub value: Option<f64>,
+    /// Its standard deviation.
+    pub sigma: Option<f64>,
+    /// Unit in words.
+    pub unit: String,
+    /// Smallest sample of the dynamic part.
+    pub min: f64,
+    /// Largest sample of the dynamic part.
+    pub max: f64,
+    /// Standard deviation of a sample.
+    pub sample_sigma: Option<f64>,
+}
+
+/// The force on a sprung body.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ChassisForceOf {
+    /// The body.
+    pub body: String,
+    /// By its inertia.
+    pub rms_by_mass: f64,
+    /// By its springs and dampers, where they were identified.
+    pub rms_by_springs: Option<f64>,
+    /// Error of either, where both were identified.
+    pub rms_difference: Option<f64>,
+    /// Unit in words.
+    pub unit: String,
+}
+
+/// Reads the vehicle and its records as [`identify`] does and begins with them, as far as nothing is fitted; the parameters are dropped.
+///
+/// # Errors
+/// Every fault of the job and its records.
+pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    let records = read_vehicle(work, job)?;
+    let data_name = job.vehicle.as_ref().map_or("", |v| v.data.given.as_str());
+    check_records(&records.task, &records.data, records.hold_out.as_ref())
+        .map_err(|e| vehicle_fault(job, data_name, &e).into())
+}
+
+/// Vehicle parameters and wheel loads from accelerations.
+///
+/// # Errors
+/// Every fault of the job and its records.
+pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    check_tables(&work, job)?;
+    let records = work.stage("read", |w| read_vehicle(w, job))?;
+    let VehicleRecords {
+        task,
+        data,
+        hold_out,
+    } = &records;
+    let data_name = job.vehicle.as_ref().map_or("", |v| v.data.given.as_str());
+    let found = work
+        .stage("identify", |_| fit_vehicle(task, data, hold_out.as_ref()))
+        .map_err(|e| vehicle_fault(job, data_name, &e))?;
+    work.findings.extend(found.findings.iter().cloned());
+    work.findings.extend(found.verdict());
+    let drive = |record: &Channels, name: &str, adjust: &[Adjustment]| -> Result<Driven, Faults> {
+        let treatment = Treatment {
+            keep_every: 1,
+            adjust: adjust.to_vec(),
+            slow: slow_stretches(&found.vehicle, &found.values, record, adjust),
+            ..Treatment::of(task.band)
+        };
+        let motion = motion(&found.vehicle, record, &treatment);
+        let motion = motion.map_err(|e| vehicle_fault(job, name, &e))?;
+        Ok(Driven {
+            loads: wheel_force_history(&found, &motion),
+            motion,
+        })
+    };
+    let unit = &task.units.force;
+    let rows = |name: &str, d: &Driven| load_rows(&found, task.gravity, unit, name, &d.loads);
+    let fitted = drive(data, data_name, &task.corrections)?;
+    let mut loads = rows(data_name, &fitted);
+    let named = job.vehicle.as_ref().and_then(|v| v.hold_out.as_ref());
+    let held_out = match (hold_out, named) {
+        (Some(record), Some(named)) => {
+            let driven = drive(
+                record,
+                &named.given,
+                &Adjustment::elsewhere(&task.corrections),
+            )?;
+            loads.extend(rows(&named.given, &driven));
+            Some(driven)
+        }
+        _ => None,
+    };
+    let forces = chassis_forces(task, &found, &fitted.motion);
+    let answer = Identified {
+        model: found.vehicle.name.clone(),
+        band_hz: [task.band.low_hz, task.band.high_hz],
+        parameters: found.parameters.clone(),
+        unidentifiable: found.unidentifiable.clone(),
+        fit: found.fit.clone(),
+        mass_closure: found.mass_closure.map(|m| m.ratio),
+        mass_closure_detail: found.mass_closure,
+        conditioning: finite(found.conditioning),
+        loads,
+        chassis_forces: forces.iter().map(|f| force_row(f, unit)).collect(),
+        fitted,
+        held_out,
+        forces,
+        job: job.clone(),
+        found,
+    };
+    let units = StatedUnits::of_model(job.units);
+    Ok(work.finish(units, answer))
+}
+
+fn force_row(f: &ChassisForce, unit: &str) -> ChassisForceOf {
+    ChassisForceOf {
+        body: f.body.clone(),
+        rms_by_mass: rms(&f.by_mass),
+        rms_by_springs: f.difference().map(|_| rms(&f.by_springs)),
+        rms_difference: f.difference(),
+        unit: unit.to_owned(),
+    }
+}
+
+fn load_rows(
+    found: &Identification,
+    gravity: f64,
+    unit: &str,
+    run: &str,
+    history: &LoadHistory,
+) -> Vec<WheelLoad> {
+    let statics = static_loads(found, gravity, run);
+    history
+        .names
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| history.values[*i].iter().any(|v| v.is_finite()))
+        .map(|(i, name)| {
+            let at = statics.names.iter().position(|n| n == name);
+            let extreme = |pick: fn(f64, f64) -> f64| {
+                history.values[i]
+                    .iter()
+                    .copied()
+                    .reduce(pick)
+                    .unwrap_or(f64::NAN)
+            };
+            WheelLoad {
+                run: run.to_owned(),
+                name: name.clone(),
+                value: at.map(|k| statics.values[k]),
+                sigma: at.map(|k| statics.sigma(k)),
+                unit: unit.to_owned(),
+                min: extreme(f64::min),
+                max: extreme(f64::max),
+                sample_sigma: Some(history.sigma[i]).filter(|s| s.is_finite()),
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,265 @@
+//! `init`: a commented job from the analyst's own files, tried before it is recommended.
+//!
+//! [`propose`] loads (of the results' subcases, of the deck's, at [`points`]), lengths by the [`mesh`], [`text`] of the job, and
+//! [`trial`]: `place` on it. The first proposal that `place` answers is written.
+
+mod mesh;
+mod plain_name;
+mod points;
+mod propose;
+mod purpose;
+mod round;
+mod text;
+mod trial;
+
+use crate::fe::from_results::{
+    Displacements, HOLD_ONCE, ReadOptions, repeated, solution_from_file,
+};
+use crate::finding::{Finding, Severity};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::model::{Model, Shell};
+use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
+use crate::strain_chain::named_results::RESULTS_REMEDY;
+use crate::units::likely_system;
+use nastran::results::ResultsFile;
+use propose::{LeftOutLoad, StrainFrom, Strained, proposals};
+pub use purpose::{Purpose, init_for};
+use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+pub use text::JOB;
+use text::{JobPlan, usual_spacing};
+use trial::{Verdict, first_that_places};
+
+/// A commented job made from an analyst's files.
+#[derive(Serialize)]
+pub struct Proposal {
+    /// Name of the job's file.
+    pub job: &'static str,
+    /// Names of the loads proposed.
+    pub loads: Vec<String>,
+    /// Loads and subcases of the files that are not proposed.
+    pub left_out: Vec<NotProposed>,
+    /// Whether `place` answers it.
+    pub placeable: bool,
+    /// Shell properties by their names in the deck.
+    #[serde(skip)]
+    pub zones: BTreeMap<String, BTreeSet<u32>>,
+    /// The job itself.
+    #[serde(skip)]
+    pub text: String,
+    /// Where it is to stand.
+    #[serde(skip)]
+    pub path: PathBuf,
+    /// The command that it is written for, where that is not `place`.
+    #[serde(skip)]
+    pub purpose: Option<&'static str>,
+}
+
+/// A load or subcase that is not proposed.
+#[derive(Serialize)]
+pub struct NotProposed {
+    /// Name of the load or subcase.
+    pub name: String,
+    /// Reason why it is left out.
+    pub reason: String,
+}
+
+impl Answer for Proposal {
+    const COMMAND: &'static str = "init";
+}
+
+/// A commented job from a deck and its results, to stand in `folder`.
+///
+/// # Errors
+/// Files that can't be read; a job that is there already; a deck without grids.
+pub fn init(
+    deck_path: &Path,
+    results: &[PathBuf],
+    folder: &Path,
+    cx: &Context,
+) -> Result<Outcome<Proposal>, Faults> {
+    let mut work = Work::new(cx);
+    let target = free_target(folder, cx)?;
+    let given = deck_path.display().to_string();
+    let deck = work.stage("read deck", |s| {
+        read_model(&mut s.inputs, Path::new(""), &given)
+    })?;
+    Faults::check(deck.incomplete())?;
+    if deck.model.grids.is_empty() {
+        let none = Fault::of(
+            &*given,
+            "GRID",
+            "no grid in it",
+            "give a deck, or an OP2 that holds the mesh",
+        );
+        return Err(Faults::or(deck.faults, none));
+    }
+    work.findings.extend(deck.findings.iter().cloned());
+    let (moduli, densities) = moduli_and_densities(&deck.model);
+    let system = likely_system(deck.model.params.unitsys.as_deref(), &moduli, &densities);
+    let strained = read_strained(results, &deck, &mut work)?;
+    let found = proposals(&deck, &strained, system);
+    let plan = JobPlan {
+        deck: &deck,
+        deck_path,
+        results,
+        folder,
+        system,
+        from: found.first().map_or(StrainFrom::Solver, |p| p.from),
+        without_results: match strained.iter().all(|s| s.1.is_empty()) {
+            true => "no static subcase of them has strain of shells",
+            false => "`place` finds no gauges with them",
+        },
+        loads: found.first().map_or(&[], |p| &p.loads),
+        left_out: found.first().map_or(Vec::new(), |p| p.left_out.clone()),
+        spacing: usual_spacing(&deck),
+        angle_step_deg: 15,
+    };
+    let verdict = match obstacle(&deck, &given, system.is_none()) {
+        Some(finding) => {
+            work.findings.push(finding);
+            Verdict::hopeless(&plan)
+        }
+        None => work.stage("try", |w| first_that_places(&w.cx, &plan, &found)),
+    };
+    work.findings.extend(verdict.finding);
+    let answer = Proposal {
+        job: JOB,
+        loads: verdict.loads,
+        left_out: verdict.left_out.into_iter().map(not_proposed).collect(),
+        placeable: verdict.places,
+        zones: named_zones(&deck.model),
+        text: verdict.text,
+        path: target,
+        purpose: None,
+    };
+    Ok(work.finish(StatedUnits::default(), answer))
+}
+
+fn not_proposed(left_out: LeftOutLoad) -> NotProposed {
+    NotProposed {
+        name: left_out.name,
+        reason: left_out.why,
+    }
+}
+
+/// Returns the shell properties that elements use, by their names in comments of the deck.
+fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
+    let property = |s: &Shell| Some(model.shell_properties.get(s.property.us())?.id);
+    let used: BTreeSet<u32> = model.shells.iter().filter_map(property).collect();
+    let mut zones: BTreeMap<String, BTreeSet<u32>> = BTreeMap::new();
+    for (id, name) in model.property_names.iter().filter(|n| used.contains(&n.0)) {
+        zones.entry(name.clone()).or_default().insert(*id);
+    }
+    zones
+}
+
+/// Where the job is to stand.
+///
+/// # Errors
+/// A job that is there already.
+fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
+    let target = folder.join(JOB);
+    if cx.files.load(&target).is_ok() {
+        return Err(Fault::of(
+            target.display().to_string(),
+            JOB,
+            "there is one already, and it is not overwritten",
+            "move it away, or name another folder with `--out`",
+        ));
+    }
+    Ok(target)
+}
+
+/// What stops placing before it is tried; `None`: nothing that shows.
+fn obstacle(deck: &DeckModel, given: &str, units_open: bool) -> Option<Finding> {
+    let m = &deck.model;
+    let stop = |code, message: String, remedy: &str| {
+        Some(Finding::new(
+            Severity::Warning,
+            code,
+            given,
+            message,
+            remedy,
+        ))
+    };
+    if let Some(first) = deck.faults.first() {
+        let n = deck.faults.len();
+        let message = format!("{n} faults in the deck, the first: {first}");
+        return stop("deck-has-faults", message, "run `check` on it");
+    }
+    if m.shells.is_empty() {
+        let message = format!(
+            "there is nothing to glue gauges on: no shell among {} solids and {} bars and beams",
+            m.solids.len(),
+            m.beams.len()
+        );
+        let remedy = "coat the solids' faces with thin shells (membranes of a thousandth of the thickness) and solve again";
+        return stop("nothing-to-glue-on", message, remedy);
+    }
+    if units_open {
+        let message = "Young's moduli and densities fit no system of units".to_owned();
+        return stop("units-unknown", message, "fill in `units` of the job");
+    }
+    None
+}
+
+/// Result files with their static subcases that hold strain of shells.
+fn read_strained(
+    results: &[PathBuf],
+    deck: &DeckModel,
+    work: &mut Work,
+) -> Result<Vec<Strained>, Faults> {
+    let options = ReadOptions {
+        displacements: Displacements::Leave,
+        ..ReadOptions::default()
+    };
+    let mut strained = Vec::new();
+    for path in results {
+        let name = path.display().to_string();
+        let bytes = work.inputs.read(Path::new(""), &name)?;
+        let read = work.stage("read results", |_| {
+            ResultsFile::read(&bytes, &name).map(|f| {
+                let solution = solution_from_file(&deck.model, &name, &f, &options);
+                (solution, repeated(&[&f], None), labels(&f))
+            })
+        });
+        let (solution, repeated, labels) =
+            read.map_err(|e| Fault::of(&*name, "results", e.to_string(), RESULTS_REMEDY))?;
+        if let Some(twice) = repeated.iter().find(|r| r.is_of_strain()) {
+            return Err(Fault::of(&*name, "results", twice.words(&[&name]), HOLD_ONCE).into());
+        }
+        if let Some(cut) = deck.cut_beside(&solution.findings) {
+            return Err(cut.into());
+        }
+        // What a file lacks is said by the job, which leaves it out then.
+        let findings = solution.findings.iter();
+        let said =
+            findings.filter(|f| f.code != "no-static-results" && f.code != "no-strain-output");
+        work.findings.extend(said.cloned());
+        let with_strain = solution
+            .cases
+            .iter()
+            .filter(|c| !c.shells.elements.is_empty());
+        let named = with_strain.map(|c| {
+            let label = labels.get(&c.subcase).cloned().unwrap_or_default();
+            (c.subcase, label)
+        });
+        strained.push((name, named.collect()));
+    }
+    Ok(strained)
+}
+
+/// LABEL of each subcase of a results file, else its SUBTITLE.
+fn labels(file: &ResultsFile) -> BTreeMap<u32, String> {
+    let named = file.blocks().iter().filter_map(|b| {
+        let [_, subtitle, label] = &b.titles;
+        let name = [label, subtitle].into_iter().find(|t| !t.is_empty())?;
+        Some((b.subcase, name.clone()))
+    });
+    named.collect()
+}

@@ -1,0 +1,212 @@
+//! `modes`: the elastic modes of a deck's or job's structure, free or held, with their strain.
+
+use crate::fe::{
+    LoadCase, ModalSolution, SolveOptions, Support, SupportChoice, solve_modes, support_of,
+};
+use crate::gauge::{CornerRows, build, reading};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::model::Model;
+use crate::strain_chain::deck::{DeckModel, read_model};
+use crate::strain_chain::job_deck::read_deck;
+use crate::strain_chain::named_results::{Absent, check_named};
+use crate::strain_chain::solved::{faults_of, support_of_job};
+use crate::strain_chain::{corrected_spec_of, not_laid};
+use crate::units::{MICROSTRAIN, UnitSystem};
+use serde::{Serialize, Serializer};
+use std::path::Path;
+
+/// One elastic mode.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModeRow {
+    /// 1, 2 ..
+    pub mode: usize,
+    /// Cycles per unit of time.
+    pub hz: f64,
+    /// Of the shape that is written: 1 but for rounding.
+    pub generalised_mass: f64,
+    /// Share of the modal equation that is not satisfied.
+    pub residual: f64,
+    /// Bound on the relative error of the frequency.
+    pub frequency_error: f64,
+    /// Distance to the nearest other mode, as a share of 1 / omega^2; null where there is none.
+    #[serde(serialize_with = "or_null")]
+    pub gap: f64,
+    /// Modal effective mass along x, y, z and about axes through the centre of gravity.
+    pub effective_mass: [f64; 6],
+    /// Strain at each gauge of the job for a generalised coordinate of 1, microstrain; null where a gauge has none.
+    pub gauge_microstrain: Vec<Option<f64>>,
+}
+
+fn or_null<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
+    finite(*x).serialize(s)
+}
+
+/// Elastic modes of a structure.
+#[derive(Serialize)]
+pub struct Modes {
+    /// Ascending.
+    pub modes: Vec<ModeRow>,
+    /// What holds the structure, in words.
+    pub support: String,
+    /// Rigid motions that nothing holds; they are no modes.
+    pub rigid_motions: usize,
+    /// Names of the gauges, as in `gauge_microstrain`.
+    pub gauges: Vec<String>,
+    /// Units of masses: those of the job's system; null for a deck, which doesn't say.
+    pub model_units: StatedUnits,
+    /// Mass of the model, WTMASS applied.
+    pub mass: Option<f64>,
+    /// Unknowns.
+    pub dofs: usize,
+    /// Shapes and their strain.
+    #[serde(skip)]
+    pub solution: ModalSolution,
+    /// The model.
+    #[serde(skip)]
+    pub model: Model,
+    /// Title of the page.
+    #[serde(skip)]
+    pub title: String,
+    /// The job's system of units.
+    #[serde(skip)]
+    pub system: Option<UnitSystem>,
+}
+
+impl Answer for Modes {
+    const COMMAND: &'static str = "modes";
+}
+
+/// The lowest `count` elastic modes of a job's structure on the job's support, with the strain of its gauges.
+///
+/// # Errors
+/// Every fault of the job and its deck; what stops the solver.
+pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let Some(files) = &job.model else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )));
+    };
+    check_named(&work, job, Absent::Refused)?;
+    let read = work.stage("read model", |w| read_deck(w, job, files))?;
+    let support = support_of_job(job, &read.model)?;
+    let units = StatedUnits::of(job.units, &job.report_units);
+    let answer = solved(&mut work, read, support, (count, Some(job)))?;
+    Ok(work.finish(units, answer))
+}
+
+/// The lowest `count` elastic modes of a deck's structure on the SPC set that its case control selects, free where it selects none;
+/// the deck may be of any solution sequence.
+///
+/// # Errors
+/// Every fault of the deck; what stops the solver.
+pub fn modes_of_deck(path: &Path, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
+    let mut work = Work::new(cx);
+    let given = path.display().to_string();
+    let read = work
+        .stage("read model", |w| {
+            read_model(&mut w.inputs, Path::new(""), &given)
+        })
+        .map_err(Faults::from)?;
+    work.findings.extend(read.findings.iter().cloned());
+    Faults::check(read.faults.clone())?;
+    let support = support_of(&read.model, SupportChoice::Deck).map_err(|e| {
+        Faults::from(Fault::of(
+            &*given,
+            "SPC",
+            e.to_string(),
+            "give a job with [model] support = the SPC set meant",
+        ))
+    })?;
+    let answer = solved(&mut work, read, support, (count, None))?;
+    Ok(work.finish(StatedUnits::default(), answer))
+}
+
+fn solved(
+    work: &mut Work,
+    read: DeckModel,
+    support: Support,
+    (count, job): (usize, Option<&Job>),
+) -> Result<Modes, Faults> {
+    let model = &read.model;
+    let options = SolveOptions {
+        stop: work.cx.progress.stop(),
+        ..SolveOptions::default()
+    };
+    let solution = work
+        .stage("modes", |_| {
+            solve_modes(model, support.spc, model.mpc, count, &options)
+        })
+        .map_err(|e| faults_of(&e, &read))?;
+    work.findings.extend(solution.findings.iter().cloned());
+    let mut gauges = Vec::new();
+    let of_job = job
+        .iter()
+        .flat_map(|j| j.gauges.iter().map(move |g| (j, g)));
+    for (job, g) in of_job {
+        let spec = corrected_spec_of(model, job, g).map_err(Faults::from)?;
+        let laid = build(model, &spec, CornerRows::Present).map_err(|e| not_laid(g, &e));
+        gauges.extend(laid.map_err(Faults::from)?.0);
+    }
+    let rows = (1..).zip(&solution.modes).zip(&solution.strain.cases);
+    let modes = rows
+        .map(|((mode, m), case)| ModeRow {
+            mode,
+            hz: m.frequency,
+            generalised_mass: m.generalised_mass,
+            residual: m.residual,
+            frequency_error: m.frequency_error,
+            gap: m.gap,
+            effective_mass: m.effective_mass,
+            gauge_microstrain: gauges
+                .iter()
+                .map(|g| reading(g, case).map(|e| e / MICROSTRAIN))
+                .collect(),
+        })
+        .collect();
+    let system = job.map(|j| j.units);
+    let title = match job {
+        Some(job) => job.title.clone(),
+        None => read.given.clone(),
+    };
+    Ok(Modes {
+        modes,
+        support: match (support.spc, support.by_springs, support.is_held()) {
+            (None, 0, false) => "free".to_owned(),
+            (Some(set), ..) => format!("held by SPC set {set}"),
+            (None, ..) => support.words(),
+        },
+        rigid_motions: solution.rigid_motions,
+        gauges: gauges.into_iter().map(|g| g.name).collect(),
+        mass: solution.mass.as_ref().map(|m| m.mass),
+        dofs: solution.dofs,
+        solution,
+        title,
+        model_units: system.map_or_else(StatedUnits::default, StatedUnits::of_model),
+        system,
+        model: read.model,
+    })
+}
+
+impl Modes {
+    /// The modes as cases without loads, for pictures.
+    pub fn cases(&self) -> Vec<LoadCase> {
+        let all = self.solution.strain.cases.iter();
+        all.map(|c| LoadCase {
+            subcase: c.subcase,
+            label: c.label.clone(),
+            loads: Vec::new(),
+            spc: None,
+            mpc: None,
+            relief: crate::fe::Relief::None,
+        })
+        .collect()
+    }
+}

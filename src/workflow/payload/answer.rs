@@ -1,0 +1,176 @@
+//! The answer of `payload`.
+
+use super::judge::words;
+use super::model::Parts;
+use super::readings::{NetReading, Readings};
+use super::task::Task;
+use crate::host::outcome::{Answer, finite};
+use crate::job::Job;
+use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
+use crate::strain_chain::{Conditioning, Prepared};
+use serde::Serialize;
+
+/// Payloads weighed, report units.
+#[derive(Serialize)]
+pub struct Weighed {
+    /// By run.
+    pub payload: Vec<WeighedPayload>,
+    /// By run and gauge.
+    pub by_gauge: Vec<SingleGauge>,
+    /// What each gauge reads of each run, less its zero.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub net: Vec<NetReading>,
+    /// Rank and condition numbers of S, where strain is used and S is the model's.
+    #[serde(flatten)]
+    pub conditioning: Option<Conditioning>,
+    /// The runs as they were weighed.
+    #[serde(skip)]
+    pub runs: Vec<PayloadRun>,
+    /// All that weighing says.
+    #[serde(skip)]
+    pub weighing: Weighing,
+    /// S and gauges, where strain is used.
+    #[serde(skip)]
+    pub prepared: Option<Prepared>,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Weighed {
+    const COMMAND: &'static str = "payload";
+}
+
+/// One payload. What is refused has no numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WeighedPayload {
+    /// The run.
+    pub run: String,
+    /// Weight.
+    pub force: Option<f64>,
+    /// Its standard deviation.
+    pub force_sigma: Option<f64>,
+    /// Lower end of its 95 % interval.
+    pub force_low: Option<f64>,
+    /// Upper end of its 95 % interval.
+    pub force_high: Option<f64>,
+    /// Mass.
+    pub mass: Option<f64>,
+    /// Its standard deviation.
+    pub mass_sigma: Option<f64>,
+    /// Place in plan.
+    pub position: [Option<f64>; 2],
+    /// Its standard deviations; `None` where the place is known.
+    pub position_sigma: Option<[Option<f64>; 2]>,
+    /// Where it lies with 95 %; `None` where the place is known.
+    pub region: Option<Ellipse>,
+    /// Why there is no answer.
+    pub refused: Option<String>,
+    /// Unit of the weight.
+    pub unit: String,
+}
+
+/// An ellipse in plan.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Ellipse {
+    /// Half axes, the longer first.
+    pub half_axes: [f64; 2],
+    /// Of the longer one, from the first axis of the plan.
+    pub angle_deg: f64,
+}
+
+/// What one gauge alone says of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SingleGauge {
+    /// The run.
+    pub run: String,
+    /// The gauge.
+    pub name: String,
+    /// Weight.
+    pub estimate: Option<f64>,
+    /// Its standard deviation.
+    pub sigma: Option<f64>,
+    /// Whether it counts.
+    pub used: bool,
+    /// Why, or why not.
+    pub reason: String,
+}
+
+/// A value where it is not refused.
+fn kept(r: &WeighedRun, v: f64) -> Option<f64> {
+    if r.refused.is_some() { None } else { finite(v) }
+}
+
+/// Standard deviation of a gauge alone over that of the answer from which it carries less than a thousandth of it.
+const CARRIES: f64 = 32.0;
+
+/// The answer.
+pub(super) fn weighed(
+    task: &Task,
+    parts: Parts,
+    readings: Readings,
+    spec: &WeighSpec,
+    weighing: Weighing,
+) -> Weighed {
+    let job = task.job;
+    let payload = weighing.runs.iter().map(|r| one(task, spec, r)).collect();
+    let mut by_gauge: Vec<SingleGauge> = Vec::new();
+    for r in &weighing.runs {
+        for (g, name) in parts.model.gauges.iter().enumerate() {
+            let verdict = weighing.gauges.iter().find(|v| v.name == *name);
+            let estimate = r.estimates.get(g).copied().unwrap_or(f64::NAN);
+            let sigma = r.estimate_sigma.get(g).copied().unwrap_or(f64::NAN);
+            // Shares in a mean are those of 1 / sigma^2.
+            let carries = !(sigma > CARRIES * r.sigma);
+            by_gauge.push(SingleGauge {
+                run: r.run.clone(),
+                name: name.clone(),
+                estimate: finite(estimate),
+                sigma: r.estimate_sigma.get(g).copied().and_then(finite),
+                used: verdict.is_some_and(|v| v.used) && estimate.is_finite() && carries,
+                reason: match verdict {
+                    None => "no gauge says a possible payload".to_owned(),
+                    Some(v) if v.used && estimate.is_finite() && !carries => {
+                        "too weak: the gauge carries less than a thousandth of the answer"
+                            .to_owned()
+                    }
+                    Some(v) => v.reason.clone(),
+                },
+            });
+        }
+    }
+    let modelled = parts.prepared.as_ref().filter(|p| p.fields.is_some());
+    Weighed {
+        payload,
+        by_gauge,
+        net: readings.net,
+        conditioning: modelled.map(|p| Conditioning::of(&p.sensitivity)),
+        runs: readings.runs,
+        weighing,
+        prepared: parts.prepared,
+        job: job.clone(),
+    }
+}
+
+fn one(task: &Task, spec: &WeighSpec, r: &WeighedRun) -> WeighedPayload {
+    let free = spec.place == Place::Free;
+    let (half_axes, angle) = r.ellipse();
+    let spread = [0, 3].map(|k| kept(r, r.shift_covariance[k].max(0.0).sqrt()));
+    WeighedPayload {
+        run: r.run.clone(),
+        force: kept(r, r.force),
+        force_sigma: kept(r, r.sigma),
+        force_low: kept(r, r.interval[0]),
+        force_high: kept(r, r.interval[1]),
+        mass: kept(r, r.force / task.weight_of_mass),
+        mass_sigma: kept(r, r.sigma / task.weight_of_mass),
+        position: [0, 1].map(|k| kept(r, task.nominal[k] + r.shift[k])),
+        position_sigma: free.then_some(spread),
+        region: (free && r.refused.is_none()).then(|| Ellipse {
+            half_axes,
+            angle_deg: angle.to_degrees(),
+        }),
+        refused: r.refused.map(|x| words(task, &x)),
+        unit: task.job.report_units.force.name.to_owned(),
+    }
+}

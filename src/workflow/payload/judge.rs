@@ -1,0 +1,266 @@
+//! Findings of `payload`: refusals, wheels that lift off, places that can't be told, gauges that are not used.
+
+use super::model::Parts;
+use super::stated::REFUTED;
+use super::task::Task;
+use crate::estimate::NORMAL_95;
+use crate::finding::{Finding, Severity, few};
+use crate::host::words::short;
+use crate::host::work::Work;
+use crate::measured::zero::judged;
+use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
+use crate::recovery::Readings;
+use crate::units::MICROSTRAIN;
+
+/// A share of the weight that an interval leaves open from which the answer says little.
+const VAGUE: f64 = 0.5;
+
+/// A refusal in plain words.
+pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
+    let unit = task.job.report_units.force.name;
+    match refusal {
+        Refusal::Negative { force } => format!(
+            "the readings say {} {unit}: a payload can't pull the structure up",
+            short(*force)
+        ),
+        Refusal::OutsideRegion { sigmas } => format!(
+            "the place found lies {} standard deviations outside the region where the payload can be",
+            short(*sigmas)
+        ),
+        Refusal::OutOfBalance {
+            strain,
+            wheels,
+            sigmas,
+        } => format!(
+            "strain says {} {unit} and the wheels carry {} {unit}: {} standard deviations apart, so forces are not in balance",
+            short(*strain),
+            short(*wheels),
+            short(*sigmas)
+        ),
+        Refusal::Undetermined => "nothing that was read tells the weight".to_owned(),
+    }
+}
+
+/// A refusal as a finding.
+fn refused(task: &Task, run: &str, refusal: &Refusal) -> Finding {
+    let (code, remedy) = match refusal {
+        Refusal::Negative { .. } => (
+            "payload-negative",
+            "check the signs of gauges and wheel forces, the zero, and which run is the unloaded one",
+        ),
+        Refusal::OutsideRegion { .. } => (
+            "payload-outside-region",
+            "check `region`, signs and names of gauges, and for a load that is not the payload",
+        ),
+        Refusal::OutOfBalance { .. } => (
+            "payload-out-of-balance",
+            "check scale and sign of the channels, the zero of both, and `use` one of them alone",
+        ),
+        Refusal::Undetermined => (
+            "payload-undetermined",
+            "glue gauges where the payload strains the structure, or measure wheel forces",
+        ),
+    };
+    Finding::new(Severity::Error, code, run, words(task, refusal), remedy)
+}
+
+/// Wheels that structure and payload together leave without load.
+fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &WeighedRun) {
+    // Wheels under structure and payload together.
+    let total: Vec<f64> = match (&parts.model.floor, run.reactions.is_empty()) {
+        (Some(floor), true) => {
+            let p = [r.force, r.force * r.shift[0], r.force * r.shift[1]];
+            task.empty
+                .iter()
+                .enumerate()
+                .map(|(w, e)| e + (0..3).map(|k| floor[(w, k)] * p[k]).sum::<f64>())
+                .collect()
+        }
+        _ => task
+            .empty
+            .iter()
+            .zip(&run.reactions)
+            .map(|(e, r)| e + r)
+            .collect(),
+    };
+    for (w, t) in total.iter().enumerate().filter(|t| *t.1 < 0.0) {
+        work.findings.push(
+            Finding::new(
+                Severity::Error,
+                "wheel-lifts-off",
+                format!("{}: {}", r.run, task.wheels[w]),
+                "this payload at this place lifts the wheel off the floor: the structure does not stand as the model says",
+                "check the place of the payload, and the model's masses (`ballast`)",
+            )
+            .with_numbers(*t, 0.0),
+        );
+    }
+}
+
+/// A free place that the readings don't tell.
+fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
+    let (axes, _) = r.ellipse();
+    let room = spec.region.map_or(f64::INFINITY, |v| {
+        (v[0][1] - v[0][0]).max(v[1][1] - v[1][0]) / 2.0
+    });
+    if axes[0] > room {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "place-not-determined",
+                &r.run,
+                "the 95 % region of the place is as large as the region where the payload can be: the readings don't tell it",
+                "add gauges between the axles on both rails, or wheel forces",
+            )
+            .with_numbers(axes[0], room),
+        );
+    }
+}
+
+/// Moments of measured wheel forces against the place that the job states.
+fn elsewhere(
+    work: &mut Work,
+    task: &Task,
+    spec: &WeighSpec,
+    arms: &[[f64; 2]],
+    run: &PayloadRun,
+    r: &WeighedRun,
+) {
+    let sum: f64 = run.reactions.iter().sum();
+    let at = [0, 1].map(|k| {
+        run.reactions
+            .iter()
+            .zip(arms)
+            .map(|(r, a)| r * a[k])
+            .sum::<f64>()
+            / sum
+    });
+    let sd = [0, 1].map(|k| {
+        arms.iter()
+            .map(|a| ((a[k] - at[k]) * spec.reaction_sigma / sum).powi(2))
+            .sum::<f64>()
+            .sqrt()
+    });
+    let worst = (0..2)
+        .map(|k| (at[k] - r.shift[k]).abs() / sd[k])
+        .fold(0.0, f64::max);
+    if worst > REFUTED {
+        let unit = task.job.report_units.length.name;
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "payload-elsewhere",
+                &r.run,
+                format!(
+                    "the moments of the wheel forces put the payload at {}, {} {unit}, not where the job states it",
+                    short(task.nominal[0] + at[0]),
+                    short(task.nominal[1] + at[1])
+                ),
+                "correct the place, or let it free: position = \"free\"",
+            )
+            .with_numbers(worst, REFUTED),
+        );
+    }
+}
+
+/// Readings that can't be strain in the unit they are taken for, judged as `recover` does; the impossible ones become no reading.
+pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [PayloadRun]) {
+    let (Some(measured), Some(prepared)) = (&task.job.measured, &parts.prepared) else {
+        return;
+    };
+    let noise = measured.noise_microstrain * MICROSTRAIN;
+    // A run's noise is common to its gauges in that judgement: their mean.
+    let noise_factor = |r: &PayloadRun| {
+        let factors = r.sigma.iter().map(|s| (s / noise).powi(2));
+        let (sum, n) = factors
+            .filter(|f| f.is_finite())
+            .fold((0.0, 0.0_f64), |a, f| (a.0 + f, a.1 + 1.0));
+        if n > 0.0 { sum / n } else { 1.0 }
+    };
+    let read: Vec<Readings> = runs
+        .iter()
+        .filter(|r| !r.strain.is_empty())
+        .map(|r| Readings {
+            run: r.run.clone(),
+            strain: r.strain.clone(),
+            noise_factor: noise_factor(r),
+        })
+        .collect();
+    let kept = judged(work, measured, &prepared.sensitivity.gauges, &read);
+    let strained = runs.iter_mut().filter(|r| !r.strain.is_empty());
+    for (run, kept) in strained.zip(kept) {
+        run.strain = kept.strain;
+    }
+}
+
+/// What there is to say of every run, and of the gauges that carry nothing.
+pub(super) fn findings(
+    work: &mut Work,
+    task: &Task,
+    parts: &Parts,
+    runs: &[PayloadRun],
+    spec: &WeighSpec,
+    weighing: &Weighing,
+) {
+    work.findings.extend(weighing.unlike.iter().cloned());
+    for (r, run) in weighing.runs.iter().zip(runs) {
+        if let Some(refusal) = &r.refused {
+            work.findings.push(refused(task, &r.run, refusal));
+            continue;
+        }
+        let wide = (r.interval[1] - r.interval[0]) / r.force;
+        if r.interval[0] <= 0.0 {
+            work.findings.push(
+                Finding::new(
+                    Severity::Warning,
+                    "payload-vague",
+                    &r.run,
+                    format!(
+                        "the readings don't tell a payload from none: it is {} {} at most, with 97.5 %",
+                        short(r.interval[1]),
+                        task.job.report_units.force.name
+                    ),
+                    "nothing, where the structure is empty; else gauges where the payload strains it, longer means, or wheel forces",
+                )
+                .with_numbers(r.force / r.sigma, NORMAL_95),
+            );
+        } else if wide > VAGUE {
+            work.findings.push(
+                Finding::new(
+                    Severity::Warning,
+                    "payload-vague",
+                    &r.run,
+                    "the 95 % interval is wider than half the payload",
+                    "add gauges where the payload strains the structure, longer means, or wheel forces",
+                )
+                .with_numbers(wide, VAGUE),
+            );
+        }
+        lift_off(work, task, parts, run, r);
+        if spec.place == Place::Free {
+            place_told(work, spec, r);
+        } else if let (Some(arms), false) = (&parts.model.arms, run.reactions.is_empty()) {
+            elsewhere(work, task, spec, arms, run, r);
+        }
+    }
+    let rejected: Vec<&str> = weighing
+        .gauges
+        .iter()
+        .filter(|v| !v.used)
+        .map(|v| v.name.as_str())
+        .collect();
+    if !rejected.is_empty() {
+        // With most of the gauges left out the answer is that of a few which agree by chance.
+        let most = 2 * rejected.len() > weighing.gauges.len();
+        work.findings.push(
+            Finding::new(
+                if most { Severity::Error } else { Severity::Warning },
+                "gauges-not-used",
+                few(&rejected),
+                "these gauges disagree with the rest and carry nothing in the answer (reasons in by_gauge)",
+                "check their wiring, place and sign; where they are most of the gauges, the place of the payload and the model",
+            )
+            .with_numbers(rejected.len() as f64, 0.0),
+        );
+    }
+}

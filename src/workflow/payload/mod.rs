@@ -1,0 +1,149 @@
+//! `payload`: mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
+
+mod answer;
+mod faults;
+mod judge;
+mod model;
+mod readings;
+mod stated;
+mod task;
+
+pub use answer::{Ellipse, SingleGauge, Weighed, WeighedPayload};
+pub use readings::NetReading;
+
+use crate::estimate::{NORMAL_95, student_95};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::payload::{PayloadModel, PayloadRun, WeighSpec, weigh};
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::has_covariance;
+use crate::strain_chain::named_results::check_tables;
+use crate::units::factor;
+use model::Parts;
+use task::Task;
+
+/// Mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; neither strain nor wheel forces to weigh by.
+pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    check_tables(&work, job)?;
+    let Some(payload) = &job.payload else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "payload",
+            "the job has no [payload]",
+            "state what is looked for: [payload] grid = 9101, position = \"known\"",
+        )));
+    };
+    let use_strain = payload.use_strain && job.measured.is_some();
+    let use_reactions = payload.use_reactions && job.runs.is_some();
+    if !use_strain && !use_reactions {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            payload.line,
+            "payload.use",
+            "neither strain nor reactions to weigh by",
+            "add [measured] strain = \"strain.csv\" or [runs] file = \"runs.csv\", and name them in `use`",
+        )));
+    }
+    let si = job.report_units.mass.si / job.report_units.force.si;
+    let mut task = Task {
+        job,
+        payload,
+        weight_of_mass: payload.gravity_m_s2 * si,
+        force: factor(job.units, job.report_units.force),
+        length: factor(job.units, job.report_units.length),
+        nominal: [0.0; 2],
+        empty: Vec::new(),
+        wheels: Vec::new(),
+    };
+    let parts = model::model_of(&mut work, &mut task, use_strain)?;
+    let mut readings =
+        readings::runs_of(&mut work, &task, &parts.model, use_strain, use_reactions)?;
+    judge::readings(&mut work, &task, &parts, &mut readings.runs);
+    let runs = &readings.runs;
+    let spec = spec_of(&task, &parts, runs);
+    let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
+    judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
+    faults::search(&mut work, &task, &parts, runs, (&spec, &weighing));
+    let place = stated::place_contradicted(&task, &parts, runs, &spec, &weighing);
+    work.findings.extend(place);
+    let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;
+    work.findings.extend(mass);
+    let answer = answer::weighed(&task, parts, readings, &spec, weighing);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Weight that makes the gauge which the payload strains most read the largest of all readings; 1 where nothing does.
+fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
+    let readings = runs.iter().flat_map(|r| &r.strain).map(|e| e.abs());
+    let largest = readings.filter(|e| e.is_finite()).fold(0.0, f64::max);
+    let rows = 0..model.payload.nrows();
+    let strongest = rows.fold(0.0, |a: f64, g| a.max(model.payload[(g, 0)].abs()));
+    let weight = largest / strongest;
+    if weight > 0.0 && weight.is_finite() {
+        weight
+    } else {
+        1.0
+    }
+}
+
+/// A limit far above any payload, in weights of the largest reading.
+const FAR: f64 = 1.0e3;
+
+/// Error of the strain coefficients, 1 sd, of each and of the whole: as stated, or what the covariance of a calibrated S leaves. Few repeats
+/// know their own scatter badly: Student's factor over that of the normal distribution comes on top.
+fn model_rel(job: &Job, s: Option<&Sensitivity>) -> f64 {
+    let measured = job.measured.as_ref();
+    let stated = measured.map_or(0.0, |m| m.model_uncertainty_rel);
+    let calibrated = s.filter(|_| has_covariance(job));
+    match calibrated.and_then(|s| Some((s, s.uncertainty.as_ref()?))) {
+        Some((s, u)) => stated.hypot(s.relative_sd() * student_95(u.dof) / NORMAL_95),
+        None => stated,
+    }
+}
+
+fn spec_of(task: &Task, parts: &Parts, runs: &[PayloadRun]) -> WeighSpec {
+    let (job, model) = (task.job, &parts.model);
+    let s = parts.prepared.as_ref().map(|p| &p.sensitivity);
+    let reactions = runs.iter().flat_map(|r| &r.reactions).map(|r| r.abs());
+    let largest_reaction = reactions.filter(|r| r.is_finite()).fold(0.0, f64::max);
+    let stated = job
+        .runs
+        .as_ref()
+        .and_then(|r| Some(r.noise.force? * r.units.force.si / job.report_units.force.si))
+        .filter(|s| *s > 0.0);
+    let region = task.payload.region.as_deref().and_then(|r| match r {
+        [x, y, ..] => Some([x, y].map(|v| v.map(|v| v * task.length))),
+        _ => None,
+    });
+    // Without a region: between the wheels.
+    let between = model.arms.as_ref().map(|arms| {
+        [0, 1].map(|k| {
+            arms.iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |r, a| {
+                    [r[0].min(a[k]), r[1].max(a[k])]
+                })
+        })
+    });
+    WeighSpec {
+        place: task.payload.position,
+        model_rel: model_rel(job, s),
+        reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
+        largest: match (task.empty.iter().sum::<f64>(), largest_reaction) {
+            (empty, _) if empty > 0.0 => 10.0 * empty,
+            (_, r) if r > 0.0 => FAR * r.max(1.0),
+            // On supports: what the strongest gauge would need for the largest reading.
+            _ => FAR * by_strongest(model, runs),
+        },
+        region: region
+            .map(|r| [0, 1].map(|k| r[k].map(|v| v - task.nominal[k])))
+            .or(between),
+    }
+}

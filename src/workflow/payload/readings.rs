@@ -1,0 +1,477 @@
+//! What the runs read: net strain with its noise, changes of the wheel forces, known places.
+
+use super::task::Task;
+use crate::finding::{Finding, Severity, few};
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::finite;
+use crate::host::work::Work;
+use crate::job::{Measured, NamedFile};
+use crate::measured::faults::no_gauge_column;
+use crate::measured::means::{StrainFile, read_strain_file};
+use crate::measured::runs_file::{RunRow, read_runs};
+use crate::measured::strain_file::wanted_columns;
+use crate::measured::strain_table::{StrainRows, StrainTable};
+use crate::measured::zero::{no_zero_runs, note_columns, zeros_by_row};
+use crate::payload::{PayloadModel, PayloadRun, Place};
+use crate::reconcile::strain::WheelForces;
+use crate::recovery::net::{Net, WEAK, mean_of, net};
+use crate::units::MICROSTRAIN;
+use serde::Serialize;
+
+/// Noise of a wheel force where the job states none, of the largest.
+pub(super) const ASSUMED_NOISE: f64 = 0.01;
+
+/// What a gauge reads of a run, less its zero.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NetReading {
+    /// The run.
+    pub run: String,
+    /// The gauge.
+    pub name: String,
+    /// Reading.
+    pub net_microstrain: Option<f64>,
+    /// Its standard deviation.
+    pub sigma_microstrain: Option<f64>,
+    /// Their ratio.
+    pub signal_to_noise: Option<f64>,
+}
+
+/// What was read.
+pub(super) struct Readings {
+    /// The runs to be weighed.
+    pub runs: Vec<PayloadRun>,
+    /// What each gauge reads of each run, less its zero.
+    pub net: Vec<NetReading>,
+}
+
+/// The runs to be weighed.
+///
+/// # Errors
+/// Unreadable tables, runs without what the answer needs.
+pub(super) fn runs_of(
+    work: &mut Work,
+    task: &Task,
+    model: &PayloadModel,
+    use_strain: bool,
+    use_reactions: bool,
+) -> Result<Readings, Faults> {
+    let job = task.job;
+    let rows = match &job.runs {
+        Some(runs) => read_runs(&mut work.inputs, job, runs)?,
+        None => Vec::new(),
+    };
+    // Without wheels there is nothing to believe.
+    let asked = use_reactions && !(use_strain && task.wheels.is_empty());
+    let reactions = asked && believed(work, task, use_strain);
+    if !use_strain && !reactions {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            task.payload.line,
+            "payload.use",
+            "the wheel forces are computed, not measured, and there is no strain",
+            "give measured strain or wheel forces",
+        )));
+    }
+    let unloaded = unloaded(task, &rows)?;
+    let mut out: Vec<PayloadRun> = Vec::new();
+    let mut net = Vec::new();
+    if use_strain {
+        let read = strain(work, task, model)?;
+        if let Some(name) = &task.payload.unloaded
+            && rows.is_empty()
+            && !read.iter().any(|(run, _)| run == name)
+        {
+            return Err(no_unloaded_run(task, "the strain file", name));
+        }
+        net = net_rows(model, &read);
+        for (run, nets) in read {
+            if Some(&run) == task.payload.unloaded.as_ref() {
+                continue;
+            }
+            out.push(PayloadRun {
+                run,
+                strain: nets.iter().map(|n| n.value).collect(),
+                sigma: nets.iter().map(|n| n.sigma).collect(),
+                reactions: Vec::new(),
+                shift: [0.0; 2],
+            });
+        }
+    } else {
+        let others = rows
+            .iter()
+            .filter(|r| Some(&r.run) != task.payload.unloaded.as_ref());
+        out.extend(others.map(|r| PayloadRun {
+            run: r.run.clone(),
+            strain: Vec::new(),
+            sigma: Vec::new(),
+            reactions: Vec::new(),
+            shift: [0.0; 2],
+        }));
+    }
+    same_runs(work, task, &rows, &out)?;
+    let without = shifts_and_reactions(task, &rows, unloaded, reactions, &mut out);
+    if !without.is_empty() {
+        if model.floor.is_none() || !use_strain {
+            return Err(Faults::from(Fault::at(
+                &*job.file,
+                job.runs.as_ref().map_or(0, |r| r.line),
+                "runs",
+                format!("no wheel forces of every wheel for {}", few(&without)),
+                "add their rows and columns",
+            )));
+        }
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "run-without-wheel-forces",
+            few(&without),
+            "not every wheel was measured in these runs: all runs are weighed by strain on a flat floor",
+            "add their rows and columns to the runs file",
+        ));
+    } else if !reactions && model.floor.is_none() {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            task.payload.line,
+            "payload",
+            "a given S has no floor: without measured wheel forces the payload can't be told from them",
+            "give a [model], or measured wheel forces with `use = [\"strain\", \"reactions\"]`",
+        )));
+    }
+    if out.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "run",
+            "no run to be weighed",
+            "add rows to the strain or runs file",
+        )));
+    }
+    // Runs with and without wheel forces are weighed by the same rule.
+    if !without.is_empty() {
+        out.iter_mut().for_each(|r| r.reactions.clear());
+    }
+    Ok(Readings { runs: out, net })
+}
+
+/// Whether the runs file speaks of the runs that were read: of some of them, and of the place of all or of none of them.
+///
+/// # Errors
+/// A runs file of other runs.
+fn same_runs(
+    work: &mut Work,
+    task: &Task,
+    rows: &[RunRow],
+    read: &[PayloadRun],
+) -> Result<(), Faults> {
+    let Some(runs) = task.job.runs.as_ref().filter(|_| !rows.is_empty()) else {
+        return Ok(());
+    };
+    let row = |run: &PayloadRun| rows.iter().find(|row| row.run == run.run);
+    let names = |some: &mut dyn Iterator<Item = &PayloadRun>| {
+        let names: Vec<&str> = some.map(|r| r.run.as_str()).collect();
+        few(&names)
+    };
+    // The strain of a single record has the name of its file, which a runs file need not know.
+    if read.len() > 1 && !read.iter().any(|run| row(run).is_some()) {
+        let all = names(&mut read.iter());
+        return Err(Fault::at(
+            &*runs.file.given,
+            1,
+            "run",
+            format!("no row for any run of the strain file ({all})"),
+            "give the runs the same names in both files",
+        )
+        .into());
+    }
+    let is_placed = |run: &&PayloadRun| {
+        row(run).is_some_and(|r| r.payload_x_m.is_some() || r.payload_y_m.is_some())
+    };
+    let (placed, unplaced): (Vec<&PayloadRun>, Vec<&PayloadRun>) = read.iter().partition(is_placed);
+    if task.payload.position == Place::Known && !placed.is_empty() && !unplaced.is_empty() {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "payload-place-assumed",
+                names(&mut unplaced.iter().copied()),
+                "the runs file gives no place of the payload in these runs: it is taken at its nominal place",
+                "give payload_x and payload_y of every run",
+            )
+            .with_numbers(unplaced.len() as f64, 0.0),
+        );
+    }
+    Ok(())
+}
+
+/// Puts the runs' known places and, where asked for, wheel forces in; names the runs that lack wheel forces.
+fn shifts_and_reactions(
+    task: &Task,
+    rows: &[RunRow],
+    unloaded: Option<&RunRow>,
+    reactions: bool,
+    out: &mut [PayloadRun],
+) -> Vec<String> {
+    let job = task.job;
+    let metre = job.report_units.length.si;
+    let newton = job.report_units.force.si;
+    let mut without: Vec<String> = Vec::new();
+    for run in out {
+        let row = rows.iter().find(|r| r.run == run.run);
+        let known = task.payload.position == Place::Known;
+        if let Some(row) = row.filter(|_| known) {
+            for (k, at) in [row.payload_x_m, row.payload_y_m].into_iter().enumerate() {
+                if let Some(at) = at {
+                    run.shift[k] = at / metre - task.nominal[k];
+                }
+            }
+        }
+        if let (true, None, Some(at)) = (known, row, task.payload.nominal_x) {
+            run.shift[0] = at * task.length - task.nominal[0];
+        }
+        if reactions {
+            let of = |row: &RunRow| -> Vec<f64> {
+                task.wheels
+                    .iter()
+                    .map(|w| row.loads_si.get(w).map_or(f64::NAN, |v| v / newton))
+                    .collect()
+            };
+            let values = row.map_or_else(|| vec![f64::NAN; task.wheels.len()], of);
+            let values: Vec<f64> = match unloaded {
+                Some(u) => values.iter().zip(of(u)).map(|(v, u)| v - u).collect(),
+                None => values,
+            };
+            if values.iter().all(|v| v.is_finite()) {
+                run.reactions = values;
+            } else {
+                without.push(run.run.clone());
+            }
+        }
+    }
+    without
+}
+
+/// Whether the wheel forces count as evidence; says so where they don't.
+fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
+    let Some(runs) = &task.job.runs else {
+        return false;
+    };
+    if runs.wheel_forces == WheelForces::Measured {
+        if runs.noise.force.is_none_or(|s| s <= 0.0) {
+            work.findings.push(Finding::new(
+                Severity::Info,
+                "reaction-noise-assumed",
+                "runs.noise.force",
+                "the job does not say how well the wheel forces are measured: 1 % of the largest is taken",
+                "state [runs] noise = { force = 0.06 }",
+            ));
+        }
+        return true;
+    }
+    if use_strain {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "wheel-forces-computed",
+            "runs.wheel_forces",
+            "the wheel forces were computed for flat ground, not measured: they are no evidence of the payload and are left out",
+            "measure them, or weigh by strain",
+        ));
+    }
+    false
+}
+
+fn unloaded<'a>(task: &Task, rows: &'a [RunRow]) -> Result<Option<&'a RunRow>, Faults> {
+    let Some(name) = &task.payload.unloaded else {
+        return Ok(None);
+    };
+    match rows.iter().find(|r| r.run == *name) {
+        Some(row) => Ok(Some(row)),
+        None if task.job.runs.is_none() => Ok(None),
+        None => Err(no_unloaded_run(task, "the runs file", name)),
+    }
+}
+
+fn no_unloaded_run(task: &Task, file: &str, name: &str) -> Faults {
+    Faults::from(Fault::at(
+        &*task.job.file,
+        task.payload.line,
+        "payload.unloaded",
+        format!("{file} has no run `{name}`"),
+        "name the run without payload",
+    ))
+}
+
+/// Net strain of every run by gauge of the model; says which gauges are too weak.
+fn strain(
+    work: &mut Work,
+    task: &Task,
+    model: &PayloadModel,
+) -> Result<Vec<(String, Vec<Net>)>, Faults> {
+    let Some(measured) = &task.job.measured else {
+        return Ok(Vec::new());
+    };
+    let wanted = wanted_columns(&mut work.inputs, task.job);
+    let file = work.stage("read strain", |s| {
+        read_strain_file(&mut s.inputs, task.job, &measured.strain, &wanted)
+    })?;
+    note_columns(work, task.job, &measured.strain, (file.gauges(), &wanted));
+    let noise = measured.noise_microstrain * MICROSTRAIN;
+    let zero: Vec<Option<Net>> = match &measured.zero {
+        Some(named) => {
+            let zero = read_strain_file(&mut work.inputs, task.job, named, &wanted)?;
+            means(&zero, model, noise).into_iter().map(Some).collect()
+        }
+        None => vec![None; model.gauges.len()],
+    };
+    let all = means(&file, model, noise);
+    if all.iter().all(|v| !v.value.is_finite()) {
+        return Err(no_gauge_column(
+            task.job,
+            &measured.strain.given,
+            file.gauges(),
+            &model.gauges,
+        )
+        .into());
+    }
+    let runs = if let StrainFile::Table(table) = &file
+        && let StrainRows::Runs(names) = &table.rows
+    {
+        of_runs(work, task, model, measured, (table, names), zero)?
+    } else {
+        no_zero_runs(task.job, measured, &measured.strain.given)?;
+        vec![(stem(&measured.strain), nets(all.into_iter(), &zero))]
+    };
+    judge_net(work, task, model, &runs);
+    Ok(runs)
+}
+
+/// A row a run.
+fn of_runs(
+    work: &mut Work,
+    task: &Task,
+    model: &PayloadModel,
+    measured: &Measured,
+    (table, names): (&StrainTable, &[String]),
+    zero: Vec<Option<Net>>,
+) -> Result<Vec<(String, Vec<Net>)>, Faults> {
+    let noise = measured.noise_microstrain * MICROSTRAIN;
+    let readings = by_gauge(table, model);
+    // Without a zero file an unloaded run of the same table is the zero.
+    let own = task
+        .payload
+        .unloaded
+        .as_ref()
+        .and_then(|u| names.iter().position(|n| n == u))
+        .filter(|_| measured.zero.is_none());
+    let zero: Vec<Option<Net>> = match own {
+        Some(i) => readings
+            .iter()
+            .map(|v| Some(mean_of(&v[i..=i], noise)))
+            .collect(),
+        None => zero,
+    };
+    let followed = zeros_by_row(work, task.job, measured, table)?;
+    let of_run = |i: usize| -> Vec<Net> {
+        let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
+        let Some(z) = &followed else {
+            return nets(means, &zero);
+        };
+        let column = |g: &String| table.gauges.iter().position(|h| h == g);
+        let sigma = noise * (z.noise_factor[i] - 1.0).sqrt();
+        let zeros = model.gauges.iter().map(|g| Net {
+            value: column(g).map_or(f64::NAN, |c| z.zero[i][c] * MICROSTRAIN),
+            sigma,
+        });
+        means.zip(zeros).map(|(m, z)| net(m, Some(z))).collect()
+    };
+    let empty = |name: &String| measured.zero_runs.contains(name);
+    let runs = names.iter().enumerate().filter(|(_, n)| !empty(n));
+    Ok(runs.map(|(i, name)| (name.clone(), of_run(i))).collect())
+}
+
+/// Means over all rows of a strain file by gauge of the model, strain; NaN where the file has no column.
+fn means(file: &StrainFile, model: &PayloadModel, noise: f64) -> Vec<Net> {
+    let readings = file.readings();
+    let of = |gauge: &String| {
+        let column = file.gauges().iter().position(|h| h == gauge);
+        let series = column.and_then(|c| readings.get(c)).copied();
+        let net = series.unwrap_or_default().net(noise / MICROSTRAIN);
+        Net {
+            value: net.value * MICROSTRAIN,
+            sigma: net.sigma * MICROSTRAIN,
+        }
+    };
+    model.gauges.iter().map(of).collect()
+}
+
+fn nets(means: impl Iterator<Item = Net>, zero: &[Option<Net>]) -> Vec<Net> {
+    means.zip(zero).map(|(m, z)| net(m, *z)).collect()
+}
+
+fn stem(named: &NamedFile) -> String {
+    std::path::Path::new(&named.given)
+        .file_stem()
+        .map_or_else(|| named.given.clone(), |s| s.to_string_lossy().into_owned())
+}
+
+/// Readings of each gauge of the model by row, strain; NaN where the table has no column.
+fn by_gauge(table: &StrainTable, model: &PayloadModel) -> Vec<Vec<f64>> {
+    model
+        .gauges
+        .iter()
+        .map(|g| {
+            let column = table.gauges.iter().position(|h| h == g);
+            (0..table.n_rows())
+                .map(|i| {
+                    column
+                        .and_then(|c| table.row(i).get(c))
+                        .map_or(f64::NAN, |v| v * MICROSTRAIN)
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// The gauges too weak for the job in every run.
+fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String, Vec<Net>)]) {
+    let mut weak: Vec<&str> = Vec::new();
+    let mut best = f64::INFINITY;
+    for (g, name) in model.gauges.iter().enumerate() {
+        let loaded = runs
+            .iter()
+            .filter(|r| Some(&r.0) != task.payload.unloaded.as_ref());
+        let most = loaded
+            .map(|r| r.1[g].signal_to_noise())
+            .filter(|s| s.is_finite())
+            .fold(0.0, f64::max);
+        if most < WEAK {
+            weak.push(name);
+            best = best.min(most);
+        }
+    }
+    if !weak.is_empty() {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "gauges-too-weak",
+                few(&weak),
+                "the net reading does not stand out of the noise in any run: these gauges can say nothing of the payload",
+                "leave them out, or glue gauges where the payload strains the structure (`place`)",
+            )
+            .with_numbers(best, WEAK),
+        );
+    }
+}
+
+/// What each gauge reads of each run, less its zero.
+fn net_rows(model: &PayloadModel, runs: &[(String, Vec<Net>)]) -> Vec<NetReading> {
+    let of_run = |(run, nets): &(String, Vec<Net>)| -> Vec<NetReading> {
+        let gauges = model.gauges.iter().zip(nets);
+        gauges
+            .map(|(g, n)| NetReading {
+                run: run.clone(),
+                name: g.clone(),
+                net_microstrain: finite(n.value / MICROSTRAIN),
+                sigma_microstrain: finite(n.sigma / MICROSTRAIN),
+                signal_to_noise: finite(n.signal_to_noise()),
+            })
+            .collect()
+    };
+    runs.iter().flat_map(of_run).collect()
+}

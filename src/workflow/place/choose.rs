@@ -1,0 +1,495 @@
+//! The choice: single gauges through the tensors, or bundles (rosettes, pairs, unlike costs) within a budget.
+
+use super::misfits::fitting;
+use super::pool::Kind;
+use super::task::{Task, know_the_loads, position};
+use super::wanted::on_wanted;
+use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build};
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::Work;
+use crate::job::Optimality;
+use crate::linalg::spd;
+use crate::model::Vec3;
+use crate::placement::bundles::{BundleSpec, Bundles, place_bundles};
+use crate::placement::candidates::{Angles, Choice};
+use crate::placement::sites::axis_of;
+use crate::placement::wanted::value;
+use crate::placement::{Layout, PlaceError, Spec, condition, place};
+use std::collections::HashMap;
+
+/// A channel chosen.
+pub(super) struct Channel {
+    /// On the model.
+    pub gauge: Gauge,
+    /// Wiring, as a job names it.
+    pub bridge: &'static str,
+    /// Index of the site.
+    pub site: usize,
+    /// Row over its standard deviation, columns in the candidates' order.
+    pub row: Vec<f64>,
+    /// Standard deviation of its reading, microstrain.
+    pub sd: f64,
+    /// Change of its reading with its angle, microstrain a radian, rms over the expected loads.
+    pub turn: f64,
+    /// The angle of its first grid.
+    pub angle: f64,
+    /// The refusal of a grid that does not fit on the part there; its strain is then that at its middle.
+    pub misfit: Option<Fault>,
+}
+
+/// A layout chosen.
+pub(super) struct Chosen {
+    pub channels: Vec<Channel>,
+    pub log_det: f64,
+    pub upper_bound: f64,
+    pub efficiency_bound: f64,
+    pub proved: bool,
+    pub nodes: usize,
+    /// Its costs, where they were counted.
+    pub cost: Option<f64>,
+    /// The least condition number met, where that was looked for.
+    pub least_condition: Option<f64>,
+}
+
+/// Bundles at most: memory for their rows.
+const MOST_BUNDLES: usize = 4_000_000;
+
+/// Whether single gauges of one wiring are all there is to choose.
+pub(super) fn is_plain(task: &Task) -> bool {
+    let (c, p) = (&task.job.candidates, &task.job.placement);
+    c.bridges.len() == 1
+        && c.rosette.is_none()
+        && p.symmetric.is_none()
+        && p.costs.is_empty()
+        && p.budget.is_none()
+}
+
+/// Chooses; where the loads can't be separated, with the loads taken as known to their expected size, which a finding says.
+///
+/// # Errors
+/// Where nothing fits.
+pub(super) fn choose(
+    work: &mut Work,
+    task: &Task,
+    kinds: &[Kind],
+    spec: &mut Spec,
+) -> Result<Chosen, Faults> {
+    match choose_once(task, kinds, spec) {
+        Err(Refused::By(PlaceError::Singular { gauges, loads })) => {
+            know_the_loads(work, spec, gauges, loads);
+            // What is no plan needs no proof that it is the best: with fewer gauges than loads that may take minutes.
+            spec.proof = 0.0;
+            choose_once(task, kinds, spec)
+        }
+        other => other,
+    }
+    .map_err(|e| {
+        Faults::from(match e {
+            Refused::By(e) => task.refusal(&e),
+            Refused::Job(f) => f,
+        })
+    })
+}
+
+/// Why there is no choice.
+pub(super) enum Refused {
+    By(PlaceError),
+    Job(Fault),
+}
+
+/// Chooses as the spec says.
+pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+    if is_plain(task)
+        && let [kind] = kinds
+    {
+        let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
+        let least_condition = well_conditioned(task, kind, spec, &mut layout);
+        if let Some(gauges) = on_wanted(task, kind, spec, &layout).map_err(Refused::Job)? {
+            put_instead(kind, spec, &mut layout, gauges);
+        }
+        let n = layout.gauges.len();
+        let channels = layout
+            .gauges
+            .iter()
+            .enumerate()
+            .map(|(i, &c)| channel(task, kind, c, name(i, n)))
+            .collect::<Result<_, _>>()?;
+        return Ok(Chosen {
+            channels,
+            log_det: layout.log_det,
+            upper_bound: layout.upper_bound,
+            efficiency_bound: layout.efficiency_bound,
+            proved: layout.proved,
+            nodes: layout.nodes,
+            cost: None,
+            least_condition,
+        });
+    }
+    let job = task.job;
+    let single = |line, field, what, remedy| {
+        let wrong = format!("{what} single gauges of one wiring, without pairs, costs or a budget");
+        Refused::Job(Fault::at(&*job.file, line, field, wrong, remedy))
+    };
+    if job.placement.criterion == Optimality::Condition {
+        return Err(single(
+            job.placement.line,
+            "placement.criterion",
+            "the least condition number is looked for among",
+            "write criterion = \"D\", or leave those keys out",
+        ));
+    }
+    if job.candidates.wanted_elements.is_some() {
+        return Err(single(
+            job.candidates.line,
+            "candidates.wanted_elements",
+            "wanted elements are for",
+            "leave those keys out, or state the gauges of these elements as [[gauge]] and keep them",
+        ));
+    }
+    within_budget(task, kinds, spec)
+}
+
+/// Puts the layout of least condition number in place of the best one by D, where the job asks for it.
+fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) -> Option<f64> {
+    if task.job.placement.criterion != Optimality::Condition {
+        return None;
+    }
+    let k = task.cases.len();
+    // Gauges that stay read with the noise of all.
+    let noise = task.job.placement.noise_microstrain;
+    let mut base = vec![0.0; k * k];
+    for row in &task.kept_rows {
+        spd::add_outer(&mut base, row, noise * noise);
+    }
+    let found = condition::best(&kind.candidates, spec, layout, &base)?;
+    put_instead(kind, spec, layout, found.gauges)?;
+    Some(found.least)
+}
+
+/// Puts other gauges in the place of the best ones by D; the certificate then says how much of the largest determinant is left. `None` where
+/// they don't tell the loads apart, and nothing is changed.
+fn put_instead(kind: &Kind, spec: &Spec, layout: &mut Layout, gauges: Vec<Choice>) -> Option<()> {
+    let log_det = value(&kind.candidates, spec, &gauges)?;
+    let k = kind.candidates.n_loads() as f64;
+    layout.proved &= gauges == layout.gauges;
+    layout.log_det = log_det;
+    layout.efficiency_bound = ((log_det - layout.upper_bound) / k).exp();
+    layout.gauges = gauges;
+    Some(())
+}
+
+fn name(i: usize, n: usize) -> String {
+    let digits = n.to_string().len().max(2);
+    format!("P{:0digits$}", i + 1)
+}
+
+/// Returns the gauge of a choice as a job reads it from `gauges.csv`: by its element, side, direction and grid length.
+fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Channel, Refused> {
+    let job = task.job;
+    let refused = |wrong: String, remedy: &str| {
+        let (file, line) = (&*job.file, job.candidates.line);
+        Refused::Job(Fault::at(file, line, "candidates", wrong, remedy))
+    };
+    let no_place = || {
+        refused(
+            format!("gauge `{name}` has no place"),
+            "widen the candidates",
+        )
+    };
+    let site = choice.place as usize;
+    let &(shell, surface) = task.sites.get(site).ok_or_else(no_place)?;
+    let by_angle = GaugeSpec {
+        surface: Some(surface),
+        angle_rad: axis_of(kind.bridge, choice.angle),
+        grid_length: job.candidates.grid_length,
+        bridge: kind.bridge,
+        ..GaugeSpec::on(&*name, shell)
+    };
+    let corners = task.fields.corner_rows(job);
+    let build = |spec: &GaugeSpec| build(task.fields.model(), spec, corners);
+    let lay = |spec: &GaugeSpec| {
+        let (gauges, _) = build(spec).map_err(|e| {
+            let (wrong, remedy) = e.parts();
+            refused(wrong, remedy)
+        })?;
+        gauges.into_iter().next().ok_or_else(no_place)
+    };
+    let (by_angle, misfit) = fitting(job, by_angle, build);
+    let direction = lay(&by_angle)?.direction;
+    let by_direction = GaugeSpec {
+        direction: Some(direction),
+        angle_rad: 0.0,
+        ..by_angle
+    };
+    Ok(Channel {
+        gauge: Gauge {
+            direction,
+            ..lay(&by_direction)?
+        },
+        bridge: kind.bridge.name(),
+        site,
+        row: kind.candidates.row(choice),
+        sd: kind.candidates.sd(choice),
+        turn: kind.candidates.turn_rms(choice),
+        angle: choice.angle,
+        misfit,
+    })
+}
+
+/// What a bundle is: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.
+struct Described {
+    members: Vec<(usize, Choice)>,
+    rosette: bool,
+}
+
+/// Bundles of rows to choose from, with their costs, and what each is.
+struct DescribedBundles<'a> {
+    kinds: &'a [Kind],
+    bundles: Bundles,
+    described: Vec<Described>,
+}
+
+impl DescribedBundles<'_> {
+    fn add(&mut self, members: Vec<(usize, Choice)>, cost: f64, rosette: bool) {
+        let rows: Vec<Vec<f64>> = members
+            .iter()
+            .map(|(kind, c)| self.kinds[*kind].candidates.row(*c))
+            .collect();
+        let first = members.first().map_or(0, |m| m.1.place);
+        let last = members.last().map_or(0, |m| m.1.place);
+        self.bundles.add(&rows, cost, [first, last]);
+        self.described.push(Described { members, rosette });
+    }
+}
+
+/// Chooses among bundles within the budget.
+fn within_budget(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
+    let of_job = bundles_of(task, kinds)?;
+    let budget = task.job.placement.budget.unwrap_or(spec.gauges as f64);
+    let spec = BundleSpec {
+        budget,
+        spacing: spec.spacing,
+        prior: spec.prior.clone(),
+        criterion: spec.criterion.clone(),
+        tolerance: spec.tolerance,
+        effort: spec.effort,
+    };
+    let layout = place_bundles(&of_job.bundles, &spec).map_err(Refused::By)?;
+    let n = layout.bundles.len();
+    let mut channels = Vec::new();
+    for (i, &u) in layout.bundles.iter().enumerate() {
+        channels.extend(channels_of(task, kinds, &of_job.described[u], &name(i, n))?);
+    }
+    Ok(Chosen {
+        channels,
+        log_det: layout.log_det,
+        upper_bound: layout.upper_bound,
+        efficiency_bound: layout.efficiency_bound,
+        proved: false,
+        nodes: 0,
+        least_condition: None,
+        cost: Some(layout.bundles.iter().map(|&u| of_job.bundles.cost[u]).sum()),
+    })
+}
+
+/// Every bundle that the job's candidates allow: single gauges and rosettes at each site, in pairs where the layout is to be symmetric.
+fn bundles_of<'a>(task: &Task, kinds: &'a [Kind]) -> Result<DescribedBundles<'a>, Refused> {
+    let p = &task.job.placement;
+    let cost_of = |name: &str, default: f64| {
+        let own = p.costs.iter().find(|c| c.0 == name);
+        own.map_or(default, |c| c.1)
+    };
+    let positions: Vec<[f64; 3]> = task
+        .sites
+        .iter()
+        .map(|&s| position(task.fields, s).map_or([f64::NAN; 3], |x| [x.x, x.y, x.z]))
+        .collect();
+    let steps: Vec<f64> = match kinds.first().map(|k| k.candidates.angles()) {
+        Some(Angles::Grid(a)) => a.clone(),
+        _ => (0..12)
+            .map(|i| (15.0 * f64::from(i)).to_radians())
+            .collect(),
+    };
+    let mates = p.symmetric.map(|axis| Mirror::of(task, &positions, axis));
+    // Rosettes need a quarter kind to take their legs from.
+    let quarter = kinds.iter().position(|k| k.bridge == Bridge::Quarter);
+    let legs: Option<[f64; 3]> = task.job.candidates.rosette.map(|r| r.legs().map(|l| l.1));
+    let asked = &task.job.candidates.bridges;
+    few_enough(
+        task,
+        asked.len() * steps.len() + if legs.is_some() { 2 } else { 0 },
+    )?;
+    let mut bundles = DescribedBundles {
+        kinds,
+        bundles: Bundles::new(task.cases.len(), positions),
+        described: Vec::new(),
+    };
+    let at = |place: usize, angle: f64| Choice {
+        place: place as u32,
+        step: 0,
+        angle,
+    };
+    for site in 0..task.sites.len() {
+        let mate = match &mates {
+            Some(m) => match m.mate(site) {
+                // Of a pair the first is taken; one without a partner can't be in a symmetric layout.
+                Some(other) if other >= site => Some(other),
+                _ => continue,
+            },
+            None => None,
+        };
+        let paired = |kind: usize, angle: f64| -> Vec<(usize, Choice)> {
+            let mut out = vec![(kind, at(site, angle))];
+            if let Some(other) = mate.filter(|m| *m != site)
+                && let Some(m) = &mates
+            {
+                out.push((kind, at(other, m.angle(task, site, other, angle))));
+            }
+            out
+        };
+        for (n, kind) in kinds.iter().enumerate() {
+            if kind.bridge == Bridge::Quarter && !asked.contains(&Bridge::Quarter) {
+                continue;
+            }
+            for &angle in &steps {
+                let members = paired(n, angle);
+                let cost = cost_of(kind.bridge.name(), 1.0) * members.len() as f64;
+                bundles.add(members, cost, false);
+            }
+        }
+        if let (Some(q), Some(legs)) = (quarter, legs) {
+            // Its orientation matters little: two are compared.
+            for turn in [0.0, 0.5 * legs[1]] {
+                let members: Vec<(usize, Choice)> =
+                    legs.iter().flat_map(|l| paired(q, turn + l)).collect();
+                let cost = cost_of("rosette", 3.0) * members.len() as f64 / 3.0;
+                bundles.add(members, cost, true);
+            }
+        }
+    }
+    Ok(bundles)
+}
+
+/// Refuses candidates whose bundles, so many a site, would not fit into memory.
+fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
+    let many = task.sites.len() * a_site;
+    if many <= MOST_BUNDLES {
+        return Ok(());
+    }
+    Err(Refused::Job(Fault::at(
+        &*task.job.file,
+        task.job.candidates.line,
+        "candidates",
+        format!("{many} gauges, pairs and rosettes to choose from, more than {MOST_BUNDLES}"),
+        "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
+    )))
+}
+
+/// Channels of a bundle, named after it: `P01`, the sides of a pair `P01L` and `P01R`, the legs of a rosette `P01.a` to `P01.c`.
+fn channels_of(
+    task: &Task,
+    kinds: &[Kind],
+    bundle: &Described,
+    base: &str,
+) -> Result<Vec<Channel>, Refused> {
+    let mut channels = Vec::new();
+    for (m, (kind, choice)) in bundle.members.iter().enumerate() {
+        let leg = m % 3;
+        let name = match (bundle.rosette, bundle.members.len()) {
+            (true, 3) => format!("{base}.{}", ["a", "b", "c"][leg]),
+            (true, _) => format!("{base}{}.{}", ["L", "R"][m % 2], ["a", "b", "c"][m / 2]),
+            (false, 2) => format!("{base}{}", ["L", "R"][m]),
+            (false, _) => base.to_owned(),
+        };
+        channels.push(channel(task, &kinds[*kind], *choice, name)?);
+    }
+    Ok(channels)
+}
+
+/// Partners of sites at a plane through the origin normal to an axis.
+struct Mirror {
+    axis: usize,
+    mate: Vec<Option<usize>>,
+}
+
+impl Mirror {
+    fn of(task: &Task, positions: &[[f64; 3]], axis: usize) -> Self {
+        let size = positions
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |a, v| a.max(v.abs()));
+        // Partners of a mirrored mesh agree to the deck's digits.
+        let cell = (1e-3 * size).max(f64::MIN_POSITIVE);
+        let key = |x: [f64; 3]| x.map(|v| (v / cell).round() as i64);
+        let mut at: HashMap<[i64; 3], Vec<usize>> = HashMap::new();
+        for (i, x) in positions.iter().enumerate() {
+            at.entry(key(*x)).or_default().push(i);
+        }
+        let outward = |site: usize| -> Option<Vec3> {
+            let g = probe(task, site, 0.0)?;
+            Some(match g.surface {
+                crate::fe::strain_tensor::Surface::Top => g.normal,
+                crate::fe::strain_tensor::Surface::Bottom => -g.normal,
+            })
+        };
+        let mate = positions
+            .iter()
+            .enumerate()
+            .map(|(i, x)| {
+                let mut y = *x;
+                y[axis] = -y[axis];
+                let mut normal = outward(i)?;
+                normal[axis] = -normal[axis];
+                let near = key(y);
+                let around = (0..27).flat_map(|n| {
+                    let step = [n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1];
+                    let cell: [i64; 3] = std::array::from_fn(|c| near[c] + step[c]);
+                    at.get(&cell).cloned().unwrap_or_default()
+                });
+                around
+                    .filter(|&j| outward(j).is_some_and(|m| m.dot(&normal) > 0.9))
+                    .min_by(|&a, &b| {
+                        let far = |j: usize| crate::placement::spacing::distance(positions[j], y);
+                        far(a).total_cmp(&far(b)).then(a.cmp(&b))
+                    })
+            })
+            .collect();
+        Self { axis, mate }
+    }
+
+    fn mate(&self, site: usize) -> Option<usize> {
+        self.mate.get(site).copied().flatten()
+    }
+
+    /// The angle on the partner's element of the mirrored direction.
+    fn angle(&self, task: &Task, site: usize, other: usize, angle: f64) -> f64 {
+        let Some(here) = probe(task, site, angle) else {
+            return angle;
+        };
+        let mut d = here.direction;
+        d[self.axis] = -d[self.axis];
+        let frame = (
+            probe(task, other, 0.0),
+            probe(task, other, std::f64::consts::FRAC_PI_2),
+        );
+        match frame {
+            (Some(x), Some(y)) => d.dot(&y.direction).atan2(d.dot(&x.direction)),
+            _ => angle,
+        }
+    }
+}
+
+/// A single grid at a site.
+fn probe(task: &Task, site: usize, angle: f64) -> Option<Gauge> {
+    let (shell, surface) = *task.sites.get(site)?;
+    let spec = GaugeSpec {
+        surface: Some(surface),
+        angle_rad: angle,
+        ..GaugeSpec::on("probe", shell)
+    };
+    build(task.fields.model(), &spec, CornerRows::Absent)
+        .ok()?
+        .0
+        .into_iter()
+        .next()
+}

@@ -1,0 +1,90 @@
+//! Places that are chosen and where a grid does not fit on the part.
+
+use super::task::Task;
+use crate::finding::Finding;
+use crate::gauge::{Gauge, GaugeError, GaugeSpec};
+use crate::host::fault::Fault;
+use crate::job::Job;
+use std::collections::BTreeSet;
+
+/// A gauge on the model, or why there is none.
+type Built = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
+
+/// Returns a gauge as it can be built, at a point where its grid is longer than the part, and the fault of a grid that does not fit.
+pub(super) fn fitting(
+    job: &Job,
+    spec: GaugeSpec,
+    build: impl Fn(&GaugeSpec) -> Built,
+) -> (GaugeSpec, Option<Fault>) {
+    let built = build(&spec);
+    let misfit = misfit(job, &built);
+    match built {
+        Err(GaugeError::GridBeyondPart { .. }) => {
+            let grid_length = 0.0;
+            let at_point = GaugeSpec {
+                grid_length,
+                ..spec
+            };
+            (at_point, misfit)
+        }
+        _ => (spec, misfit),
+    }
+}
+
+/// Returns the fault of a grid that is longer than the part or that reaches past its edge.
+fn misfit(job: &Job, built: &Built) -> Option<Fault> {
+    let (wrong, remedy) = match built {
+        Err(e @ GaugeError::GridBeyondPart { element, part, .. }) => (
+            e.parts().0,
+            format!(
+                "lower [candidates] `grid_length` to {part:.4} or less, or add element {element} to [candidates] `exclude_elements`"
+            ),
+        ),
+        Ok((_, findings)) => {
+            let off = findings.iter().find(|f| f.code == "gauge-off-structure")?;
+            let remedy = format!(
+                "lower [candidates] `grid_length`, or keep gauges away from edges: [candidates] clear_of = {{ edges = {} }}",
+                0.5 * job.candidates.grid_length
+            );
+            (off.message.clone(), remedy)
+        }
+        Err(_) => return None,
+    };
+    let line = job.candidates.line;
+    Some(Fault::at(
+        &*job.file,
+        line,
+        "candidates.grid_length",
+        wrong,
+        remedy,
+    ))
+}
+
+/// Leaves out the sites of chosen gauges whose grid does not fit, and returns the refusal of one of them; `None` where every grid fits. Of each
+/// gauge are given its site, its element and its refusal.
+///
+/// # Errors
+/// The refusal of such a gauge, where no further round is allowed or its element is wanted.
+pub(super) fn leave_out<'a>(
+    task: &mut Task,
+    chosen: impl Iterator<Item = (usize, u32, Option<&'a Fault>)>,
+    is_allowed: bool,
+) -> Result<Option<Fault>, Fault> {
+    let wanted = task.job.candidates.wanted_elements.as_ref();
+    let mut out = BTreeSet::new();
+    let mut last = None;
+    for (site, element, misfit) in chosen {
+        let Some(misfit) = misfit else {
+            continue;
+        };
+        if !is_allowed || wanted.is_some_and(|w| w.contains(element)) {
+            return Err(misfit.clone());
+        }
+        out.insert(site);
+        last = Some(misfit.clone());
+    }
+    let mut site = 0..task.sites.len();
+    task.sites
+        .retain(|_| site.next().is_some_and(|i| !out.contains(&i)));
+    Ok(last)
+}

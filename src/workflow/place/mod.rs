@@ -1,0 +1,245 @@
+//! `place`: gauges chosen from the candidates, with the certificate, beside the installed ones where the job has some.
+
+mod choose;
+mod curve;
+mod installed;
+mod judge;
+mod known;
+mod misfits;
+mod outcome;
+mod pool;
+mod region;
+mod sheet;
+mod task;
+mod wanted;
+
+pub use outcome::*;
+pub(super) use pool::{angles, column_order, scales, scatter};
+pub(super) use region::allowed_sites;
+
+use crate::finding::{Finding, Severity};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Outcome, StatedUnits, finite};
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::placement::quality::{judge_rows, reserve};
+use crate::recovery::check_planned;
+use crate::sensitivity::{Sensitivity, check_separability, common_shells};
+use crate::strain_chain::named_results::check_tables;
+use crate::strain_chain::{
+    Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, mesh_errors,
+    read_fields, without_strain,
+};
+use crate::workflow::recover::listed;
+
+/// Gauges for the loads of a job: chosen from its candidates with a certificate, beside the installed ones where it has some.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; a layout that nothing fits.
+pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    check_tables(&work, job)?;
+    let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
+    let answer = placed(&mut work, job, &fields)?;
+    let answer = answer.with(fields, job);
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Layouts that are looked for at most until every grid fits: each leaves out the places of the one before where a grid does not fit.
+const ROUNDS: usize = 20;
+
+/// The layout on the model.
+fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Faults> {
+    let cases = fields.load_cases(job);
+    let (common, findings) = common_shells(&cases);
+    work.findings.extend(findings);
+    let (sites, cleared) = region::allowed(job, fields, &common)?;
+    let k = cases.len();
+    let scales = scales(work, &cases, &common);
+    let given = known::given(work, job)?;
+    let mut task = task::task(job, fields, cases, scales, sites, given);
+    task.cleared = cleared;
+    task.keep(work)?;
+    let (ordered, scales) = task.nuisance_first();
+    let errors = task.errors_nuisance_first();
+    let mut spec = task.spec(work);
+    let places = task.sites.len();
+    let (mut misfit, mut rounds): (Option<Fault>, usize) = (None, 0);
+    let (kinds, chosen) = loop {
+        let kinds = work.stage("candidates", |_| {
+            let angles = angles(job.candidates.angles);
+            let strain = (ordered.as_slice(), errors.as_slice());
+            pool::kinds(job, fields.model(), &task.sites, strain, &scales, &angles)
+        });
+        let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec));
+        work.go_on()?;
+        let chosen = match (chosen, misfit.take()) {
+            (Ok(chosen), _) => chosen,
+            // Too few places are left.
+            (Err(_), Some(misfit)) => return Err(misfit.into()),
+            (Err(refused), None) => return Err(refused),
+        };
+        let each = chosen.channels.iter();
+        let each = each.map(|c| (c.site, c.gauge.element, c.misfit.as_ref()));
+        misfit = misfits::leave_out(&mut task, each, rounds < ROUNDS)?;
+        if misfit.is_none() {
+            break (kinds, chosen);
+        }
+        rounds += 1;
+    };
+    if task.sites.len() < places {
+        work.notes.push(format!(
+            "{} places were chosen and left out: a grid of {} does not fit on the part there",
+            places - task.sites.len(),
+            job.candidates.grid_length
+        ));
+    }
+    let rows: Vec<Vec<f64>> = chosen.channels.iter().map(|c| c.row.clone()).collect();
+    let Some(quality) =
+        judge_rows(&rows, &spec.prior, k).map(|q| judge::in_job_order(q, &task.order))
+    else {
+        let singular = crate::placement::PlaceError::Singular {
+            gauges: spec.gauges,
+            loads: k,
+        };
+        return Err(task.refusal(&singular).into());
+    };
+    let validation = reserved(work, &task, &rows, &spec.prior)?;
+    let chosen_gauges = chosen.channels.iter().map(|c| c.gauge.clone());
+    let all: Vec<_> = chosen_gauges.chain(task.kept.clone()).collect();
+    let s = task
+        .s_of(&all)
+        .map_err(|missing| without_strain(job, &missing))?;
+    let mesh_error = mesh_errors(&all, &s, &task.errors);
+    work.findings
+        .extend(coarse_at_gauges(&all, &mesh_error, fields.mesh_left()));
+    let listed = listed(job, &s)?;
+    let units = &listed.units[..k];
+    let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
+    let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
+        Some(kind) => installed::installed(work, &task, &kind.candidates, &spec)?,
+        None => None,
+    };
+    work.findings.extend(check_separability(&s.unconditioned()));
+    judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
+    let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
+    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &quality, &task.scales);
+    let in_job_units = load_sigma.iter().zip(units);
+    let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
+    let planned = check_planned(&s, &planned);
+    work.findings
+        .extend(planned.map(|f| judge::with_unit_loads(job, f)));
+    let how_many = if job.placement.curve.is_empty() {
+        Vec::new()
+    } else {
+        let (points, left_out) =
+            work.stage("curve", |_| curve::curve(&task, &kinds, &spec, &listed));
+        work.go_on()?;
+        work.findings.extend(curve::incomplete(&left_out));
+        points
+    };
+    let reserved = validation.iter().map(|(i, inflation)| {
+        let c = &chosen.channels[*i];
+        Reserved {
+            name: c.gauge.name.clone(),
+            prediction_sd_microstrain: c.sd * inflation,
+        }
+    });
+    Ok(LayoutOf {
+        reserved: reserved.collect(),
+        candidates: Candidates {
+            places: task.sites.len(),
+            rows: kinds.iter().map(|k| k.candidates.n_rows()).sum(),
+        },
+        load_sigma,
+        worst_loss: WorstLoss {
+            gauge: gauges[quality.worst].gauge.name.clone(),
+            leverage: quality.leverage[quality.worst],
+            efficiency_left: quality.worst_loss,
+        },
+        kept: task.kept.iter().map(|g| g.name.clone()).collect(),
+        mesh_error,
+        sensitivity: s,
+        gauges,
+        chosen,
+        installed,
+        how_many,
+    })
+}
+
+/// A layout before model and job are handed to the outcome.
+struct LayoutOf {
+    gauges: Vec<PlacedGauge>,
+    candidates: Candidates,
+    chosen: choose::Chosen,
+    kept: Vec<String>,
+    mesh_error: Vec<GaugeMeshError>,
+    sensitivity: Sensitivity,
+    load_sigma: Vec<LoadSigma>,
+    worst_loss: WorstLoss,
+    reserved: Vec<Reserved>,
+    installed: Option<Installed>,
+    how_many: Vec<CurvePoint>,
+}
+
+impl LayoutOf {
+    fn with(self, fields: Fields, job: &Job) -> Placed {
+        Placed {
+            gauges: self.gauges,
+            candidates: self.candidates,
+            criterion: job.placement.criterion.name(),
+            log_det: self.chosen.log_det,
+            upper_bound: self.chosen.upper_bound,
+            efficiency_bound: self.chosen.efficiency_bound,
+            proved: self.chosen.proved,
+            nodes: self.chosen.nodes,
+            cost: self.chosen.cost,
+            kept: self.kept,
+            mesh_error: self.mesh_error,
+            conditioning: Conditioning::of(&self.sensitivity),
+            least_condition_number_scaled: self.chosen.least_condition.and_then(finite),
+            load_sigma: self.load_sigma,
+            worst_loss: self.worst_loss,
+            reserved: self.reserved,
+            installed: self.installed,
+            how_many: self.how_many,
+            sensitivity: self.sensitivity,
+            fields,
+            job: job.clone(),
+        }
+    }
+}
+
+/// Gauges reserved for validation: index and prediction's standard deviation over the reading's.
+///
+/// # Errors
+/// Where the rest would not separate the loads.
+fn reserved(
+    work: &mut Work,
+    task: &task::Task,
+    rows: &[Vec<f64>],
+    prior: &[f64],
+) -> Result<Vec<(usize, f64)>, Faults> {
+    let n = task.job.placement.reserve;
+    if n == 0 {
+        return Ok(Vec::new());
+    }
+    let Some(found) = reserve(rows, prior, task.cases.len(), n) else {
+        return Err(Faults::from(Fault::at(
+            &*task.job.file,
+            task.job.placement.line,
+            "placement.reserve",
+            format!("{} gauges less {n} do not separate the loads", rows.len()),
+            "reserve fewer, or place more",
+        )));
+    };
+    work.findings.push(Finding::new(
+        Severity::Info,
+        "gauges-reserved",
+        "placement.reserve",
+        format!("{n} gauges are marked for validation: load sigmas and condition number count all gauges"),
+        "keep the column `role` of gauges.csv: `recover` compares these gauges with its prediction",
+    ));
+    Ok(found)
+}

@@ -1,0 +1,218 @@
+//! What `place` answers.
+
+use crate::fe::strain_tensor::Surface;
+use crate::gauge::Gauge;
+use crate::host::outcome::Answer;
+use crate::job::Job;
+use crate::placement::Role;
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::{Conditioning, Fields, GaugeMeshError, LoadSigma};
+use serde::Serialize;
+
+/// A layout of gauges with its certificate.
+#[derive(Serialize)]
+pub struct Placed {
+    /// The gauges chosen.
+    pub gauges: Vec<PlacedGauge>,
+    /// What they were chosen from.
+    pub candidates: Candidates,
+    /// What was optimised, as a job names it.
+    pub criterion: &'static str,
+    /// ln det(S'S), rows over their standard deviations.
+    pub log_det: f64,
+    /// No layout of these candidates has more.
+    pub upper_bound: f64,
+    /// Certified: at least this share of the best possible, 0 to 1.
+    pub efficiency_bound: f64,
+    /// Whether it is proved the best.
+    pub proved: bool,
+    /// Nodes of the proof.
+    pub nodes: usize,
+    /// Its costs, where they were counted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cost: Option<f64>,
+    /// Gauges that stay.
+    pub kept: Vec<String>,
+    /// By gauge, what the deck's mesh makes, where the job asks for it: the layout is without it, and what may be left of it is weighed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh_error: Vec<GaugeMeshError>,
+    /// Rank and condition numbers of S.
+    #[serde(flatten)]
+    pub conditioning: Conditioning,
+    /// The least condition number met, where that was looked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub least_condition_number_scaled: Option<f64>,
+    /// One standard deviation of each load, report units.
+    pub load_sigma: Vec<LoadSigma>,
+    /// The gauge whose loss costs most.
+    pub worst_loss: WorstLoss,
+    /// Gauges kept for validation.
+    pub reserved: Vec<Reserved>,
+    /// The gauges that the job has, by the same measures.
+    pub installed: Option<Installed>,
+    /// What other numbers of gauges give, where the job asks for it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub how_many: Vec<CurvePoint>,
+    /// S of the chosen gauges and of those that stay.
+    #[serde(skip)]
+    pub sensitivity: Sensitivity,
+    /// Model and strain fields.
+    #[serde(skip)]
+    pub fields: Fields,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Placed {
+    const COMMAND: &'static str = "place";
+}
+
+/// How many candidates there were.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Candidates {
+    /// Surfaces of elements.
+    pub places: usize,
+    /// Rows: places times angles and wirings.
+    pub rows: usize,
+}
+
+/// A gauge that placement chose.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlacedGauge {
+    /// Its name.
+    pub name: String,
+    /// Element id.
+    pub element: u32,
+    /// `top` or `bottom`.
+    pub surface: &'static str,
+    /// Where it sits, basic frame.
+    pub position: [f64; 3],
+    /// Unit vector of its axis, basic frame.
+    pub direction: [f64; 3],
+    /// From the element x axis, right-handed about the element normal.
+    pub angle_deg: f64,
+    /// As the technician sees that side: on the bottom it turns the other way.
+    pub angle_seen_deg: f64,
+    /// Its leverage.
+    pub leverage: f64,
+    /// Sum of its strains under the expected loads, microstrain.
+    pub expected_microstrain: f64,
+    /// Wiring.
+    pub bridge: &'static str,
+    /// What it is for.
+    pub role: Role,
+    /// Standard deviation of its reading, microstrain.
+    pub sd_microstrain: f64,
+    /// The error of its angle, degrees, that moves some load by 5 % of its expected size; `None`: none does.
+    pub angle_budget_deg: Option<f64>,
+    /// The same for its place, model units.
+    pub position_budget: Option<f64>,
+    /// By load, its strain when that load has its expected size.
+    pub strain_by_load: Vec<StrainOfLoad>,
+    /// Nearest reference point, and the way from there, basic frame.
+    #[serde(skip)]
+    pub reference: Option<(String, [f64; 3])>,
+    /// As laid onto the model.
+    #[serde(skip)]
+    pub gauge: Gauge,
+}
+
+impl PlacedGauge {
+    /// The angle as the technician sees that side.
+    pub(super) fn seen_deg(gauge: &Gauge) -> f64 {
+        let deg = gauge.angle_rad.to_degrees();
+        match gauge.surface {
+            Surface::Top => deg,
+            Surface::Bottom if deg == 90.0 => deg,
+            Surface::Bottom => -deg,
+        }
+    }
+}
+
+/// What a gauge reads of one load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StrainOfLoad {
+    /// Load.
+    pub name: String,
+    /// Strain.
+    pub microstrain: f64,
+}
+
+/// What the loss of one gauge costs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstLoss {
+    /// The gauge.
+    pub gauge: String,
+    /// Its leverage.
+    pub leverage: f64,
+    /// Efficiency left without it, 0 to 1.
+    pub efficiency_left: f64,
+}
+
+/// A gauge kept for validation.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Reserved {
+    /// Its name.
+    pub name: String,
+    /// Standard deviation of what the others predict for it, its own noise included.
+    pub prediction_sd_microstrain: f64,
+}
+
+/// The layout that the job has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Installed {
+    /// How many gauges.
+    pub gauges: usize,
+    /// Rank of their S, where they don't separate the loads.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rank: Option<usize>,
+    /// How good they are, where they do.
+    #[serde(flatten)]
+    pub quality: Option<InstalledQuality>,
+}
+
+/// How good the installed gauges are.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct InstalledQuality {
+    /// ln det(S'S) with noise alone.
+    pub log_det: Option<f64>,
+    /// No layout of as many gauges has more.
+    pub upper_bound: Option<f64>,
+    /// S in strain per job unit.
+    pub condition_number: Option<f64>,
+    /// Columns times `expected`, else of unit norm.
+    pub condition_number_scaled: Option<f64>,
+    /// One standard deviation of each load, report units.
+    pub load_sigma: Vec<LoadSigma>,
+    /// The gauge whose loss costs most.
+    pub worst_loss: WorstLoss,
+}
+
+/// What a number of gauges gives.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CurvePoint {
+    /// How many.
+    pub gauges: usize,
+    /// Certified share of the best possible layout of that many.
+    pub efficiency_bound: f64,
+    /// Scaled condition number.
+    pub condition_number_scaled: Option<f64>,
+    /// Efficiency left after the worst loss.
+    pub worst_loss: f64,
+    /// By load.
+    pub load_sigma: Vec<BoughtSigma>,
+}
+
+/// One standard deviation of a load, and what the last gauge bought.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BoughtSigma {
+    /// Load.
+    pub name: String,
+    /// One standard deviation, report units.
+    pub sigma: f64,
+    /// Report unit.
+    pub unit: String,
+    /// How much less than with the number before, a gauge.
+    pub less_by_a_gauge: Option<f64>,
+}

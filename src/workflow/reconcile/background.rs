@@ -1,0 +1,109 @@
+//! What is never exact: where and at what angle gauges sit, and the mesh.
+
+use super::influence::influence;
+use super::model_part::ModelPart;
+use crate::fe::Solution;
+use crate::gauge::{Gauge, moved};
+use crate::job::Job;
+use crate::model::Model;
+use crate::reconcile::strain::Scatter;
+
+/// A technician glues to half a degree, 1 sd, where the job states no tolerance. Of places nothing is assumed: near a bracket a
+/// millimetre is worth several percent, and a floor that high hides everything else.
+const ANGLE_DEG: f64 = 0.5;
+/// Of what halving the mesh changed, this much may still be to come, 1 sd. Where strain is smooth a third of it is (errors fall with the
+/// square of the width), at a point load or a corner as much again.
+const STILL_TO_COME: f64 = 1.0;
+/// The same where the mesh was divided round the gauges alone, which sees two thirds of the whole in open rails; single coefficients err besides
+/// as where no finer mesh was solved.
+const STILL_TO_COME_IN_PART: f64 = 1.5;
+/// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
+pub(super) const ENTRY_SHARE: f64 = 0.5;
+
+/// A direction of a gauge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Axis {
+    Along,
+    Across,
+}
+
+/// Change of the influence matrix per mm that a gauge moves, zero where the mesh does not tell.
+pub(super) fn gradients(
+    job: &Job,
+    model: &Model,
+    gauges: &[Gauge],
+    solution: &Solution,
+    n_columns: usize,
+    axis: Axis,
+) -> Vec<f64> {
+    let mm = 1e-3 / job.units.length_m();
+    let mut out = Vec::with_capacity(gauges.len() * n_columns);
+    for g in gauges {
+        let direction = match axis {
+            Axis::Along => g.direction,
+            Axis::Across => g.normal.cross(&g.direction),
+        };
+        let row = moved(g, model, direction)
+            .map(|m| influence(job, model, &[m], solution, n_columns))
+            .filter(|row| row.iter().all(|v| v.is_finite()));
+        match row {
+            Some(row) => out.extend(row.iter().map(|v| v * mm)),
+            None => out.extend(std::iter::repeat_n(0.0, n_columns)),
+        }
+    }
+    out
+}
+
+/// Errors of one standard deviation: angle, place, mesh. `own` is the influence on the analyst's own mesh where a finer one was solved, with
+/// whether that is finer everywhere; `per_mm` the gradients along and across. None for a model that is stated to be exact.
+pub(super) fn background(
+    job: &Job,
+    part: &ModelPart,
+    own: Option<(&Vec<f64>, bool)>,
+    per_mm: [&Vec<f64>; 2],
+) -> Vec<Scatter> {
+    let model_rel = job
+        .measured
+        .as_ref()
+        .map_or(0.0, |m| m.model_uncertainty_rel);
+    if model_rel == 0.0 {
+        return Vec::new();
+    }
+    let reconcile = job.reconcile.as_ref();
+    let placement = Some(job.placement.angle_tolerance_deg).filter(|a| *a > 0.0);
+    let angle = reconcile.and_then(|r| r.angle_tolerance_deg).or(placement);
+    let angle = angle.unwrap_or(ANGLE_DEG).to_radians();
+    let place = reconcile
+        .and_then(|r| r.position_tolerance_mm)
+        .unwrap_or(0.0);
+    // Along the axis of a gauge the derivative by its angle is the shear there.
+    let turned = part
+        .tensors
+        .iter()
+        .flatten()
+        .map(|t| angle * t[2])
+        .collect();
+    let mut out = vec![Scatter::Together(turned)];
+    for gradient in per_mm {
+        out.push(Scatter::Together(
+            gradient.iter().map(|v| place * v).collect(),
+        ));
+    }
+    if let Some((own, is_whole)) = own {
+        // The remainder has the pattern of what was found: loads that cancel in the strain cancel in its error.
+        let still = match is_whole {
+            true => STILL_TO_COME,
+            false => STILL_TO_COME_IN_PART,
+        };
+        let rest = part.influence.iter().zip(own);
+        out.push(Scatter::Together(
+            rest.map(|(a, own)| still * (a - own)).collect(),
+        ));
+    }
+    if own.is_none_or(|(_, is_whole)| !is_whole) {
+        let entries = part.influence.iter();
+        let each = entries.map(|a| ENTRY_SHARE * model_rel * a).collect();
+        out.push(Scatter::Single(each));
+    }
+    out
+}

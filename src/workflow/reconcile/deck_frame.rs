@@ -1,0 +1,259 @@
+//! The static frame of a job with a deck: signatures of loads, masses, stiffness and gauge angles from the built-in solver.
+
+use super::background::{Axis, ENTRY_SHARE, background, gradients};
+use super::deck_loads::SignatureLoads;
+pub(super) use super::deck_loads::unit;
+use super::deck_thermal::Heated;
+use super::finer::Finer;
+use super::frame_columns::FrameColumns;
+use super::influence::{influence, readings};
+use super::model_part::{ModelPart, facts};
+use super::region::Region;
+use super::signature_table::TableColumn;
+use crate::fe::UnitLoad;
+use crate::finding::{Finding, Severity};
+use crate::gauge::Gauge;
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::work::Work;
+use crate::job::{Ids, Job, JobLoad, LoadActs, LoadRole};
+use crate::model::Model;
+use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
+use crate::stop::Stop;
+use crate::strain_chain::solved::{support_of_job, unit_loads_kept};
+use crate::strain_chain::{Fields, Prepared, lay_gauges, prepare_beside};
+use crate::units::KILO;
+use std::collections::BTreeMap;
+
+/// The model with everything needed to solve it again.
+pub(super) struct DeckFrame {
+    pub(super) fields: Fields,
+    pub(super) gauges: Vec<Gauge>,
+    pub(super) columns: Vec<UnitLoad>,
+    /// Influence on the mesh as it stands, by the built-in solver.
+    pub(super) base: Vec<f64>,
+    /// Small regions whose stiffness is tried.
+    pub(super) regions: Vec<Region>,
+    /// Properties whose stiffness may be wrong together, by the name of the zone.
+    pub(super) zones: BTreeMap<String, Ids>,
+    /// Stops the solutions of changed models between two of them.
+    pub(super) stop: Stop,
+}
+
+/// Solves all signatures. `channels` are the gauges in the order of the strain file.
+pub(super) fn read(
+    work: &mut Work,
+    job: &Job,
+    channels: &[String],
+) -> Result<(ModelPart, DeckFrame), Faults> {
+    let columns = |model: &Model| Ok(SignatureLoads::of(job, &Heated::of(job, model)?)?.columns);
+    let Prepared {
+        sensitivity,
+        fields: Some(mut fields),
+        gauges,
+        ..
+    } = prepare_beside(work, job, Some(&columns))?
+    else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model",
+            "S comes from no model",
+            "name the deck in [model]",
+        )));
+    };
+    let gauges = in_order(job, gauges, channels)?;
+    let s = FrameColumns::of(job, sensitivity, channels)?;
+    let turned = turned(work, job, &fields, channels)?;
+    let heated = Heated::of(job, fields.model())?;
+    let model = &heated.model;
+    let asked = SignatureLoads::of(job, &heated)?;
+    let support = support_of_job(job, model)?;
+    // Signatures come from a mesh half as wide, where that can be made: what the mesh makes is computed, not guessed.
+    let laid = [&gauges, &turned[0], &turned[1]];
+    let finer = work.stage("refine", |_| Finer::of(model, laid));
+    if let Err(why) = &finer {
+        work.findings.push(mesh_unknown(job, why));
+    }
+    let finer = finer.ok();
+    let set = job.reconcile.as_ref().map(|r| r.temperature_set);
+    let heat = format!("temperature set {set:?}");
+    let solution = work.stage("solve signatures", |w| match &finer {
+        Some(f) => {
+            let made = format!("mesh half as wide, {heat}");
+            unit_loads_kept(
+                w,
+                (&fields.deck, &made),
+                (&f.refined.model, support),
+                &asked.loads,
+            )
+        }
+        None => unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.loads),
+    })?;
+    let n_c = asked.columns.len();
+    let seen = match &finer {
+        Some(f) => f.laid.each_ref(),
+        None => laid,
+    };
+    let [mut table, at_45, at_90] = seen.map(|g| influence(job, model, g, &solution, n_c));
+    let own = match fields.beside.take() {
+        Some(solved) => solved,
+        None => work.stage("solve signatures", |w| {
+            unit_loads_kept(w, (&fields.deck, &heat), (model, support), &asked.columns)
+        })?,
+    };
+    let by_solver = influence(job, model, &gauges, &own, n_c);
+    let base = with_s(&by_solver, &s, n_c);
+    let from_results = job.model.as_ref().is_some_and(|m| !m.results.is_empty());
+    if from_results && finer.is_none() {
+        table.clone_from(&base);
+    }
+    let column = |c: usize| readings(seen[0], &solution, c..c + 1);
+    let mut part = asked.part(job, model, column);
+    part.gauges = gauge_facts(job, channels, &gauges);
+    part.tensors = plane_strain([&table, &at_45, &at_90], n_c);
+    part.influence = table;
+    let apparent: Vec<f64> = channels.iter().map(|c| apparent(job, c)).collect();
+    [part.thermal_uniform, part.thermal_gradient] =
+        asked.thermal(&heated, &apparent, &heated.rises(&gauges), column);
+    let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
+    let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
+    part.scatter = background(
+        job,
+        &part,
+        finer.as_ref().map(|f| (&base, f.refined.is_whole())),
+        [&along, &across],
+    );
+    part.per_mm = Some(along);
+    part.as_modelled = finer.is_some().then_some(base);
+    let deck = DeckFrame {
+        zones: super::zones::zones(job, fields.model(), &gauges),
+        fields,
+        gauges,
+        columns: asked.columns,
+        base: by_solver,
+        regions: vec![],
+        stop: work.cx.progress.stop(),
+    };
+    part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;
+    let described = deck.described(&mut work.inputs, job, channels, &per_job_unit(job))?;
+    part.stiffness.extend(described);
+    Ok((part, deck))
+}
+
+/// The same gauges turned by 45 and by 90 degrees: what they read at three angles holds their in-plane strain.
+fn turned(
+    work: &mut Work,
+    job: &Job,
+    fields: &Fields,
+    channels: &[String],
+) -> Result<Vec<Vec<Gauge>>, Faults> {
+    let noted = work.findings.len();
+    let mut turned = Vec::new();
+    for degrees in [45.0, 90.0] {
+        let mut other = job.clone();
+        other.gauges.iter_mut().for_each(|g| g.angle_deg += degrees);
+        turned.push(in_order(job, lay_gauges(work, &other, fields)?, channels)?);
+    }
+    work.findings.truncate(noted);
+    Ok(turned)
+}
+
+/// Influence with S in the columns of the wanted loads: S is that of the job, and where its results are Nastran's, the built-in solver has
+/// the rest.
+fn with_s(by_solver: &[f64], s: &FrameColumns, n_columns: usize) -> Vec<f64> {
+    let mut base = by_solver.to_vec();
+    for (c, (_, column)) in s.wanted_columns().iter().enumerate() {
+        for (row, v) in base.chunks_exact_mut(n_columns).zip(column) {
+            row[c] = *v;
+        }
+    }
+    base
+}
+
+/// In-plane strain `exx, eyy, gxy` under each gauge, from what it reads at 0, 45 and 90 degrees.
+fn plane_strain([at_0, at_45, at_90]: [&[f64]; 3], n_columns: usize) -> Vec<PlaneStrainRow> {
+    let one = |i: usize| [at_0[i], at_90[i], 2.0 * at_45[i] - at_0[i] - at_90[i]];
+    let rows = (0..at_0.len()).step_by(n_columns.max(1));
+    rows.map(|first| (first..first + n_columns).map(one).collect())
+        .collect()
+}
+
+/// What the job says of the gauges, with their places on the model.
+fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFacts> {
+    let length_m = job.units.length_m();
+    let one = |(channel, laid): (&String, &Gauge)| GaugeFacts {
+        // In-plane strain is in the axes of the gauge itself, its wiring included.
+        angle_deg: 0.0,
+        wiring: Wiring::Quarter,
+        position: Some([0, 1, 2].map(|k| laid.position[k] * length_m)),
+        ..facts(job, channel)
+    };
+    channels.iter().zip(gauges).map(one).collect()
+}
+
+/// Names of the wanted loads, and kN or kN m in a unit of the job: tables count in microstrain per unit of the job, as sensitivity.csv does.
+pub(super) fn per_job_unit(job: &Job) -> Vec<TableColumn> {
+    let wanted = job.loads.iter().filter(|l| l.role == LoadRole::Wanted);
+    let per = |l: &JobLoad| match l.acts {
+        LoadActs::AtGrid { component, .. } => KILO / job.units.si(component.quantity()),
+        LoadActs::Set(_) | LoadActs::Named => 1.0,
+    };
+    let column = |l: &JobLoad| TableColumn {
+        names: vec![l.name.clone()],
+        factor: per(l),
+    };
+    wanted.map(column).collect()
+}
+
+/// Apparent strain of a channel's wiring, microstrain a degree.
+fn apparent(job: &Job, channel: &str) -> f64 {
+    let bridge = job
+        .gauges
+        .iter()
+        .find(|g| g.name == channel)
+        .map_or("quarter", |g| g.bridge.name());
+    let given = job.reconcile.as_ref();
+    given
+        .and_then(|r| r.thermal_microstrain_per_degc.get(bridge).copied())
+        .unwrap_or(0.0)
+}
+
+/// Channels in the order of the strain file.
+fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gauge>, Faults> {
+    let find = |name: &String| {
+        laid.iter()
+            .find(|g| g.name == *name)
+            .cloned()
+            .ok_or_else(|| {
+                let wrong = format!("the strain file has a column `{name}`, the job no such gauge");
+                Fault::of(&*job.file, "gauge", wrong, "name the gauges as the columns")
+            })
+    };
+    let (mut out, mut faults) = (Vec::new(), FaultList::new());
+    for name in channels {
+        match find(name) {
+            Ok(g) => out.push(g),
+            Err(f) => faults.push(f),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// No finer mesh was solved: what is assumed instead.
+fn mesh_unknown(job: &Job, why: &str) -> Finding {
+    let stated = job
+        .measured
+        .as_ref()
+        .map_or(0.0, |m| m.model_uncertainty_rel);
+    Finding::new(
+        Severity::Warning,
+        "mesh-not-checked",
+        "model",
+        format!(
+            "what the mesh makes of the strain is not known, since no finer mesh was solved: {why}. Each influence coefficient is taken to err by {:.2} % (1 sd), {:.0} % of the stated model uncertainty",
+            100.0 * ENTRY_SHARE * stated,
+            100.0 * ENTRY_SHARE
+        ),
+        "compare the strain at the gauges with that of a finer mesh, and state `model_uncertainty_rel` accordingly",
+    )
+}

@@ -1,0 +1,62 @@
+//! A copy of the job that the effects go into.
+
+use super::answer::Reconciled;
+use super::redirect::redirect;
+use super::relative::relative;
+use super::words::effect_in_words;
+use super::{motion_job, strain_job};
+use crate::host::fault::{Fault, Faults};
+use std::path::Path;
+use toml::{Table, Value};
+
+/// The job with the named effects in it as it stands in folder `out`, titled after the effects, which are in its head; `None` where there is
+/// none. The files it names are found from there, those that the effects change beside it.
+///
+/// # Errors
+/// A job that is no TOML, which is a mistake of the program.
+pub fn extended_job(answer: &Reconciled, out: &Path) -> Result<Option<String>, Faults> {
+    let Some(extended) = &answer.extended_model else {
+        return Ok(None);
+    };
+    let job = &answer.job;
+    let mut table: Table = extended.job_text.parse().map_err(|e: toml::de::Error| {
+        Faults::from(Fault::of(
+            &*job.file,
+            "job",
+            e.to_string(),
+            "write valid TOML",
+        ))
+    })?;
+    redirect(&mut table, &relative(out, &job.folder));
+    let title = table.get("title").and_then(Value::as_str).unwrap_or("job");
+    let title = format!("{title}, with {}", answer.named.join(" and "));
+    table.insert("title".into(), Value::String(title));
+    if let Some(strain) = &answer.strain {
+        strain_job::edit(&mut table, job, strain, extended);
+    }
+    if let Some(motion) = &answer.motion
+        && let Some(Value::Table(section)) = table.get_mut("vehicle")
+    {
+        motion_job::edit(section, &motion.frame, &motion.outcome);
+    }
+    let body = toml::to_string(&table).map_err(|e| {
+        Faults::from(Fault::of(
+            extended.name,
+            "job",
+            e.to_string(),
+            "report this as an error of the program",
+        ))
+    })?;
+    let mut text =
+        String::from("# The job with the named effects in it; `size` and `sigma` as found.\n");
+    for e in &answer.effects {
+        text.push_str(&format!("# {}\n", effect_in_words(e)));
+    }
+    for r in answer.rivals.iter().filter(|r| r.indistinguishable) {
+        text.push_str(&format!(
+            "# {} explains the data as well and is not in it: separate the two before loads unlike these are recovered\n",
+            r.id
+        ));
+    }
+    Ok(Some(text + &body))
+}

@@ -1,0 +1,125 @@
+//! What gauges read of a solution: rows of the influence matrix.
+
+use crate::fe::{
+    Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, solve_unit_loads_on,
+    solve_variants,
+};
+use crate::gauge::{Gauge, reading};
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::stopped;
+use crate::job::Job;
+use crate::model::{GridIx, Model};
+use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
+use crate::stop::Stop;
+use crate::strain_chain::solved::support_of_job;
+use crate::units::MICROSTRAIN;
+
+/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
+pub(super) fn influence(
+    job: &Job,
+    model: &Model,
+    gauges: &[Gauge],
+    solution: &Solution,
+    n_columns: usize,
+) -> Vec<f64> {
+    let mut out = readings(gauges, solution, 0..n_columns);
+    blank_payload(job, model, &mut out, n_columns);
+    out
+}
+
+/// Sets the columns of an influence matrix that stand for nothing to zero.
+pub(super) fn blank_payload(job: &Job, model: &Model, influence: &mut [f64], n_columns: usize) {
+    let blank = if payload_grid(job, model).is_some() {
+        1
+    } else {
+        N_PAYLOAD_COLUMNS
+    };
+    for row in influence.chunks_exact_mut(n_columns.max(1)) {
+        row.iter_mut().rev().take(blank).for_each(|v| *v = 0.0);
+    }
+}
+
+/// Microstrain per unit of each case of `range`, `n_gauges x n_cases` by rows; NaN where there is no strain.
+pub(super) fn readings(
+    gauges: &[Gauge],
+    solution: &Solution,
+    range: std::ops::Range<usize>,
+) -> Vec<f64> {
+    let mut out = Vec::with_capacity(gauges.len() * range.len());
+    for g in gauges {
+        for c in range.clone() {
+            let value = solution.cases.get(c).and_then(|case| reading(g, case));
+            out.push(value.unwrap_or(f64::NAN) / MICROSTRAIN);
+        }
+    }
+    out
+}
+
+/// The model under these loads.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn solve(
+    job: &Job,
+    model: &Model,
+    loads: &[UnitLoad],
+    stop: &Stop,
+) -> Result<Solution, Faults> {
+    let support = support_of_job(job, model)?;
+    let solved = solve_unit_loads_on(model, support, loads, &until(stop));
+    solved.map(|s| s.0).map_err(|e| of_solver(job, &e))
+}
+
+/// What `read` tells of each variant of the model under these loads.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn solve_each<T>(
+    job: &Job,
+    model: &Model,
+    loads: &[UnitLoad],
+    variants: impl ExactSizeIterator<Item = Model>,
+    stop: &Stop,
+    read: impl FnMut(&Model, &Solution) -> T,
+) -> Result<Vec<T>, Faults> {
+    let support = support_of_job(job, model)?;
+    let solved = solve_variants(model, support, loads, variants, &until(stop), read);
+    solved.map_err(|e| of_solver(job, &e))
+}
+
+/// Displacements of the model under these loads and for these readings.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn adjoint<'a>(
+    job: &Job,
+    model: &'a Model,
+    loads: &[UnitLoad],
+    readings: &[Vec<StrainTerm>],
+    stop: &Stop,
+) -> Result<Adjoint<'a>, Faults> {
+    let support = support_of_job(job, model)?;
+    let solved = Adjoint::solve(model, support, loads, readings, &until(stop));
+    solved.map_err(|e| of_solver(job, &e))
+}
+
+fn until(stop: &Stop) -> SolveOptions {
+    SolveOptions {
+        stop: stop.clone(),
+        ..SolveOptions::default()
+    }
+}
+
+/// What stopped the solver.
+pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
+    let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
+    match e {
+        FeError::Stopped => Faults::from(stopped()),
+        e => Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)),
+    }
+}
+
+/// Where the payload stands.
+pub(super) fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
+    model.grid_ix(job.payload_grid()?)
+}

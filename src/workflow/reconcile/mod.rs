@@ -1,0 +1,96 @@
+//! `reconcile`: where simulation and measurement disagree, which effect is missing, and the model with the effect in it.
+
+mod added;
+mod added_motion;
+mod answer;
+mod background;
+mod causes;
+mod changed;
+mod corrected;
+mod deck_frame;
+mod deck_loads;
+mod deck_thermal;
+mod described;
+mod extend;
+pub mod extended;
+pub mod extended_columns;
+mod extended_deck;
+mod extended_job;
+mod extended_loads;
+mod finer;
+mod frame_columns;
+mod influence;
+mod local;
+mod local_ground;
+mod marked;
+mod matrix_frame;
+mod model_part;
+mod motion_findings;
+mod motion_job;
+mod motion_path;
+mod one_file;
+mod readings;
+pub(super) mod redirect;
+mod region;
+pub(super) mod relative;
+mod run_frame;
+mod signature_table;
+mod stiffness;
+mod strain_findings;
+mod strain_job;
+mod strain_path;
+mod words;
+mod zones;
+
+pub use added::Added;
+pub use answer::*;
+pub use extended_job::extended_job;
+pub use marked::MarkedStiffness;
+pub use words::effect_in_words;
+
+use crate::host::context::Context;
+use crate::host::fault::Faults;
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::{GivenSensitivity, Job, ReconcilePath};
+use crate::strain_chain::named_results::check_tables;
+
+/// The gap between the job's model and its measurement, the effect that is missing, and the job with that effect in it.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    check_tables(&work, job)?;
+    let path = job.reconcile.as_ref().map(|r| r.path);
+    let answer = match path.unwrap_or(ReconcilePath::Static) {
+        ReconcilePath::Static => strain_path::answer(job, &mut work)?,
+        ReconcilePath::Dynamic => motion_path::answer(job, &mut work)?,
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Reads what a `[reconcile]` compares, as far as no model is solved for it, and drops it.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    match job.reconcile.as_ref().map(|r| r.path) {
+        Some(ReconcilePath::Static) => strain_path::look(job, work),
+        Some(ReconcilePath::Dynamic) | None => Ok(()),
+    }
+}
+
+/// Reads the signatures beside a given S for these gauges, as every search for a missing effect does, and drops them.
+///
+/// # Errors
+/// Tables that can't be read, gauges that a table lacks.
+pub(super) fn look_at_signatures(
+    work: &mut Work,
+    job: &Job,
+    given: &GivenSensitivity,
+    gauges: &[String],
+) -> Result<(), Faults> {
+    matrix_frame::read(work, job, given, gauges).map(|_| ())
+}

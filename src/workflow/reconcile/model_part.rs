@@ -1,0 +1,64 @@
+//! What a model says to a static frame, from a deck or from tables.
+
+use crate::gauge::Bridge;
+use crate::job::Job;
+use crate::reconcile::strain::{
+    GaugeFacts, MassSignature, NuisanceLoad, PlaneStrainRow, Scatter, StiffnessSignature, Wiring,
+};
+use crate::sensitivity::Uncertainty;
+
+/// What the model says, however it was computed: the part of a frame that no run enters.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ModelPart {
+    pub(super) gauges: Vec<GaugeFacts>,
+    pub(super) load_names: Vec<String>,
+    pub(super) load_positions: Option<Vec<[f64; 2]>>,
+    pub(super) influence: Vec<f64>,
+    pub(super) tensors: Vec<PlaneStrainRow>,
+    pub(super) per_mm: Option<Vec<f64>>,
+    pub(super) other_loads: Vec<(String, Vec<f64>)>,
+    pub(super) nuisance: Vec<NuisanceLoad>,
+    pub(super) thermal_uniform: Option<Vec<f64>>,
+    pub(super) thermal_gradient: Option<Vec<f64>>,
+    pub(super) masses: Vec<MassSignature>,
+    pub(super) stiffness: Vec<StiffnessSignature>,
+    /// Influence on the analyst's own mesh, where `influence` is that of a finer one.
+    pub(super) as_modelled: Option<Vec<f64>>,
+    /// Errors that every gauge may have.
+    pub(super) scatter: Vec<Scatter>,
+    /// How far a calibrated S may be off.
+    pub(super) learnt: Option<Uncertainty>,
+    /// Nominal place of the payload, m.
+    pub(super) payload_origin: [f64; 2],
+}
+
+/// Wiring of a bridge, as far as angles go.
+pub(super) fn wiring(bridge: Bridge) -> Wiring {
+    match bridge {
+        Bridge::Quarter => Wiring::Quarter,
+        Bridge::HalfBending | Bridge::FullBending => Wiring::Bending,
+        Bridge::Shear => Wiring::Shear,
+    }
+}
+
+/// Nominal place of the payload, m, where the job states it.
+pub(super) fn nominal_x_m(job: &Job) -> Option<f64> {
+    Some(job.payload.as_ref()?.nominal_x? * job.units.length_m())
+}
+
+/// The same across.
+pub(super) fn nominal_y_m(job: &Job) -> Option<f64> {
+    Some(job.payload.as_ref()?.nominal_y? * job.units.length_m())
+}
+
+/// What the job says of a gauge.
+pub(super) fn facts(job: &Job, name: &str) -> GaugeFacts {
+    let known = job.gauges.iter().find(|g| g.name == name);
+    let metres = |x: [f64; 3]| x.map(|v| v * job.units.length_m());
+    GaugeFacts {
+        name: name.to_owned(),
+        wiring: known.map_or(Wiring::Quarter, |g| wiring(g.bridge)),
+        angle_deg: known.map_or(0.0, |g| g.angle_deg),
+        position: known.and_then(|g| g.position).map(metres),
+    }
+}

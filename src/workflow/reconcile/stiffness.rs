@@ -1,0 +1,132 @@
+//! Signatures of a stiffness that may be wrong: the changed model solved again.
+
+use super::changed::Changed;
+use super::deck_frame::DeckFrame;
+use super::described::{effect_of, factor_at};
+use crate::host::fault::{Fault, Faults};
+use crate::job::Job;
+use crate::model::Model;
+use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
+
+/// Thickness change at which a zone's signature is computed first, percent.
+const ZONE_PERCENT: f64 = 10.0;
+/// Stiffness of a joint at which its signature is computed first, natural log times 100: half and double.
+const JOINT_PERCENT: [f64; 2] = [-69.314_718_055_994_53, 69.314_718_055_994_53];
+/// Prior sd of a thickness, percent.
+const ZONE_PRIOR: f64 = 15.0;
+/// Prior sd of a joint's stiffness, natural log times 100: known to a factor of two.
+const JOINT_PRIOR: f64 = 70.0;
+/// Bushes of a deck that names none: more of them are springs of something else.
+const MOST_JOINTS: usize = 12;
+
+/// Factor of a stiffness at a size: a zone counts in percent, a joint in its natural log times 100, an edit of the user's own in its own
+/// size; `None` for a table, which is no stiffness of the deck.
+pub(super) fn factor(job: &Job, of: StiffnessOf, place: &str, size: f64) -> Option<f64> {
+    match of {
+        StiffnessOf::Joint | StiffnessOf::Local => Some((size / 100.0).exp()),
+        StiffnessOf::Zone => Some(1.0 + size / 100.0),
+        StiffnessOf::Described => factor_at(&effect_of(job, place)?.source, size),
+    }
+}
+
+/// Bushes whose stiffness is tried: those that the job names, or all of a deck that has few.
+fn joints(job: &Job, model: &Model) -> Vec<u32> {
+    let named = job.reconcile.as_ref().and_then(|r| r.joints.as_ref());
+    let chosen: Vec<u32> = match named {
+        Some(ids) => model
+            .bushes
+            .iter()
+            .map(|b| b.id)
+            .filter(|b| ids.contains(*b))
+            .collect(),
+        None => model.bushes.iter().map(|b| b.id).collect(),
+    };
+    if named.is_none() && chosen.len() > MOST_JOINTS {
+        return Vec::new();
+    }
+    chosen
+}
+
+impl DeckFrame {
+    /// Signatures of all zones and joints.
+    pub(super) fn signatures(&self, job: &Job) -> Result<Vec<StiffnessSignature>, Faults> {
+        let mut wanted: Vec<(StiffnessOf, String, Vec<f64>, f64)> = self
+            .zones
+            .keys()
+            .map(|z| (StiffnessOf::Zone, z.clone(), vec![ZONE_PERCENT], ZONE_PRIOR))
+            .collect();
+        let joints = joints(job, self.fields.model());
+        wanted.extend(joints.iter().map(|j| {
+            (
+                StiffnessOf::Joint,
+                j.to_string(),
+                JOINT_PERCENT.to_vec(),
+                JOINT_PRIOR,
+            )
+        }));
+        let mut models: Vec<Changed> = Vec::new();
+        for (of, place, sizes, _) in &wanted {
+            for percent in sizes {
+                models.push(self.changed(job, *of, place, *percent)?);
+            }
+        }
+        let mut changes = self.changes_by(job, &models)?.into_iter();
+        let signature =
+            |(of, place, sizes, prior_percent): (_, _, Vec<f64>, _)| StiffnessSignature {
+                of,
+                place,
+                at_percent: sizes.into_iter().zip(&mut changes).collect(),
+                prior_percent,
+            };
+        Ok(wanted.into_iter().map(signature).collect())
+    }
+
+    /// Change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]), from a solution of
+    /// the changed model on the mesh as it stands.
+    pub(super) fn stiffness_change(
+        &self,
+        job: &Job,
+        of: StiffnessOf,
+        place: &str,
+        percent: f64,
+    ) -> Result<Vec<f64>, Faults> {
+        if let (StiffnessOf::Described, Some(e)) = (of, effect_of(job, place)) {
+            return self.described_change(job, e, percent);
+        }
+        let changed = self.changed(job, of, place, percent)?;
+        let mut changes = self.changes_by(job, &[changed])?;
+        Ok(changes.pop().unwrap_or_default())
+    }
+
+    fn changed(
+        &self,
+        job: &Job,
+        of: StiffnessOf,
+        place: &str,
+        percent: f64,
+    ) -> Result<Changed, Faults> {
+        let factor = factor(job, of, place, percent).unwrap_or(1.0);
+        Ok(match of {
+            StiffnessOf::Joint => Changed::Bush(place.to_owned(), factor),
+            StiffnessOf::Local => Changed::Shells(self.shells_of_region(place), factor),
+            StiffnessOf::Zone | StiffnessOf::Described => {
+                Changed::Thickness(self.properties_of_zone(job, place)?, factor)
+            }
+        })
+    }
+
+    fn properties_of_zone(&self, job: &Job, zone: &str) -> Result<Vec<u32>, Faults> {
+        let fault = |wrong: String, remedy: &str| {
+            Faults::from(Fault::of(&*job.file, "reconcile.zones", wrong, remedy))
+        };
+        let Some(ids) = self.zones.get(zone) else {
+            return Err(fault(format!("no zone `{zone}`"), "name its properties"));
+        };
+        let found = self.shell_properties(|id| ids.contains(id));
+        if found.is_empty() {
+            let wrong = format!("zone `{zone}` names no PSHELL of the deck");
+            return Err(fault(wrong, "name PSHELL ids"));
+        }
+        Ok(found)
+    }
+}

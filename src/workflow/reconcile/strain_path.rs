@@ -1,0 +1,321 @@
+//! Strain: frame, verdict, extended model.
+
+use super::added::added_to_strain;
+use super::answer::{
+    DetectableSize, EffectFound, GapFound, Reconciled, ReducedChi2, RivalFound, SizeFound,
+    StrainGap, StrainPart, first,
+};
+use super::deck_frame::{self, DeckFrame};
+use super::described::effect_of;
+use super::local::gauges_that_disagree;
+use super::readings::observations;
+use super::run_frame::frame;
+use super::stiffness::factor;
+use super::strain_findings::findings;
+use super::{causes, described, extend, matrix_frame};
+use crate::finding::Finding;
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::Work;
+use crate::job::{EffectSource, Job};
+use crate::linalg::Matrix;
+use crate::reconcile::effect::{Correction, Extension};
+use crate::reconcile::strain::{
+    StiffnessOf, StrainFrame, examine, gauges_installed_otherwise, predict, refused,
+};
+use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
+use crate::strain_chain::alternatives_of;
+
+/// What strain says.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
+    let observations = observations(job, work)?;
+    let channels = observations.channels.clone();
+    if let (Some(r), None, None) = (&job.reconcile, &job.sensitivity, &job.model)
+        && !r.causes.is_empty()
+    {
+        return causes::answer(job, r, work, &observations);
+    }
+    let (part, mut deck) = match (&job.sensitivity, &job.model) {
+        (Some(given), _) => {
+            let read = |w: &mut Work| matrix_frame::read(w, job, given, &channels);
+            (work.stage("signatures", read)?, None)
+        }
+        (None, Some(_)) => {
+            let (part, deck) = deck_frame::read(work, job, &channels)?;
+            (part, Some(deck))
+        }
+        (None, None) => {
+            return Err(Faults::from(Fault::of(
+                &*job.file,
+                "model",
+                "neither `[model]` nor `[sensitivity]`",
+                "name the deck, or the CSV file with S",
+            )));
+        }
+    };
+    let mut frame = frame(job, work, observations, part)?;
+    work.go_on()?;
+    let only = job
+        .reconcile
+        .as_ref()
+        .and_then(|r| r.effects.clone())
+        .unwrap_or_default();
+    let wrong = match &deck {
+        Some(_) => installed_otherwise(work, job, &frame, &channels),
+        None => Vec::new(),
+    };
+    if !wrong.is_empty() {
+        deck = None;
+    }
+    let mut outcome = match wrong.is_empty() {
+        true => searched(work, &frame, &only)?,
+        false => work.stage("search", |_| refused(&frame, wrong)),
+    };
+    if let Some(deck) = &mut deck {
+        let off = gauges_that_disagree(&outcome);
+        if !off.is_empty() {
+            let found = work.stage("solve regions", |_| deck.regions_round(job, &frame, &off))?;
+            work.go_on()?;
+            if !found.is_empty() {
+                frame.stiffness.extend(found);
+                outcome = searched(work, &frame, &only)?;
+            }
+        }
+    }
+    if let Some(deck) = &deck {
+        // A stiffness is solved again at the size that was found, until it stays.
+        for _ in 0..RESOLVED {
+            if !resolve_stiffness(job, work, deck, &mut frame, &outcome)? {
+                break;
+            }
+            work.go_on()?;
+            outcome = searched(work, &frame, &only)?;
+        }
+    }
+    findings(work, &outcome);
+    let extended_model = match outcome.verdict {
+        Verdict::Named => extend::extended(job, work, &frame, &outcome, deck.as_ref())?,
+        _ => None,
+    };
+    let added = added_to_strain(
+        job,
+        &frame,
+        &outcome.effects,
+        extended_model.as_ref(),
+        deck.as_ref(),
+    );
+    let list = |effects: &[NamedEffect]| effects.iter().map(effect_found).collect();
+    let [before, after, held_out] = outcome.reduced_chi2;
+    let size = |d: &crate::reconcile::Detectable| DetectableSize {
+        id: d.id.clone(),
+        size: d.size,
+        unit: d.unit.to_owned(),
+    };
+    Ok(Reconciled {
+        verdict: outcome.verdict,
+        named: outcome.effects.iter().map(|e| e.id.clone()).collect(),
+        effects: list(&outcome.effects),
+        best_attempt: Some(list(&outcome.best_attempt)),
+        rivals: outcome.rivals.iter().map(RivalFound::from).collect(),
+        gap: gap_found(&outcome),
+        evidence: Some(outcome.evidence),
+        reduced_chi2: Some(ReducedChi2 {
+            before,
+            after,
+            held_out: (outcome.gap.basis == GapBasis::HeldOut).then_some(held_out),
+        }),
+        remains: Some(outcome.remains.clone()),
+        next_measurement: outcome.next_measurement.clone(),
+        detectable: Some(outcome.detectable.iter().map(size).collect()),
+        strain: Some(strain_part(job, frame, outcome, deck)),
+        motion: None,
+        causes: None,
+        added,
+        extended_model,
+        job: job.clone(),
+    })
+}
+
+/// Reads what is compared, as [`answer`] does, as far as no model is solved.
+///
+/// # Errors
+/// Faults of the job and of the files it names.
+pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
+    let observations = observations(job, work)?;
+    let channels = observations.channels.clone();
+    match (&job.sensitivity, &job.model) {
+        (Some(given), _) => {
+            let part = matrix_frame::read(work, job, given, &channels)?;
+            frame(job, work, observations, part).map(|_| ())
+        }
+        (None, Some(_)) => {
+            let columns = deck_frame::per_job_unit(job);
+            described::look(&mut work.inputs, job, &channels, &columns)
+        }
+        (None, None) => Ok(()),
+    }
+}
+
+/// Returns the finding on gauges that are all installed otherwise than stated, by the recorded loads.
+fn installed_otherwise(
+    work: &mut Work,
+    job: &Job,
+    frame: &StrainFrame,
+    channels: &[String],
+) -> Vec<Finding> {
+    let rows_of = |work: &mut Work, job: &Job| {
+        let (part, _) = deck_frame::read(work, job, channels).ok()?;
+        let n_c = frame.n_columns();
+        let rows = Matrix::from_fn(channels.len(), n_c, |g, c| part.influence[g * n_c + c]);
+        Some((channels.to_vec(), rows))
+    };
+    gauges_installed_otherwise(frame, &mut || {
+        alternatives_of(work, job, channels, &rows_of)
+    })
+}
+
+/// The verdict on the frame.
+///
+/// # Errors
+/// One fault where the work is stopped: the search was cut short then.
+fn searched(work: &mut Work, frame: &StrainFrame, only: &[String]) -> Result<Outcome, Faults> {
+    let outcome = work.stage("search", |_| examine(frame, only));
+    work.go_on()?;
+    Ok(outcome)
+}
+
+fn strain_part(
+    job: &Job,
+    frame: StrainFrame,
+    outcome: Outcome,
+    deck: Option<DeckFrame>,
+) -> StrainPart {
+    let marked = deck.as_ref().map(|d| d.marked(job, &outcome.best_attempt));
+    let n = outcome.covariance.len().isqrt().max(1);
+    StrainPart {
+        wins_of_100: outcome.wins,
+        noise_factor: outcome.noise_factor,
+        smooth: outcome.smooth.clone(),
+        covariance: outcome.covariance.chunks(n).map(<[f64]>::to_vec).collect(),
+        sits: outcome.sits.clone(),
+        gauges_off_before: outcome.gauges_off_before.clone(),
+        gauges_off: outcome.gauges_off.clone(),
+        runs_off: outcome.runs_off.clone(),
+        predicted: predict(&frame, &[]),
+        predicted_after: outcome.predicted.clone(),
+        outcome,
+        frame,
+        fields: deck.map(|d| d.fields),
+        marked: marked.unwrap_or_default(),
+    }
+}
+
+fn gap_found(outcome: &Outcome) -> GapFound {
+    let gap = &outcome.gap;
+    GapFound {
+        metric: "RMS(reading - model) / RMS(reading); amplitudes of the named effects that differ from run to run are found from one \
+                 half of the gauges and judged on the other; nothing else is found anew, before, after or in the floor"
+            .to_owned(),
+        before: gap.before,
+        after: gap.after,
+        floor: Some(gap.floor),
+        explained_share: Some(gap.explained_share()),
+        strain: Some(StrainGap {
+            basis: gap.basis.words(),
+            mesh: gap.mesh,
+            loads_found: gap.loads_found,
+        }),
+        judged_by: None,
+    }
+}
+
+fn effect_found(e: &NamedEffect) -> EffectFound {
+    EffectFound {
+        id: e.id.clone(),
+        place: e.place.clone(),
+        size: Some(SizeFound {
+            size: first(&e.size).or(channel_size(e)),
+            sigma: first(&e.sigma),
+            unit: e.unit.to_owned(),
+            sizes: e.size.clone(),
+            sigmas: e.sigma.clone(),
+        }),
+        plausible: e.plausible,
+        channels: None,
+    }
+}
+
+/// The size of an effect that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange.
+fn channel_size(e: &NamedEffect) -> Option<f64> {
+    let Extension::Channels(list) = &e.extension else {
+        return None;
+    };
+    match &list.first()?.1 {
+        Correction::Sign => Some(-1.0),
+        Correction::Ignore => Some(0.0),
+        _ => Some(1.0),
+    }
+}
+
+/// Is it a thickness that changes?
+fn is_thickness(job: &Job, of: StiffnessOf, place: &str) -> bool {
+    match of {
+        StiffnessOf::Zone => true,
+        StiffnessOf::Joint | StiffnessOf::Local => false,
+        StiffnessOf::Described => effect_of(job, place)
+            .is_some_and(|e| matches!(e.source, EffectSource::Thickness { .. })),
+    }
+}
+
+/// Solutions at a size that was found: the second is at the size to a few thousandths.
+const RESOLVED: usize = 2;
+
+/// Adds to the signature of a named stiffness the solution at its size; false where nothing new is to be solved.
+fn resolve_stiffness(
+    job: &Job,
+    work: &mut Work,
+    deck: &DeckFrame,
+    frame: &mut StrainFrame,
+    outcome: &Outcome,
+) -> Result<bool, Faults> {
+    /// Share of stiffness: nearer to a known size the interpolation is exact.
+    const NEAR: f64 = 0.01;
+    /// A thickness can't be taken away.
+    const LEAST: f64 = 0.2;
+    let mut added = false;
+    for e in outcome.best_attempt.iter().chain(&outcome.replaced) {
+        let (of, place, percent) = match &e.extension {
+            Extension::ZoneStiffness { place, percent } => (StiffnessOf::Zone, place, percent),
+            Extension::JointStiffness { place, percent } => (StiffnessOf::Joint, place, percent),
+            Extension::LocalStiffness { place, percent } => (StiffnessOf::Local, place, percent),
+            Extension::Described { id, size } => (StiffnessOf::Described, id, size),
+            _ => continue,
+        };
+        let Some(now) = factor(job, of, place, *percent) else {
+            continue;
+        };
+        let Some(signature) = frame
+            .stiffness
+            .iter_mut()
+            .find(|s| s.of == of && s.place == *place)
+        else {
+            continue;
+        };
+        let mut known = signature.at_percent.iter().map(|p| p.0).chain([0.0]);
+        let near = known.any(|size| {
+            factor(job, of, place, size).is_some_and(|then| (now / then - 1.0).abs() < NEAR)
+        });
+        if near || now.is_nan() || now < LEAST && is_thickness(job, of, place) {
+            continue;
+        }
+        let change = work.stage("solve zones", |_| {
+            deck.stiffness_change(job, of, place, *percent)
+        })?;
+        signature.at_percent.push((*percent, change));
+        signature.at_percent.sort_by(|a, b| a.0.total_cmp(&b.0));
+        added = true;
+    }
+    Ok(added)
+}

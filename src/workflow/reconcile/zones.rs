@@ -1,0 +1,28 @@
+//! Zones: properties whose stiffness may be wrong together.
+
+use crate::gauge::Gauge;
+use crate::job::{Ids, Job};
+use crate::model::Model;
+use std::collections::BTreeMap;
+
+/// Returns the zones that the job states, else each shell property with gauges, by its name in the deck.
+pub(super) fn zones(job: &Job, model: &Model, gauges: &[Gauge]) -> BTreeMap<String, Ids> {
+    if let Some(r) = job.reconcile.as_ref().filter(|r| !r.zones.is_empty()) {
+        return r.zones.clone();
+    }
+    let mut zones: BTreeMap<String, Ids> = BTreeMap::new();
+    for gauge in gauges {
+        let shell = model.shell_ix(gauge.element);
+        let shell = shell.and_then(|ix| model.shells.get(ix.us()));
+        let Some(property) = shell.and_then(|s| model.shell_properties.get(s.property.us())) else {
+            continue;
+        };
+        let named = model.property_names.iter().find(|n| n.0 == property.id);
+        let name = named.map_or_else(|| format!("property{}", property.id), |n| n.1.clone());
+        let ids = zones.entry(name).or_insert_with(|| Ids(Vec::new()));
+        if !ids.contains(property.id) {
+            ids.0.push([property.id; 2]);
+        }
+    }
+    zones
+}

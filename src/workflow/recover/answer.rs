@@ -1,0 +1,259 @@
+//! What `recover` answers.
+
+use super::damage::LoadDamage;
+use super::dynamic::Motion;
+use super::history::History;
+use super::sink::RecordHead;
+use super::trace::Spans;
+use super::validation::ValidationGauge;
+use crate::host::outcome::Answer;
+use crate::job::Job;
+use crate::recovery::{Readings, Recovery, Sums};
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
+use crate::units::MICROSTRAIN;
+use serde::Serialize;
+use std::sync::Arc;
+
+/// Loads from measured strain.
+#[derive(Serialize)]
+pub struct Recovered {
+    /// Rank and condition numbers of S.
+    #[serde(flatten)]
+    pub conditioning: Conditioning,
+    /// Loads of what was measured.
+    #[serde(flatten)]
+    pub states: States,
+    /// Gauges that no load was estimated from, each compared with its prediction.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub validation: Vec<ValidationGauge>,
+    /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it, and what may be left of it is weighed.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh_error: Vec<GaugeMeshError>,
+    /// S, gauges, model and strain fields.
+    #[serde(skip)]
+    pub prepared: Prepared,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Recovered {
+    const COMMAND: &'static str = "recover";
+}
+
+impl Recovered {
+    /// Loads of static runs; `None` where a record was measured.
+    pub fn runs(&self) -> Option<&RecoveredRuns> {
+        match &self.states {
+            States::Runs(runs) => Some(runs),
+            States::Record(_) => None,
+        }
+    }
+
+    /// Loads of a record; `None` where runs were measured.
+    pub fn record(&self) -> Option<&RecoveredRecord> {
+        match &self.states {
+            States::Record(record) => Some(record),
+            States::Runs(_) => None,
+        }
+    }
+}
+
+/// What was measured.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub enum States {
+    /// Static states, a row each.
+    Runs(Box<RecoveredRuns>),
+    /// Samples over time.
+    Record(Box<RecoveredRecord>),
+}
+
+/// Loads of the static runs of a job, sums of loads among them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecoveredRuns {
+    /// By run, then by load.
+    pub loads: Vec<RecoveredLoad>,
+    /// Root mean square of all residuals over their degrees of freedom.
+    pub residual_rms_microstrain: f64,
+    /// How well each gauge agrees.
+    pub gauges: Vec<GaugeResidual>,
+    /// How well each run agrees.
+    pub runs: Vec<RunFit>,
+    /// Readings of the runs, zero, reference and known payload taken into account.
+    #[serde(skip)]
+    pub readings: Vec<Readings>,
+    /// The estimates, job units.
+    #[serde(skip)]
+    pub recovery: Recovery,
+    /// Loads, then combinations.
+    #[serde(skip)]
+    pub names: Vec<String>,
+    /// Units of both.
+    #[serde(skip)]
+    pub units: Vec<LoadUnits>,
+}
+
+/// A load of a run, report units; not a number where the gauges that read don't tell it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecoveredLoad {
+    /// Run.
+    pub run: String,
+    /// Load or combination.
+    pub name: String,
+    /// Estimate.
+    pub value: f64,
+    /// One standard deviation.
+    pub sigma: f64,
+    /// Lower end of the 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Report unit.
+    pub unit: String,
+}
+
+/// A gauge over all runs, or over a record.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GaugeResidual {
+    /// Gauge.
+    pub name: String,
+    /// Root mean square residual.
+    pub residual_rms_microstrain: f64,
+    /// How much it decides its own prediction, 0 to 1.
+    pub leverage: f64,
+}
+
+/// The residual of a run.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RunFit {
+    /// Run.
+    pub run: String,
+    /// Sum of squares over stated errors.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub degrees_of_freedom: usize,
+    /// Factor on sigma of the 95 % interval.
+    pub coverage_factor: f64,
+}
+
+/// Loads of a record, sums of loads among them.
+#[derive(Serialize)]
+pub struct RecoveredRecord {
+    /// By load.
+    pub loads: Vec<RecordLoad>,
+    /// Root mean square of all residuals over their degrees of freedom.
+    pub residual_rms_microstrain: f64,
+    /// How well each gauge agrees.
+    pub gauges: Vec<GaugeResidual>,
+    /// Samples, those with gaps among them.
+    pub samples: u64,
+    /// Samples in which some gauge gave nothing.
+    pub gaps: u64,
+    /// From the first sample to the last.
+    pub duration_s: f64,
+    /// Steps between samples over the duration.
+    pub sample_rate_hz: Option<f64>,
+    /// Content of the loads against the first elastic mode, where that is known.
+    #[serde(flatten)]
+    pub content: Option<Content>,
+    /// What vibration was taken out of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
+    /// Cycles and pseudo-damage by load, where they are asked for or the record is short.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damage: Option<Vec<LoadDamage>>,
+    /// S of the gauges that read.
+    #[serde(skip)]
+    pub sensitivity: Sensitivity,
+    /// Names, units, estimate, clock.
+    #[serde(skip)]
+    pub head: Arc<RecordHead>,
+    /// Sums over the record, job units.
+    #[serde(skip)]
+    pub sums: Sums,
+    /// Smallest, mean and largest by span of time, job units.
+    #[serde(skip)]
+    pub spans: Spans,
+    /// Every sample, where they were kept in memory.
+    #[serde(skip)]
+    pub history: Option<History>,
+}
+
+/// What the loads of a record hold by frequency.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Content {
+    /// First elastic mode of the structure as the job holds it.
+    pub first_elastic_mode_hz: f64,
+    /// Up to where each load has content; `None`: it can't be told from noise.
+    pub content_hz: Vec<Option<f64>>,
+}
+
+/// A load over a record, report units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RecordLoad {
+    /// The file.
+    pub run: String,
+    /// Load or combination.
+    pub name: String,
+    /// Mean.
+    pub value: f64,
+    /// One standard deviation of a sample at the root mean square of all loads.
+    pub sigma: f64,
+    /// Report unit.
+    pub unit: String,
+    /// Smallest sample.
+    pub min: f64,
+    /// Largest sample.
+    pub max: f64,
+    /// Root mean square.
+    pub rms: f64,
+}
+
+impl RecoveredRuns {
+    /// The answer in report units; `units` are those of the loads that the estimates list.
+    pub(super) fn of(
+        s: &Sensitivity,
+        readings: Vec<Readings>,
+        recovery: Recovery,
+        names: Vec<String>,
+        units: Vec<LoadUnits>,
+    ) -> Self {
+        let loads = recovery.runs.iter().flat_map(|r| {
+            units.iter().enumerate().map(move |(l, u)| {
+                let [low, high] = r.estimate.interval(l).map(|v| v * u.factor);
+                RecoveredLoad {
+                    run: r.estimate.run.clone(),
+                    name: r.estimate.names[l].clone(),
+                    value: r.estimate.values[l] * u.factor,
+                    sigma: r.estimate.sigma(l) * u.factor,
+                    low,
+                    high,
+                    unit: u.name.clone(),
+                }
+            })
+        });
+        let gauges = s.gauges.iter().enumerate().map(|(g, name)| GaugeResidual {
+            name: name.clone(),
+            residual_rms_microstrain: recovery.gauge_residual_rms[g] / MICROSTRAIN,
+            leverage: recovery.gauge_leverage[g],
+        });
+        let runs = recovery.runs.iter().map(|r| RunFit {
+            run: r.estimate.run.clone(),
+            chi2: r.chi2,
+            degrees_of_freedom: r.dof,
+            coverage_factor: r.estimate.coverage_factor,
+        });
+        Self {
+            loads: loads.collect(),
+            residual_rms_microstrain: recovery.residual_rms / MICROSTRAIN,
+            gauges: gauges.collect(),
+            runs: runs.collect(),
+            readings,
+            recovery,
+            names,
+            units,
+        }
+    }
+}

@@ -1,0 +1,144 @@
+//! Cycles and pseudo-damage of the loads of a record: its samples are read a piece at a time, and those at the ends of cycles once more.
+
+use super::sink::{RecordHead, Samples};
+use crate::estimate::NORMAL_95;
+use crate::finding::{Finding, Severity};
+use crate::host::outcome::finite;
+use crate::recovery::Sums;
+use crate::series::rainflow::{Cycle, Damage, Point, Rainflow};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// Samples read at a time.
+const PIECE: usize = 16_384;
+
+/// Cycles of a load, report unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadDamage {
+    /// Load or combination.
+    pub name: String,
+    /// Report unit.
+    pub unit: String,
+    /// Power of the range in pseudo-damage.
+    pub slope: f64,
+    /// How many; an open range counts half.
+    pub cycles: f64,
+    /// The largest range.
+    pub largest_range: f64,
+    /// Sum of cycles times range to the power of the slope.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: Option<f64>,
+    /// Upper end.
+    pub damage_high: Option<f64>,
+    /// The range of the one cycle that does as much.
+    pub one_cycle_range: Option<f64>,
+    /// Lower end of its 95 % interval.
+    pub one_cycle_range_low: Option<f64>,
+    /// Upper end.
+    pub one_cycle_range_high: Option<f64>,
+    /// Cycles by range.
+    #[serde(skip)]
+    pub count: Damage,
+}
+
+/// Cycles of every load.
+pub(super) fn damage(
+    head: &RecordHead,
+    sums: &Sums,
+    samples: &dyn Samples,
+    slope: f64,
+) -> Vec<LoadDamage> {
+    (0..head.n_loads())
+        .into_par_iter()
+        .map(|l| {
+            let d = damage_of(head, sums, samples, l, slope);
+            LoadDamage {
+                name: head.names[l].clone(),
+                unit: head.units[l].name.clone(),
+                slope,
+                cycles: d.cycles,
+                largest_range: d.largest,
+                damage: d.value,
+                damage_low: finite(d.low),
+                damage_high: finite(d.high),
+                one_cycle_range: finite(d.one_cycle(d.value)),
+                one_cycle_range_low: finite(d.one_cycle(d.low)),
+                one_cycle_range_high: finite(d.one_cycle(d.high)),
+                count: d,
+            }
+        })
+        .collect()
+}
+
+/// How cycles are counted, and what pseudo-damage is.
+pub(super) fn about_damage(slope: f64) -> Finding {
+    Finding::new(
+        Severity::Info,
+        "pseudo-damage",
+        "damage",
+        format!(
+            "rainflow counts by ASTM E1049-85, open ranges as half cycles; pseudo-damage is the sum of cycles times range to the \
+             power {slope}, without a limit below which ranges do no harm. It compares records; it is no life. Its interval moves all \
+             ranges together by their own 95 % interval"
+        ),
+        "state the slope of the part's S-N curve: [recover] slope",
+    )
+}
+
+/// Smallest and largest sample of load `l`, report unit; zeros where there is no sample.
+pub(super) fn extremes(head: &RecordHead, sums: &Sums, l: usize) -> [f64; 2] {
+    [sums.min[l], sums.max[l]].map(|v| {
+        let v = v * head.units[l].factor;
+        if v.is_finite() { v } else { 0.0 }
+    })
+}
+
+/// Counts one load, report unit.
+fn damage_of(
+    head: &RecordHead,
+    sums: &Sums,
+    samples: &dyn Samples,
+    l: usize,
+    slope: f64,
+) -> Damage {
+    let [min, max] = extremes(head, sums, l);
+    let mut damage = Damage::new(slope, max - min);
+    let mut ends = [Vec::new(), Vec::new()];
+    let columns: Vec<usize> = (0..head.n_loads()).collect();
+    // Its interval is that of a normal error.
+    let wider = head.filter.coverage_factor() / NORMAL_95;
+    let mut add = |cycle: Cycle| {
+        for (end, point) in ends.iter_mut().zip([cycle.from, cycle.to]) {
+            end.clear();
+            samples.read(point.at, point.at + 1, &columns, end);
+        }
+        let [from, to] = &ends;
+        let change: Vec<f64> = from
+            .iter()
+            .zip(to)
+            .zip(&head.units)
+            .map(|((a, b), u)| (b - a) / u.factor)
+            .collect();
+        // The worse known end is that of the change.
+        let by_end = [cycle.from, cycle.to].map(|point| {
+            let gain = head.estimate_at(point.at);
+            let ends = [cycle.from.at, cycle.to.at];
+            head.filter.sigma_of_change(gain, l, &change, ends)
+        });
+        let sigma = wider * by_end[0].max(by_end[1]) * head.units[l].factor;
+        damage.add(&cycle, sigma);
+    };
+    let mut count = Rainflow::default();
+    let mut values = Vec::with_capacity(PIECE);
+    let n = samples.n_samples();
+    for from in (0..n).step_by(PIECE) {
+        values.clear();
+        samples.read(from, (from + PIECE).min(n), &[l], &mut values);
+        for (at, &value) in (from..).zip(&values) {
+            count.push(Point { at, value }, &mut add);
+        }
+    }
+    count.finish(&mut add);
+    damage
+}

@@ -1,0 +1,107 @@
+//! A record without the readings of gauges that are dead in a part of it.
+
+use super::judged::spread_readings;
+use super::task::Task;
+use crate::finding::{Finding, Severity};
+use crate::host::fault::Faults;
+use crate::host::work::Work;
+use crate::measured::record::Record;
+use crate::recovery::Readings;
+use crate::recovery::stuck::{check, still_parts};
+use crate::sensitivity::Sensitivity;
+use crate::series::still::{Gives, blank};
+use std::ops::Range;
+
+/// A record without the readings of gauges where they are dead.
+pub(super) struct Living {
+    pub record: Record,
+    /// Of samples spread over it.
+    pub readings: Vec<Readings>,
+    /// Dead parts: gauge of S, and samples.
+    pub dead: Vec<(usize, Range<usize>)>,
+}
+
+/// The record without such readings, said as findings: where a gauge is dead, the others tell the loads.
+///
+/// # Errors
+/// A piece that can't be read.
+pub(super) fn without_dead_parts(
+    work: &mut Work,
+    task: &Task,
+    record: Record,
+    s: &Sensitivity,
+    zero: &[f64],
+) -> Result<Living, Faults> {
+    let mut samples = spread_readings(task, &record, zero)?;
+    let looked: Vec<(usize, &[f64])> = samples.iter().map(|r| (r.0, &*r.1.strain)).collect();
+    // Names alone, without S, say nothing of what others expect.
+    let stuck = match s.loads.is_empty() {
+        true => Vec::new(),
+        false => check(s, &looked, task.errors, task.noise_factor),
+    };
+    work.findings
+        .extend(stands_still(&record, &still_parts(&looked)));
+    let (mut parts, mut blanked) = (Vec::new(), Vec::new());
+    for dead in &stuck {
+        let span = record.extent(dead)?;
+        let times = [span.start, span.end - 1].map(|i| record.time_s(i));
+        let gauge = &s.gauges[dead.gauge];
+        work.findings.push(silent_in_part(gauge, dead.gives, times));
+        if dead.gives == Gives::OneValue {
+            blanked.push((dead.gauge, span.clone()));
+        }
+        parts.push((dead.gauge, span));
+    }
+    let n = s.gauges.len();
+    for (at, readings) in &mut samples {
+        blank(&mut readings.strain, n, *at, &blanked);
+    }
+    let readings = samples.into_iter().map(|r| r.1).collect();
+    Ok(Living {
+        record: record.without(blanked),
+        readings,
+        dead: parts,
+    })
+}
+
+/// Returns the warning of a gauge that is dead from one time to another, s.
+pub(crate) fn silent_in_part(gauge: &str, gives: Gives, [from, to]: [f64; 2]) -> Finding {
+    let [what, why] = match gives {
+        Gives::Nothing => ["nothing", "read"],
+        Gives::OneValue | Gives::Signal => {
+            ["one and the same value", "say that its strain changes"]
+        }
+    };
+    Finding::new(
+        Severity::Warning,
+        "gauge-silent",
+        gauge,
+        format!(
+            "it gives {what} from t = {from:.6} s to t = {to:.6} s, while the others {why}: there the loads are those of the others, with wider \
+             intervals"
+        ),
+        "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+    )
+    .with_numbers(to - from, 0.0)
+}
+
+/// The warning of parts in which no gauge changes: whether it stands still there, or its logger gave nothing, the record does not say.
+fn stands_still(record: &Record, parts: &[[usize; 2]]) -> Option<Finding> {
+    let [first, last] = *parts.first()?;
+    let [from, to] = [first, last].map(|i| record.time_s(i));
+    let others = match parts.len() {
+        1 => String::new(),
+        n => format!(" (and in {} more parts)", n - 1),
+    };
+    let finding = Finding::new(
+        Severity::Warning,
+        "record-stands-still",
+        record.file(),
+        format!(
+            "from t = {from:.6} s to t = {to:.6} s{others} no gauge changes by a digit: the structure stands still there, or its logger gave nothing \
+             and repeats itself; the readings count as they are"
+        ),
+        "leave the field blank where nothing was measured: loads and cycles there are then left out",
+    );
+    Some(finding.with_numbers(parts.len() as f64, 0.0))
+}

@@ -1,0 +1,291 @@
+//! `[dynamic]`: the vibration of the structure taken out of a record, with the modes of the model.
+
+use super::task::Task;
+use crate::fe::{CaseResult, LoadCase, modal_loads};
+use crate::finding::{Finding, Severity};
+use crate::gauge::reading;
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::Work;
+use crate::job::Dynamic;
+use crate::measured::record::Record;
+use crate::recovery::dynamic::{
+    AtRest, Doubt, Dynamics, ElasticMode, Unfit, readings_at_rest, triangle, window,
+};
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::solved::{ElasticModes, cases_of_job, faults_of, modes_kept};
+use serde::Serialize;
+
+/// Modes are solved up to this many times the highest frequency wanted at least, and all that are solved are taken. What the next one answers beyond
+/// its answer at rest is an eighth of that at the highest frequency, and a third of it where the band ends; it is left to the doubt.
+const MODES_UP_TO: f64 = 3.0;
+/// Modes that are looked for at first, and at most.
+const FIRST_MODES: usize = 16;
+const MOST_MODES: usize = 256;
+/// How many more modes are looked for than lie in the band if they are as dense as those below.
+const MARGIN: f64 = 1.25;
+/// Numbers of a record that are held in memory: 0.8 GB of readings and of what they are off by, and the readings again at rest.
+const MOST_NUMBERS: usize = 100_000_000;
+
+/// What the motion of the structure was taken for.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Motion {
+    /// Loads are recovered up to here.
+    pub up_to_hz: f64,
+    /// Modes that were taken; further ones are left to the intervals.
+    pub modes_hz: Vec<f64>,
+    /// Time at either end of the record, and of every gap, in which no load is known.
+    pub blank_s: f64,
+    /// By load: root mean square of what the record taken as at rest would be off by, as a share of that of the load about its mean.
+    pub change_rel: Vec<Option<f64>>,
+}
+
+/// A record at rest, and what is to be known of it.
+pub(super) struct Rested {
+    pub record: Record,
+    pub motion: Motion,
+    /// Noise variance of a reading, in units of that of a reading as measured.
+    pub noise_factor: f64,
+    /// What readings are off by beyond that.
+    pub doubt: Doubt,
+    /// Samples by which noise is apart where it is independent.
+    pub apart: usize,
+    /// Samples blank for what is at rest alone.
+    pub blank: usize,
+}
+
+/// The record without the vibration of the structure, where the job asks for that.
+///
+/// # Errors
+/// No model that could vibrate; a band that the record does not hold, or in which the gauges don't tell the loads; a record too long.
+pub(super) fn rested(
+    work: &mut Work,
+    task: &Task,
+    record: &Record,
+    s: &Sensitivity,
+) -> Result<Option<Rested>, Faults> {
+    let Some(asked) = task.job.dynamic else {
+        return Ok(None);
+    };
+    let fault = |wrong: String, remedy: &str| {
+        Faults::from(Fault::at(
+            &*task.job.file,
+            asked.line,
+            "dynamic",
+            wrong,
+            remedy,
+        ))
+    };
+    let samples = record.clock().samples;
+    let n = s.gauges.len();
+    let dynamics = dynamics(work, task, asked, s)?;
+    let (first_s, step_s) = record.first_and_step();
+    let errors = samples / window(&dynamics, 1.0 / step_s) * triangle(n);
+    if samples.saturating_mul(n).saturating_add(errors) > MOST_NUMBERS {
+        return Err(fault(
+            format!(
+                "the record has {samples} samples of {n} gauges, which are held in memory with what they are off by while the structure's vibration is taken out"
+            ),
+            "cut the record into parts: readings, and half of the squared number of gauges in each period of `up_to_hz`, are 100 million numbers at most",
+        ));
+    }
+    let readings = record.columns()?;
+    work.go_on()?;
+    let noise = task.errors.noise_variance(1.0).sqrt();
+    let rested = work.stage("vibration", |_| {
+        readings_at_rest(s, &dynamics, noise, &readings, 1.0 / step_s)
+    });
+    let rested = rested.map_err(|e| fault(e.to_string(), remedy_of(&e)))?;
+    drop(readings);
+    let motion = motion_of(&dynamics, &rested, step_s);
+    if rested.known == 0 && rested.read > 0 {
+        return Err(fault(
+            format!(
+                "no stretch of the record in which the same gauges read, and tell the loads, is longer than {:.4} s, twice what a sample at rest hangs on",
+                2.0 * motion.blank_s
+            ),
+            "take a longer record, or a higher `up_to_hz`",
+        ));
+    }
+    work.findings
+        .push(about(&motion, asked, &task.measured.strain.given));
+    Ok(Some(Rested {
+        noise_factor: task.noise_factor - 1.0 + rested.noise_share,
+        doubt: rested.doubt,
+        apart: apart(&dynamics, step_s),
+        blank: rested.blank,
+        motion,
+        record: record.with_readings(rested.readings, (first_s, step_s))?,
+    }))
+}
+
+/// Samples by which noise is apart where it is independent: white noise of a band up to `f` is so at `1 / (2 f)`.
+fn apart(dynamics: &Dynamics, step_s: f64) -> usize {
+    (0.5 / (dynamics.up_to_hz * step_s)).ceil().max(1.0) as usize
+}
+
+fn remedy_of(e: &Unfit) -> &'static str {
+    match e {
+        Unfit::Rate { .. } => "state a lower `up_to_hz`, or sample faster",
+        Unfit::Untold { .. } => {
+            "state a lower `up_to_hz`, add gauges, or give nuisance loads `expected`"
+        }
+        Unfit::Narrow { .. } => "state a higher `up_to_hz`, or give a record of a lower rate",
+        Unfit::Large { .. } => {
+            "recover with fewer gauges, or state a lower `up_to_hz`, which takes fewer modes"
+        }
+        Unfit::Rings { .. } => {
+            "state a lower `up_to_hz`, or add gauges that tell the loads where the others read next to nothing of them"
+        }
+    }
+}
+
+/// Modes of the job's structure at the gauges and loads of S.
+fn dynamics(
+    work: &mut Work,
+    task: &Task,
+    asked: Dynamic,
+    s: &Sensitivity,
+) -> Result<Dynamics, Faults> {
+    let job = task.job;
+    let fault = |field: &str, wrong: String, remedy: &str| {
+        Faults::from(Fault::at(&*job.file, asked.line, field, wrong, remedy))
+    };
+    let Some(fields) = &task.prepared.fields else {
+        return Err(fault(
+            "dynamic",
+            "S is given without a model: nothing is known of the structure's modes".to_owned(),
+            "give a [model], or take [dynamic] out and low-pass the strain",
+        ));
+    };
+    let deck = &fields.deck;
+    let cases = cases_of_job(job, deck)?;
+    let end_hz = MODES_UP_TO * asked.up_to_hz;
+    let (solved, further) = modes_up_to(work, deck, &cases, end_hz)?;
+    let last = solved.hz.last().copied();
+    if further && last.is_some_and(|f| f < end_hz) {
+        return Err(fault(
+            "dynamic.up_to_hz",
+            format!("the structure has more than {MOST_MODES} modes below {end_hz:.4} Hz"),
+            "state a lower `up_to_hz`",
+        ));
+    }
+    let work_of =
+        modal_loads(&deck.model, &cases, &solved.shapes).map_err(|e| faults_of(&e, deck))?;
+    let mut columns = Vec::with_capacity(s.loads.len());
+    for load in &s.loads {
+        let Some(l) = job.loads.iter().position(|l| l.name == load.name) else {
+            return Err(fault(
+                "load",
+                format!("where load `{}` acts is not known", load.name),
+                "give it a [[load]] with `grid` and `component`, or take [dynamic] out",
+            ));
+        };
+        columns.push(l);
+    }
+    let strain_of = |case: &CaseResult| -> Result<Vec<f64>, Faults> {
+        let at = |name: &String| {
+            let gauge = task.prepared.gauges.iter().find(|g| g.name == *name);
+            gauge.and_then(|g| reading(g, case)).ok_or_else(|| {
+                fault(
+                    "gauge",
+                    format!("gauge `{name}` has no strain in the structure's modes"),
+                    "take it out, or move it to an element of the deck",
+                )
+            })
+        };
+        s.gauges.iter().map(at).collect()
+    };
+    let modes = (0..solved.hz.len())
+        .map(|j| {
+            let of_load = |l: &usize| work_of[*l][j] / job.loads[*l].applied;
+            Ok(ElasticMode {
+                hz: solved.hz[j],
+                strain: strain_of(&solved.strain.cases[j])?,
+                work: columns.iter().map(of_load).collect(),
+            })
+        })
+        .collect::<Result<_, Faults>>()?;
+    Ok(Dynamics {
+        modes,
+        further_hz: last.filter(|_| further),
+        up_to_hz: asked.up_to_hz,
+        damping: asked.damping,
+        frequency_sd: asked.frequency_uncertainty_rel,
+        damping_sd: asked.damping_uncertainty_rel,
+    })
+}
+
+/// The modes of the structure as the cases hold it, up to `end_hz` and beyond, and whether there may be further ones.
+fn modes_up_to(
+    work: &mut Work,
+    deck: &DeckModel,
+    cases: &[LoadCase],
+    end_hz: f64,
+) -> Result<(ElasticModes, bool), Faults> {
+    let spc = cases.first().and_then(|c| c.spc);
+    let mut count = FIRST_MODES;
+    loop {
+        let solved = modes_kept(work, deck, spc, count)?;
+        let last = solved.hz.last().copied().unwrap_or(f64::INFINITY);
+        let further = solved.hz.len() == count;
+        if last >= end_hz || !further || count == MOST_MODES {
+            return Ok((solved, further));
+        }
+        let as_dense = (MARGIN * count as f64 * end_hz / last).ceil() as usize;
+        count = as_dense.min(MOST_MODES);
+    }
+}
+
+fn motion_of(dynamics: &Dynamics, rested: &AtRest, step_s: f64) -> Motion {
+    let share = |(moves, load): (&f64, &f64)| Some((moves / load).sqrt()).filter(|r| r.is_finite());
+    Motion {
+        up_to_hz: dynamics.up_to_hz,
+        modes_hz: dynamics.modes.iter().map(|m| m.hz).collect(),
+        blank_s: rested.reach as f64 * step_s,
+        change_rel: rested.motion.iter().zip(&rested.load).map(share).collect(),
+    }
+}
+
+/// What was done to the record.
+fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
+    let known: Option<Vec<f64>> = motion.change_rel.iter().copied().collect();
+    let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));
+    let as_at_rest = match most {
+        Some(most) => format!(
+            "taken as at rest, a load would be off by up to {:.1} % of its rms about the mean",
+            100.0 * most
+        ),
+        None => "what loads would be off by if taken as at rest is not known".to_owned(),
+    };
+    let first = motion.modes_hz.first();
+    let first = first.map_or_else(String::new, |f| format!(", the first at {f:.2} Hz"));
+    let finding = Finding::new(
+        Severity::Info,
+        "vibration-taken-out",
+        file,
+        format!(
+            "loads up to {} Hz, with {} modes{first}, damping {}: {as_at_rest}; {:.3} s at either end and beside gaps are blank",
+            asked.up_to_hz,
+            motion.modes_hz.len(),
+            asked.damping,
+            motion.blank_s
+        ),
+        "",
+    );
+    match most {
+        Some(most) => finding.with_numbers(most, 0.0),
+        None => finding,
+    }
+}
+
+/// Says that runs don't vibrate.
+pub(super) fn without_record() -> Finding {
+    Finding::new(
+        Severity::Warning,
+        "dynamic-without-record",
+        "dynamic",
+        "the strain file holds runs, which are taken as at rest: [dynamic] does nothing",
+        "name a record, or take [dynamic] out",
+    )
+}

@@ -1,0 +1,139 @@
+//! Which files are made of a history, and what each of them costs.
+
+use super::damage::extremes;
+use super::sink::RecordHead;
+use crate::finding::{Finding, Severity};
+use crate::host::fault::{Fault, Faults};
+use crate::host::words::short;
+use crate::job::{Job, LoadFile};
+use crate::recovery::Sums;
+use crate::series::rpc::Target;
+
+/// Rows of a history as text at most; longer ones are thinned there.
+const MOST_ROWS_OF_TEXT: usize = 200_000;
+/// Samples of a history up to which every file is written without being asked for.
+const MOST_SAMPLES: usize = 200_000;
+/// The same for tables of Nastran, which hold a pair of numbers a sample as text.
+const MOST_ROWS: usize = 20_000;
+
+/// Every how many samples a table as text has a row.
+pub(super) fn stride(samples: usize) -> usize {
+    samples.div_ceil(MOST_ROWS_OF_TEXT).max(1)
+}
+
+/// Files that are made of a history of about so many samples.
+///
+/// # Errors
+/// A file asked for that this build can't write.
+pub(super) fn wanted(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
+    let Some(files) = &job.recover.files else {
+        let list = LoadFile::ALL.iter().map(|f| f.1);
+        let few = list.filter(|f| {
+            let most = match f {
+                LoadFile::Nastran => MOST_ROWS,
+                LoadFile::Rpc | LoadFile::Rainflow | LoadFile::Parquet => MOST_SAMPLES,
+            };
+            samples <= most && f.is_built()
+        });
+        return Ok(few.collect());
+    };
+    if files.iter().any(|f| !f.is_built()) {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "recover.files",
+            "this build of strainbridge does not write Parquet",
+            "take a released binary, build with `--features parquet`, or leave `parquet` out",
+        )));
+    }
+    Ok(files.clone())
+}
+
+/// What is to be known of the files made of a history.
+pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding> {
+    let mut out = Vec::new();
+    if head.files.contains(&LoadFile::Rpc) {
+        out.push(quantised(head, sums));
+    }
+    out.extend(left_out(job, head, sums));
+    if head.stride > 1 {
+        out.push(Finding::new(
+            Severity::Info,
+            "history-thinned",
+            "loads.csv",
+            format!("loads.csv holds every {}th sample; loads.bin holds all of them (format: docs/reference/files.md)", head.stride),
+            "",
+        ));
+    }
+    out
+}
+
+/// The channels of `loads.rsp`.
+pub fn rpc_targets(head: &RecordHead, sums: &Sums) -> Vec<Target> {
+    let loads = head.names.iter().zip(&head.units).enumerate();
+    loads
+        .map(|(l, (name, unit))| {
+            let [min, max] = extremes(head, sums, l);
+            Target {
+                name: name.clone(),
+                unit: unit.name.clone(),
+                min,
+                max,
+            }
+        })
+        .collect()
+}
+
+/// What 16 bits cost.
+fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
+    let steps: Vec<String> = rpc_targets(head, sums)
+        .iter()
+        .map(|t| format!("{} {} {}", t.name, short(t.scale()), t.unit))
+        .collect();
+    let samples = sums.missing.samples();
+    let repeated: u64 = (0..head.n_loads()).map(|l| samples - sums.known(l)).sum();
+    let gaps = if repeated > 0 {
+        format!("; {repeated} numbers that were not measured repeat the one before")
+    } else {
+        String::new()
+    };
+    let start = if head.first_s == 0.0 {
+        String::new()
+    } else {
+        format!(
+            "; its time begins at 0, that of the record at {} s",
+            head.first_s
+        )
+    };
+    Finding::new(
+        Severity::Info,
+        "rpc-quantised",
+        "loads.rsp",
+        format!(
+            "16-bit integers: values are off by up to half of a step, which is {}{gaps}{start}",
+            steps.join(", ").trim_end()
+        ),
+        "take `loads.csv` or `loads.bin` where that matters",
+    )
+}
+
+/// Which files were not written because the record is long.
+fn left_out(job: &Job, head: &RecordHead, sums: &Sums) -> Option<Finding> {
+    let left: Vec<&str> = LoadFile::ALL
+        .iter()
+        .filter(|f| !head.files.contains(&f.1) && f.1.is_built())
+        .map(|f| f.0)
+        .collect();
+    if job.recover.files.is_some() || left.is_empty() {
+        return None;
+    }
+    Some(
+        Finding::new(
+            Severity::Info,
+            "files-not-written",
+            left.join(", "),
+            "the record is long: these files are written only where they are asked for",
+            "name them in [recover] files",
+        )
+        .with_numbers(sums.missing.samples() as f64, MOST_ROWS as f64),
+    )
+}

@@ -1,0 +1,102 @@
+//! What `recover` says of measured strain before S weighs it: what `check` asks.
+
+use super::combined::listed;
+use super::task::{Task, task_of, without_reference};
+use super::{open_strain, record, runs};
+use crate::host::fault::{FaultList, Faults};
+use crate::host::work::Work;
+use crate::job::{Job, Measured, Reference};
+use crate::measured::MeasuredStrain;
+use crate::measured::zero::reads_strain;
+use crate::recovery::plausible;
+use crate::sensitivity::{Sensitivity, check_separability};
+use crate::strain_chain::Prepared;
+
+/// Reads the measured strain of a job, its zero and the payload that is known, as `recover` does, and judges readings and times; every
+/// fault of them. `sensitivity` is the job's given S, or the names of its gauges without a load where S takes a solution.
+pub(crate) fn look(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    sensitivity: Sensitivity,
+) -> FaultList {
+    let prepared = Prepared {
+        sensitivity,
+        fields: None,
+        gauges: Vec::new(),
+        mesh_error: Vec::new(),
+    };
+    // A model's reference state takes a solution.
+    let known = match job.model.is_none() && !prepared.sensitivity.loads.is_empty() {
+        true => Known::S,
+        false => Known::Names,
+    };
+    let task = match known {
+        Known::S => task_of(work, job, measured, &prepared),
+        Known::Names => without_reference(work, job, measured, &prepared),
+    };
+    let faults_of = |read: Result<(), Faults>| read.err().map_or_else(Vec::new, Faults::into_list);
+    let first = match task {
+        Ok(task) => return faults_of(readings(work, &task, known)),
+        Err(faults) => faults,
+    };
+    // What is wrong with the readings is said beside what is wrong with their zero.
+    let mut bare = measured.clone();
+    (bare.zero, bare.reference) = (None, Reference::None);
+    let mut faults = first.into_list();
+    match without_reference(work, job, &bare, &prepared) {
+        Ok(task) => faults.extend(faults_of(readings(work, &task, Known::Names))),
+        Err(more) => faults.extend(more),
+    }
+    faults
+}
+
+/// What is at hand of S.
+#[derive(Clone, Copy, PartialEq)]
+enum Known {
+    /// All that loads are recovered with.
+    S,
+    /// The names of its gauges.
+    Names,
+}
+
+/// Reads and judges.
+fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
+    let s = &task.prepared.sensitivity;
+    if known == Known::S {
+        // A job that is reconciled lists loads that only the runs file tells apart.
+        if task.job.reconcile.is_none() {
+            work.findings.extend(check_separability(&s.unconditioned()));
+        }
+        listed(task.job, s)?;
+    }
+    let (s, readings) = match open_strain(work, task.job, task.measured)? {
+        MeasuredStrain::Record(record) => record::look(work, task, &record)?,
+        MeasuredStrain::Runs(table) => (s.clone(), runs::read(work, task, &table)?.0),
+    };
+    let found = match reads_strain(task.job) {
+        true => plausible::check(&s.gauges, &readings, task.errors).1,
+        false => {
+            work.findings.retain(|f| f.code != "reading-impossible");
+            plausible::check_signal(&readings, task.errors)
+        }
+    };
+    // The strain of a reference state that is not in them may be all there is.
+    let all = known == Known::S || task.measured.reference == Reference::None;
+    let holds = |code: &str| all || code != "readings-below-noise";
+    work.findings
+        .extend(found.into_iter().filter(|f| holds(f.code)));
+    Ok(())
+}
+
+/// Gauges that the strain file of a job names, where the job itself names none.
+///
+/// # Errors
+/// A file that can't be read.
+pub(crate) fn gauges_of_file(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+) -> Result<Vec<String>, Faults> {
+    Ok(open_strain(work, job, measured)?.gauges().to_vec())
+}

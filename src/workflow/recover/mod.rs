@@ -1,0 +1,161 @@
+//! `recover`: loads from measured strain.
+//!
+//! [`runs`] static states, a row each; [`record`] records of any length and format ([`crate::series::record`]), at constant memory: their
+//! loads go to a [`RecordSink`] as they come.
+
+mod answer;
+mod block;
+mod combined;
+mod content;
+mod damage;
+mod dead_parts;
+mod dynamic;
+mod files;
+mod history;
+mod judged;
+mod known_payload;
+mod look;
+mod record;
+mod recorded;
+mod runs;
+mod sink;
+mod speaking;
+mod task;
+mod trace;
+mod validation;
+
+pub use answer::{
+    Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
+    RunFit, States,
+};
+pub(super) use combined::{Listed, listed};
+pub use damage::LoadDamage;
+pub(super) use dead_parts::silent_in_part;
+pub use dynamic::Motion;
+pub use files::rpc_targets;
+pub use history::{History, HistoryRow};
+pub(super) use look::{gauges_of_file, look};
+use sink::Unheard;
+pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
+pub(super) use speaking::silent_throughout;
+pub use trace::{Span, Spans};
+pub use validation::ValidationGauge;
+
+use crate::host::context::Context;
+use crate::host::fault::Faults;
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::{Job, Measured};
+use crate::measured::{self, MeasuredStrain};
+use crate::recovery::{Readings, Recovery};
+use crate::sensitivity::check_separability;
+use crate::strain_chain::named_results::check_tables;
+use crate::strain_chain::{Conditioning, Prepared, prepare};
+
+/// Loads of the runs or the record of a job with their intervals. Every sample of a record stays in memory ([`RecoveredRecord::history`]);
+/// [`recover_into`] hands them on instead.
+///
+/// # Errors
+/// Every fault of the job and of what it names.
+pub fn recover(job: &Job, cx: &Context) -> Result<Outcome<Recovered>, Faults> {
+    let mut history = History::default();
+    let mut outcome = recover_into(job, cx, &mut history)?;
+    if let States::Record(record) = &mut outcome.answer.states {
+        record.history = Some(history);
+    }
+    Ok(outcome)
+}
+
+/// The same; the loads of a record go to `sink` as they come, a few pieces of it in memory at a time. Runs leave `sink` alone.
+///
+/// # Errors
+/// Every fault of the job and of what it names; those of `sink`.
+pub fn recover_into(
+    job: &Job,
+    cx: &Context,
+    sink: &mut dyn RecordSink,
+) -> Result<Outcome<Recovered>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let measured = task::measured_of(job)?;
+    job.estimating()?;
+    check_tables(&work, job)?;
+    let mut prepared = prepare(&mut work, job)?;
+    let (states, validation) = recovered(&mut work, (job, measured), &prepared, sink)?;
+    prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
+    let answer = Recovered {
+        validation,
+        conditioning: Conditioning::of(&prepared.sensitivity),
+        states,
+        mesh_error: prepared.mesh_error.clone(),
+        prepared,
+        job: job.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Loads of what was measured; those of a record go to `sink`.
+///
+/// # Errors
+/// Unreadable readings; those of `sink`.
+fn recovered(
+    work: &mut Work,
+    (job, measured): (&Job, &Measured),
+    prepared: &Prepared,
+    sink: &mut dyn RecordSink,
+) -> Result<(States, Vec<ValidationGauge>), Faults> {
+    let (_, estimating) = task::validation_rows(job, &prepared.sensitivity);
+    let s = prepared.sensitivity.of_gauges(&estimating);
+    work.findings.extend(check_separability(&s.unconditioned()));
+    let task = task::task_of(work, job, measured, prepared)?;
+    work.findings.extend(task::changes(measured));
+    let strain = open_strain(work, job, measured)?;
+    Ok(match strain {
+        MeasuredStrain::Record(record) => {
+            let (record, validation) =
+                work.stage("stream", |w| record::record(w, &task, &record, sink))?;
+            (States::Record(Box::new(record)), validation)
+        }
+        MeasuredStrain::Runs(table) => {
+            let unused = job.dynamic.map(|_| dynamic::without_record());
+            work.findings.extend(unused);
+            let (runs, validation) = runs::runs(work, &task, &table)?;
+            (States::Runs(Box::new(runs)), validation)
+        }
+    })
+}
+
+/// Opens the strain file of a job.
+fn open_strain(work: &mut Work, job: &Job, measured: &Measured) -> Result<MeasuredStrain, Faults> {
+    work.stage("read strain", |w| {
+        measured::open(&mut w.inputs, job, measured, &measured.strain)
+    })
+}
+
+/// Recovers the loads for what is to be said of them alone: what `check` asks.
+///
+/// # Errors
+/// As [`recover_into`].
+pub(super) fn judged_alone(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<(), Faults> {
+    recovered(work, (job, measured), prepared, &mut Unheard).map(|_| ())
+}
+
+/// Readings and recovered loads of the job's static runs, for commands that go on from there.
+///
+/// # Errors
+/// Unreadable tables; a record, which [`recover_into`] streams.
+pub(super) fn recovered_runs(
+    work: &mut Work,
+    job: &Job,
+    measured: &Measured,
+    prepared: &Prepared,
+) -> Result<(Vec<Readings>, Recovery), Faults> {
+    let task = task::task_of(work, job, measured, prepared)?;
+    let table = open_strain(work, job, measured)?.into_runs()?;
+    let solved = runs::solve(work, &task, &table)?;
+    Ok((solved.readings, solved.recovery))
+}

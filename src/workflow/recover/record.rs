@@ -1,0 +1,335 @@
+//! Records: samples streamed through one estimate, pieces in parallel, a few pieces in memory at a time.
+
+use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
+use super::block::block;
+use super::combined::{Listed, listed};
+use super::damage::{LoadDamage, about_damage, damage};
+use super::dead_parts::{Living, without_dead_parts};
+use super::dynamic::{Motion, rested};
+use super::files;
+use super::judged::{check_times, content, judge, judge_at_rest, spread};
+use super::sink::{Block, RecordHead, RecordSink};
+use super::speaking::{Speaking, speaking};
+use super::task::Task;
+use super::trace::Spans;
+use super::validation::{self, Channels, Compared, ValidationGauge};
+use crate::finding::Finding;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::finite;
+use crate::host::work::Work;
+use crate::job::LoadFile;
+use crate::measured::record::Record;
+use crate::measured::zero::no_zero_runs;
+use crate::recovery::dynamic::Doubt;
+use crate::recovery::history::Filter;
+use crate::recovery::{Gain, Readings, Recovery, Sums, check_gaps, plausible};
+use crate::sensitivity::Sensitivity;
+use crate::units::MICROSTRAIN;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Pieces in memory at a time.
+const GROUP: usize = 8;
+
+/// Recovers the loads of a record; they go to `sink` as they come.
+///
+/// # Errors
+/// A record that can't be read; what `sink` refuses.
+pub(super) fn record(
+    work: &mut Work,
+    task: &Task,
+    record: &Record,
+    sink: &mut dyn RecordSink,
+) -> Result<(RecoveredRecord, Vec<ValidationGauge>), Faults> {
+    no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
+    let mut channels = Channels::of(task, record);
+    let Speaking {
+        record,
+        sensitivity,
+        zero,
+    } = speaking(work, task, record)?;
+    let Listed {
+        names,
+        units,
+        sums: combinations,
+    } = listed(task.job, &sensitivity)?;
+    let Living {
+        record,
+        readings,
+        dead,
+    } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    check_times(work, &record)?;
+    let rested = rested(work, task, &record, &sensitivity)?;
+    let (judged, errors, at_rest, motion, blank) = match rested {
+        Some(r) => {
+            let readings = spread((r.noise_factor, r.apart), &r.record, &zero)?;
+            let judged = judge_at_rest(task, &sensitivity, readings, &r.doubt);
+            let errors = (r.noise_factor, Some(r.doubt));
+            (judged, errors, Some(r.record), Some(r.motion), r.blank)
+        }
+        None => {
+            let judged = judge(work, task, &sensitivity, readings);
+            (judged, (task.noise_factor, None), None, None, 0)
+        }
+    };
+    let filter = filter(
+        work,
+        (task, errors),
+        judged,
+        &sensitivity,
+        zero,
+        &combinations,
+    )?;
+    let first_mode = motion.as_ref().and_then(|m| m.modes_hz.first().copied());
+    // What the band leaves out stands in the record as measured.
+    let content = content(work, task, (&record, first_mode), &filter, &names)?;
+    if at_rest.is_some() {
+        let dropped = channels.take();
+        work.findings.extend(dropped.map(|c| c.not_compared()));
+    }
+    let record = at_rest.unwrap_or(record);
+    let about = record.clock().samples;
+    let (first_s, step_s) = record.first_and_step();
+    let head = Arc::new(RecordHead {
+        file: record.file().to_owned(),
+        names,
+        units,
+        stretches: filter.stretches(&dead),
+        filter,
+        first_s,
+        step_s,
+        stride: files::stride(about),
+        files: files::wanted(task.job, about)?,
+    });
+    sink.begin(&head)?;
+    let (sums, spans, compared) = stream(work, (&record, channels.as_ref()), &head, sink)?;
+    sink.end(sums.missing.samples())?;
+    let validation = match &channels {
+        Some(c) => c.found(&compared, head.filter.whole()),
+        None => Vec::new(),
+    };
+    work.findings.extend(validation::contradicted(&validation));
+    let slope = task.job.recover.slope;
+    let damage = match head.files.contains(&LoadFile::Rainflow) {
+        true => {
+            work.findings.push(about_damage(slope));
+            let samples = sink.samples()?;
+            Some(work.stage("rainflow", |_| damage(&head, &sums, &*samples, slope)))
+        }
+        false => None,
+    };
+    work.findings
+        .extend(files::findings(task.job, &head, &sums));
+    let gaps = check_gaps(&head.file, &sensitivity, &sums.missing);
+    // What is blank for the filter alone is said with it.
+    let by_filter = sums.missing.gaps == blank as u64;
+    let said = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
+    work.findings.extend(gaps.into_iter().filter(said));
+    let extras = (content, motion, damage);
+    Ok((answer(sensitivity, head, sums, spans, extras), validation))
+}
+
+/// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.
+///
+/// # Errors
+/// A record that can't be read.
+pub(super) fn look(
+    work: &mut Work,
+    task: &Task,
+    record: &Record,
+) -> Result<(Sensitivity, Vec<Readings>), Faults> {
+    no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
+    let Speaking {
+        record,
+        sensitivity,
+        zero,
+    } = speaking(work, task, record)?;
+    let (all, unloaded): (Vec<usize>, _) = (
+        (0..sensitivity.gauges.len()).collect(),
+        vec![0.0; sensitivity.loads.len()],
+    );
+    let gain = Gain::new(
+        &sensitivity,
+        &all,
+        task.errors,
+        task.noise_factor,
+        &unloaded,
+    );
+    if gain.is_none() && !unloaded.is_empty() {
+        return Err(unusable(task).into());
+    }
+    check_times(work, &record)?;
+    let living = without_dead_parts(work, task, record, &sensitivity, &zero)?;
+    let (record, readings) = (living.record, living.readings);
+    let mut impossible = 0;
+    in_groups(work, &record, &mut |group| {
+        let pieces = group.par_iter();
+        impossible += pieces
+            .map(|&i| record.impossible(i, &zero))
+            .sum::<Result<u64, Fault>>()?;
+        Ok(())
+    })?;
+    if impossible > 0 {
+        let found = plausible::impossible_in_record(record.file(), impossible);
+        work.findings.push(found);
+    }
+    Ok((sensitivity, readings))
+}
+
+/// The estimate of every sample, its weights and intervals judged on samples spread over the record.
+fn filter(
+    work: &mut Work,
+    (task, (noise_factor, doubt)): (&Task, (f64, Option<Doubt>)),
+    judged: Recovery,
+    s: &Sensitivity,
+    zero: Vec<f64>,
+    combinations: &[Vec<(usize, f64)>],
+) -> Result<Filter, Faults> {
+    work.findings.extend(judged.findings.iter().cloned());
+    let filter = Filter::new(
+        s,
+        zero,
+        task.errors,
+        noise_factor,
+        &judged.typical,
+        judged.widening,
+    );
+    let mut filter = filter.ok_or_else(|| unusable(task))?;
+    if let Some(doubt) = doubt {
+        filter.add_doubt(doubt);
+    }
+    filter.combine(combinations);
+    Ok(filter)
+}
+
+/// The fault of an S that no estimate can be formed of.
+fn unusable(task: &Task) -> Fault {
+    let file = match (&task.job.sensitivity, &task.job.model) {
+        (Some(given), _) => &*given.file.given,
+        (None, Some(model)) => &*model.deck.given,
+        (None, None) => &*task.job.file,
+    };
+    Fault::of(
+        file,
+        "sensitivity",
+        "S holds numbers that are not finite, or too large to reckon with",
+        "check the table of S, or the results of the unit loads",
+    )
+}
+
+/// Recovers the record piece by piece, in parallel, and hands the loads on; the sums over it.
+///
+/// # Errors
+/// The first piece that can't be read; what `sink` refuses; one fault where the work is stopped.
+fn stream(
+    work: &Work,
+    (record, channels): (&Record, Option<&Channels>),
+    head: &RecordHead,
+    sink: &mut dyn RecordSink,
+) -> Result<(Sums, Spans, Compared), Faults> {
+    let filter = &head.filter;
+    let mut compared = Compared::default();
+    let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
+    let mut spans = Spans::new(filter.n_loads());
+    let mut first = 0;
+    in_groups(work, record, &mut |group| {
+        let one = |&i: &usize| -> Result<(Block, Sums, Compared), Fault> {
+            let (block, sums) = block(record, filter, i)?;
+            let compared = match channels {
+                Some(c) => c.compare(i, &block.loads.values, filter.n_loads())?,
+                None => Compared::default(),
+            };
+            Ok((block, sums, compared))
+        };
+        let done: Result<Vec<_>, Fault> = group.par_iter().map(one).collect();
+        let mut blocks = Vec::with_capacity(group.len());
+        for (mut block, of_block, of_channels) in done? {
+            sums.merge(&of_block);
+            compared.merge(&of_channels);
+            spans.add(&block);
+            block.first = first;
+            first += block.times.len();
+            blocks.push(block);
+        }
+        Ok(sink.take(blocks)?)
+    })?;
+    Ok((sums, spans, compared))
+}
+
+/// Hands over the pieces of a record group by group, and tells of them, while it is wanted.
+///
+/// # Errors
+/// What `take` refuses; one fault where the work is stopped.
+fn in_groups(
+    work: &Work,
+    record: &Record,
+    take: &mut dyn FnMut(&[usize]) -> Result<(), Faults>,
+) -> Result<(), Faults> {
+    let progress = work.cx.progress;
+    progress.parts(record.n_pieces());
+    let pieces: Vec<usize> = (0..record.n_pieces()).collect();
+    for group in pieces.chunks(GROUP) {
+        work.go_on()?;
+        take(group)?;
+        progress.advance(group.len());
+    }
+    Ok(())
+}
+
+/// Everything in report units.
+fn answer(
+    sensitivity: Sensitivity,
+    head: Arc<RecordHead>,
+    sums: Sums,
+    spans: Spans,
+    (content, motion, damage): (Option<Content>, Option<Motion>, Option<Vec<LoadDamage>>),
+) -> RecoveredRecord {
+    let known: Vec<f64> = (0..head.n_loads()).map(|l| sums.known(l) as f64).collect();
+    let rms: Vec<f64> = sums
+        .sum_of_squares
+        .iter()
+        .zip(&known)
+        .map(|(q, n)| (q / n.max(1.0)).sqrt())
+        .collect();
+    let sigma = head.filter.sigma(&rms);
+    let loads = head.units.iter().enumerate().map(|(l, u)| RecordLoad {
+        run: head.file.clone(),
+        name: head.names[l].clone(),
+        value: sums.sum[l] / known[l] * u.factor,
+        sigma: sigma[l] * u.factor,
+        unit: u.name.clone(),
+        min: sums.min[l] * u.factor,
+        max: sums.max[l] * u.factor,
+        rms: rms[l] * u.factor,
+    });
+    let (n, whole) = (sensitivity.gauges.len(), head.filter.whole());
+    let dof = n.saturating_sub(whole.rank).max(1) as f64;
+    let free: f64 = (0..n).map(|g| sums.read(g) as f64 * dof / n as f64).sum();
+    let residual = (sums.residual.iter().sum::<f64>() / free.max(1.0)).sqrt();
+    let gauges = sensitivity.gauges.iter().enumerate();
+    let gauges = gauges.map(|(g, name)| GaugeResidual {
+        name: name.clone(),
+        residual_rms_microstrain: (sums.residual[g] / sums.read(g).max(1) as f64).sqrt()
+            / MICROSTRAIN,
+        leverage: whole.leverage[g],
+    });
+    let [from, to] = spans.time();
+    let samples = sums.missing.samples();
+    RecoveredRecord {
+        loads: loads.collect(),
+        residual_rms_microstrain: residual / MICROSTRAIN,
+        gauges: gauges.collect(),
+        samples,
+        gaps: sums.missing.gaps,
+        duration_s: to - from,
+        sample_rate_hz: finite(samples.saturating_sub(1) as f64 / (to - from)),
+        content,
+        motion,
+        damage,
+        sensitivity,
+        head,
+        sums,
+        spans,
+        history: None,
+    }
+}

@@ -1,0 +1,97 @@
+//! Recovered runs compared with the loads that the runs file records of them.
+
+use super::known_payload::KnownLoads;
+use super::task::Task;
+use crate::finding::{Finding, Severity};
+use crate::host::fault::Faults;
+use crate::host::work::Work;
+use crate::input_faults::{RecordedRuns, findings_of_recorded_loads};
+use crate::job::Job;
+use crate::measured::runs_file::read_runs;
+use crate::recovery::{Readings, Recovery};
+use crate::sensitivity::Sensitivity;
+
+/// Returns the findings on recorded loads of the other sign, in another unit, or exchanged; those of a job without `[runs]` are none.
+///
+/// The strain of loads that the runs file does not record is taken from the readings, as it was recovered. Recorded loads are not used for
+/// the recovered ones: a finding is an error only if it may be the readings that are wrong.
+///
+/// # Errors
+/// The faults of the runs file.
+pub(super) fn wrong_records(
+    work: &mut Work,
+    task: &Task,
+    (s, readings): (&Sensitivity, &[Readings]),
+    recovery: &Recovery,
+    known: &KnownLoads,
+) -> Result<Vec<Finding>, Faults> {
+    let job = task.job;
+    let Some(runs) = &job.runs else {
+        return Ok(Vec::new());
+    };
+    let rows = read_runs(&mut work.inputs, job, runs)?;
+    let row_of = |run: &str| rows.iter().find(|r| r.run == run);
+    let is_taken_out = |l: usize| known.iter().flatten().any(|k| k.0 == l);
+    let is_recorded = |l: &usize| {
+        let column = rows
+            .iter()
+            .any(|r| r.loads_si.contains_key(&s.loads[*l].name));
+        column && !is_taken_out(*l)
+    };
+    let (recorded, other): (Vec<usize>, Vec<usize>) = (0..s.loads.len()).partition(is_recorded);
+    if recorded.is_empty() {
+        return Ok(Vec::new());
+    }
+    let per_job_unit: Vec<f64> = recorded
+        .iter()
+        .map(|l| si_of(job, &s.loads[*l].name))
+        .collect();
+    let size = |run: &str, i: usize| -> Option<f64> {
+        let si = row_of(run)?.loads_si.get(&s.loads[recorded[i]].name)?;
+        Some(si / per_job_unit[i])
+    };
+    let sizes: Vec<Vec<Option<f64>>> = readings
+        .iter()
+        .map(|r| (0..recorded.len()).map(|i| size(&r.run, i)).collect())
+        .collect();
+    let of_recorded = readings.iter().zip(&recovery.runs).map(|(r, found)| {
+        let strain = r.strain.iter().enumerate();
+        strain
+            .map(|(g, v)| {
+                let others = other.iter();
+                let rest = others.map(|l| s.values[(g, *l)] * found.estimate.values[*l]);
+                v - rest.sum::<f64>()
+            })
+            .collect()
+    });
+    let recorded_runs = RecordedRuns {
+        loads: recorded.iter().map(|l| s.loads[*l].name.as_str()).collect(),
+        readings: of_recorded.collect(),
+        strain_of: Box::new(|g, r, l, from| {
+            s.values[(g, recorded[l])] * sizes[r][from].unwrap_or(0.0)
+        }),
+        quantities: recorded.iter().map(|l| s.loads[*l].quantity).collect(),
+        known: sizes
+            .iter()
+            .map(|r| r.iter().all(Option::is_some))
+            .collect(),
+        excluded: Vec::new(),
+        noise: task.errors.noise,
+        model_rel: task.errors.model_rel,
+    };
+    let mut found = findings_of_recorded_loads(&recorded_runs, &format!("`{}`", runs.file.given));
+    for f in &mut found {
+        let whose = f.code != "inputs-exchanged" && f.subject == "all";
+        f.severity = if whose {
+            Severity::Error
+        } else {
+            Severity::Warning
+        };
+    }
+    Ok(found)
+}
+
+/// Returns SI units of one job unit of a load.
+fn si_of(job: &Job, name: &str) -> f64 {
+    job.quantity_of_load(name).map_or(1.0, |q| job.units.si(q))
+}

@@ -1,0 +1,277 @@
+//! Static states.
+
+use super::answer::RecoveredRuns;
+use super::combined::{Listed, listed};
+use super::known_payload::{self, KnownLoads};
+use super::recorded;
+use super::task::Task;
+use super::validation::{self, ValidationGauge};
+use crate::finding::{Finding, Severity, few};
+use crate::host::fault::Faults;
+use crate::host::work::Work;
+use crate::input_faults::not_explained_by;
+use crate::job::LoadActs;
+use crate::job::correct::channel_of;
+use crate::measured::columns::columns_of;
+use crate::measured::faults::no_gauge_column;
+use crate::measured::strain_table::StrainTable;
+use crate::measured::zero::{RowZeros, zeros_by_row};
+use crate::recovery::{Readings, Recovery, recover_with_alternatives};
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::{LoadUnits, alternative_rows};
+use crate::units::MICROSTRAIN;
+use std::collections::{HashMap, HashSet};
+
+/// Readings of the runs, less their zeros and the strain of loads that are known, and these loads.
+pub(super) fn read(
+    work: &mut Work,
+    task: &Task,
+    table: &StrainTable,
+) -> Result<(Vec<Readings>, KnownLoads), Faults> {
+    let s = &task.prepared.sensitivity;
+    let named = &task.measured.strain;
+    let names = table.runs();
+    let columns = columns_of(work, named, &table.gauges, &s.gauges);
+    if columns.iter().all(Option::is_none) {
+        return Err(no_gauge_column(task.job, &named.given, &table.gauges, &s.gauges).into());
+    }
+    let zeros = zeros_by_row(work, task.job, task.measured, table)?;
+    let mut readings = readings_of(table, names, &columns, task, zeros.as_ref());
+    // What the job leaves out is not missing.
+    let asked: Vec<(usize, &str)> = (task.estimating.iter())
+        .map(|g| (columns[*g], &s.gauges[*g]))
+        .filter(|(_, gauge)| !channel_of(&task.job.corrections, gauge).ignore)
+        .filter_map(|(column, gauge)| Some((column?, gauge.as_str())))
+        .collect();
+    work.findings.extend(blanks(table, names, &asked));
+    let known = known_payload::take_out(work, task, &mut readings)?;
+    Ok((readings, known))
+}
+
+/// Warnings of runs in which a gauge of the table gives nothing, of those in which all give one and the same number, and of copies of others.
+fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Vec<Finding> {
+    /// Gauges that read the same number, to its last digit, by chance in no run.
+    const MANY: usize = 3;
+    /// Numbers of a table at least that differ, for each gauge: with fewer its logger rounds so much that runs are alike by themselves.
+    const FINE: usize = 8;
+    let all = (0..names.len()).flat_map(|i| {
+        let row = table.row(i);
+        gauges.iter().filter_map(move |(c, _)| row.get(*c))
+    });
+    let different: HashSet<u64> = all.map(|v| v.to_bits()).collect();
+    let fine = different.len() >= (FINE * gauges.len()).min(names.len() * gauges.len() / 2);
+    let (mut blank, mut n, mut alike) = (Vec::new(), 0_usize, Vec::new());
+    let (mut first_with, mut repeated) = (HashMap::new(), Vec::new());
+    for (i, name) in names.iter().enumerate() {
+        let row = table.row(i);
+        let read = gauges.iter().filter_map(|(c, _)| row.get(*c));
+        let numbers: Vec<f64> = read.copied().filter(|v| v.is_finite()).collect();
+        let first = numbers.first().filter(|_| numbers.len() >= MANY);
+        if let Some(first) = first
+            && numbers.iter().all(|v| v == first)
+        {
+            alike.push(name.as_str());
+        } else if fine && numbers.len() >= MANY && numbers.len() == gauges.len() {
+            let bits: Vec<u64> = numbers.iter().map(|v| v.to_bits()).collect();
+            let first = *first_with.entry(bits).or_insert(name);
+            if first != name {
+                repeated.push(format!("{first} and {name}"));
+            }
+        }
+        for (c, gauge) in gauges {
+            if row.get(*c).is_none_or(|v| !v.is_finite()) {
+                n += 1;
+                blank.push(format!("{gauge} in {name}"));
+            }
+        }
+    }
+    let mut out = Vec::new();
+    if n > 0 {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "readings-missing",
+                few(&blank),
+                format!("{n} readings of `{}` are blank: the loads of these runs are those of the other gauges, with wider intervals", table.file),
+                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            )
+            .with_numbers(n as f64, 0.0),
+        );
+    }
+    if !repeated.is_empty() {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "readings-repeated",
+                few(&repeated),
+                "these runs have the same readings at all gauges, to the last digit, as no two measurements have: one is a copy",
+                "look the runs up in the logger's files",
+            )
+            .with_numbers(repeated.len() as f64, 0.0),
+        );
+    }
+    if !alike.is_empty() {
+        out.push(
+            Finding::new(
+                Severity::Warning,
+                "readings-all-alike",
+                few(&alike),
+                "in these runs all gauges give one and the same number, as loggers do that measure nothing: it counts as read",
+                "leave the run out if nothing was measured; blank fields are no readings",
+            )
+            .with_numbers(alike.len() as f64, 0.0),
+        );
+    }
+    out
+}
+
+/// Loads of the runs, with what they were estimated from.
+pub(super) struct Solved {
+    /// S of the gauges that loads are estimated from.
+    pub s: Sensitivity,
+    pub readings: Vec<Readings>,
+    pub recovery: Recovery,
+    pub validation: Vec<ValidationGauge>,
+}
+
+/// Reads the strain of the runs and recovers their loads.
+pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result<Solved, Faults> {
+    let s = task.prepared.sensitivity.of_gauges(&task.estimating);
+    let (all, known) = read(work, task, table)?;
+    let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
+    let mut recovery = work.stage("recover", |work| {
+        let fields = task.prepared.fields.as_ref();
+        let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
+        recover_with_alternatives(&s, &readings, task.errors, &mut others)
+    });
+    let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
+    work.findings.extend(validation::contradicted(&validation));
+    let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
+    work.findings
+        .extend(not_explained_by(&recovery.findings, wrong));
+    for (run, loads) in recovery.runs.iter_mut().zip(&known) {
+        for (l, value) in loads {
+            if let Some(found) = run.estimate.values.get_mut(*l) {
+                *found += value;
+            }
+        }
+    }
+    work.findings.extend(recovery.findings.iter().cloned());
+    Ok(Solved {
+        s,
+        readings,
+        recovery,
+        validation,
+    })
+}
+
+fn readings_of(
+    table: &StrainTable,
+    names: &[String],
+    columns: &[Option<usize>],
+    task: &Task,
+    zeros: Option<&RowZeros>,
+) -> Vec<Readings> {
+    names
+        .iter()
+        .enumerate()
+        .map(|(i, run)| {
+            let row = table.row(i);
+            let strain = columns.iter().zip(&task.zero).map(|(c, z)| {
+                let reading = c.and_then(|c| {
+                    let own = zeros.map_or(Some(0.0), |z| z.zero[i].get(c).copied())?;
+                    Some((row.get(c)? - own) * MICROSTRAIN)
+                });
+                reading.unwrap_or(f64::NAN) - z
+            });
+            Readings {
+                run: run.clone(),
+                strain: strain.collect(),
+                noise_factor: zeros.map_or(task.noise_factor, |z| z.noise_factor[i]),
+            }
+        })
+        .collect()
+}
+
+/// Loads of the runs, sums among them, with everything that is to be said of them.
+///
+/// # Errors
+/// Unreadable tables; sums of loads that S lacks.
+pub(super) fn runs(
+    work: &mut Work,
+    task: &Task,
+    table: &StrainTable,
+) -> Result<(RecoveredRuns, Vec<ValidationGauge>), Faults> {
+    let Solved {
+        s,
+        readings,
+        mut recovery,
+        validation,
+    } = solve(work, task, table)?;
+    let Listed {
+        names,
+        units,
+        sums: combinations,
+    } = listed(task.job, &s)?;
+    let k = s.loads.len();
+    work.findings.extend(sums(task, &recovery, &units[..k]));
+    for run in &mut recovery.runs {
+        run.estimate.add_sums(&names[k..], &combinations);
+    }
+    let runs = RecoveredRuns::of(&s, readings, recovery, names, units);
+    Ok((runs, validation))
+}
+
+/// Equilibrium: the sum of all forces by direction, where it is far from zero in a run.
+fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
+    let mut worst: Vec<String> = Vec::new();
+    let mut largest = 0.0_f64;
+    for component in ["FX", "FY", "FZ"] {
+        let members: Vec<usize> = task
+            .job
+            .loads
+            .iter()
+            .enumerate()
+            .filter(|(_, l)| matches!(l.acts, LoadActs::AtGrid { component: c, cid: 0, .. } if c.name() == component))
+            .map(|(i, _)| i)
+            .collect();
+        if members.len() < 2 {
+            continue;
+        }
+        let k = units.len();
+        for r in &recovery.runs {
+            let sum: f64 = members.iter().map(|&l| r.estimate.values[l]).sum();
+            let size: f64 = members.iter().map(|&l| r.estimate.values[l].abs()).sum();
+            let var: f64 = members
+                .iter()
+                .flat_map(|&a| members.iter().map(move |&b| (a, b)))
+                .map(|(a, b)| r.estimate.covariance[a * k + b])
+                .sum();
+            let half = r.estimate.coverage_factor * var.max(0.0).sqrt();
+            if sum.abs() > 2.0 * half && sum.abs() > 0.1 * size {
+                let u = &units[members[0]];
+                worst.push(format!(
+                    "{} {component} {:+.3} +- {:.3} {}",
+                    r.estimate.run,
+                    sum * u.factor,
+                    half * u.factor,
+                    u.name
+                ));
+                largest = largest.max(sum.abs() / size);
+            }
+        }
+    }
+    if worst.is_empty() {
+        return Vec::new();
+    }
+    vec![
+        Finding::new(
+            Severity::Info,
+            "loads-not-in-balance",
+            "equilibrium",
+            format!("the recovered forces do not add up to zero: {}. Under inertia relief acceleration takes the rest", few(&worst)),
+            "at a standstill they must: then a load is missing, or a sign or an `applied` is wrong",
+        )
+        .with_numbers(largest, 0.1),
+    ]
+}

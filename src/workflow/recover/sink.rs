@@ -1,0 +1,171 @@
+//! Who takes the loads of a record: they come in blocks, in order of time, and none is kept here.
+
+use crate::host::fault::Fault;
+use crate::job::LoadFile;
+use crate::recovery::Gain;
+use crate::recovery::history::{Filter, SampleLoads};
+use crate::strain_chain::LoadUnits;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Takes the loads of a record as they are recovered.
+pub trait RecordSink {
+    /// Before the first block.
+    ///
+    /// # Errors
+    /// Where they can't be taken, a file that can't be begun.
+    fn begin(&mut self, head: &Arc<RecordHead>) -> Result<(), Fault>;
+
+    /// The next blocks, in order of time.
+    ///
+    /// # Errors
+    /// Where they can't be taken; the record is read no further.
+    fn take(&mut self, blocks: Vec<Block>) -> Result<(), Fault>;
+
+    /// After the last block: how many samples there were.
+    ///
+    /// # Errors
+    /// What was left to be done and failed.
+    fn end(&mut self, samples: u64) -> Result<(), Fault>;
+
+    /// The samples that were taken, to be read once more; asked for after the last block, and only where [`RecordHead::is_read_again`].
+    ///
+    /// # Errors
+    /// Where they can't be read.
+    fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault>;
+}
+
+/// Samples of a record, read in any order.
+pub trait Samples: Sync {
+    /// How many.
+    fn n_samples(&self) -> usize;
+
+    /// Appends samples `from .. to`, of each the loads `columns`: report units, rounded to single precision; NaN where a load is not known.
+    fn read(&self, from: usize, to: usize, columns: &[usize], out: &mut Vec<f64>);
+}
+
+/// Takes the loads of a record and keeps none.
+pub(super) struct Unheard;
+
+impl RecordSink for Unheard {
+    fn begin(&mut self, _: &Arc<RecordHead>) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn take(&mut self, _: Vec<Block>) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn end(&mut self, _: u64) -> Result<(), Fault> {
+        Ok(())
+    }
+
+    fn samples(&self) -> Result<Box<dyn Samples + '_>, Fault> {
+        Ok(Box::new(Self))
+    }
+}
+
+impl Samples for Unheard {
+    fn n_samples(&self) -> usize {
+        0
+    }
+
+    fn read(&self, _: usize, _: usize, _: &[usize], _: &mut Vec<f64>) {}
+}
+
+/// What is known of the loads of a record before the first of them.
+#[derive(Debug)]
+pub struct RecordHead {
+    /// The strain file, as the job names it.
+    pub file: String,
+    /// Loads, then combinations.
+    pub names: Vec<String>,
+    /// Units of both.
+    pub units: Vec<LoadUnits>,
+    /// The estimate of every sample.
+    pub filter: Filter,
+    /// Time of the first sample, s.
+    pub first_s: f64,
+    /// Time between samples, s.
+    pub step_s: f64,
+    /// Every how many samples a table as text has a row.
+    pub stride: usize,
+    /// What is to be made of the history.
+    pub files: Vec<LoadFile>,
+    /// Stretches of samples in which some gauges are dead, and the estimate from the others.
+    pub stretches: Vec<(Range<usize>, Arc<Gain>)>,
+}
+
+impl RecordHead {
+    /// Number of loads, combinations among them.
+    pub fn n_loads(&self) -> usize {
+        self.names.len()
+    }
+
+    /// The estimate of a sample in such a stretch; `None` where all gauges read.
+    pub fn estimate_at(&self, sample: usize) -> Option<&Gain> {
+        let stretch = self.stretches.iter().find(|s| s.0.contains(&sample));
+        stretch.map(|s| &*s.1)
+    }
+
+    /// Whether anything is made of the history that has to read all of it again.
+    pub fn is_read_again(&self) -> bool {
+        !self.files.is_empty()
+    }
+
+    /// Value, low and high end of the 95 % interval of the loads of a sample, report units; `None` where the gauges that read don't tell it.
+    pub fn intervals<'a>(
+        &'a self,
+        sample: &Sample<'a>,
+    ) -> impl Iterator<Item = Option<[f64; 3]>> + 'a {
+        let sigma = self.filter.sigma_at(sample.at, sample.gap, sample.loads);
+        let loads = sample.loads.iter().zip(sigma).zip(&self.units);
+        loads.map(|((v, s), u)| {
+            let half = self.filter.coverage_factor() * s;
+            let known = v.is_finite() && s.is_finite();
+            known.then_some([*v, v - half, v + half].map(|v| v * u.factor))
+        })
+    }
+}
+
+/// Some samples on end.
+#[derive(Clone, Debug)]
+pub struct Block {
+    /// Which sample of the record its first is.
+    pub first: usize,
+    /// Times, s.
+    pub times: Vec<f64>,
+    /// Loads, job units.
+    pub loads: SampleLoads,
+}
+
+/// A sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// Its number in the record.
+    pub at: usize,
+    /// Time, s.
+    pub time: f64,
+    /// Loads, job units; NaN where the gauges that read don't tell them.
+    pub loads: &'a [f64],
+    /// The estimate, where some gauge gave nothing.
+    pub gap: Option<&'a Gain>,
+}
+
+impl Block {
+    /// Its samples of `n_loads` loads each.
+    pub fn samples(&self, n_loads: usize) -> impl Iterator<Item = Sample<'_>> {
+        let mut gaps = self.loads.gaps.iter().peekable();
+        let loads = self.loads.values.chunks_exact(n_loads.max(1));
+        let samples = self.times.iter().zip(loads).enumerate();
+        samples.map(move |(i, (time, loads))| {
+            let gap = gaps.next_if(|g| g.0 == i);
+            Sample {
+                at: self.first + i,
+                time: *time,
+                loads,
+                gap: gap.and_then(|g| g.1.as_deref()),
+            }
+        })
+    }
+}

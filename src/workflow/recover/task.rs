@@ -1,0 +1,107 @@
+//! What runs and records share: measured strain, S, zero and reference, stated errors.
+
+use crate::finding::{Finding, Severity};
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::Work;
+use crate::job::{Job, Measured, Reference};
+use crate::measured::reference::reference_strain;
+use crate::measured::zero::zero_of;
+use crate::recovery::ErrorModel;
+use crate::sensitivity::Sensitivity;
+use crate::strain_chain::{Prepared, stated_errors};
+use std::collections::HashSet;
+
+/// What runs and records share.
+pub(super) struct Task<'a> {
+    pub job: &'a Job,
+    pub measured: &'a Measured,
+    pub prepared: &'a Prepared,
+    pub errors: ErrorModel,
+    /// Strain subtracted from readings, by gauge of S.
+    pub zero: Vec<f64>,
+    /// Rows of S from which loads are estimated.
+    pub estimating: Vec<usize>,
+    /// Rows of S of the gauges that the estimate is compared with.
+    pub validation: Vec<usize>,
+    /// Noise variance of a reading less zero, in units of that of a reading.
+    pub noise_factor: f64,
+}
+
+/// `[measured]` of a job.
+pub(super) fn measured_of(job: &Job) -> Result<&Measured, Faults> {
+    job.measured.as_ref().ok_or_else(|| {
+        Faults::from(Fault::of(
+            &*job.file,
+            "measured",
+            "the job has no [measured]",
+            "name the strain file: [measured] strain = \"strain.csv\"",
+        ))
+    })
+}
+
+/// Says that loads are changes, where no reference is stated.
+pub(super) fn changes(measured: &Measured) -> Option<Finding> {
+    (measured.reference == Reference::None).then(|| {
+        Finding::new(
+            Severity::Info,
+            "loads-are-changes",
+            "measured.reference",
+            "loads are changes from the state at which the gauges read zero",
+            "state `reference` to get totals",
+        )
+    })
+}
+
+/// What runs and records share: zero, reference, stated errors.
+pub(super) fn task_of<'a>(
+    work: &mut Work,
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+) -> Result<Task<'a>, Faults> {
+    let mut task = without_reference(work, job, measured, prepared)?;
+    let reference = reference_strain(job, measured, prepared)?;
+    for (z, r) in task.zero.iter_mut().zip(reference) {
+        *z -= r;
+    }
+    Ok(task)
+}
+
+/// The same, the strain of the reference state left out of the readings.
+pub(super) fn without_reference<'a>(
+    work: &mut Work,
+    job: &'a Job,
+    measured: &'a Measured,
+    prepared: &'a Prepared,
+) -> Result<Task<'a>, Faults> {
+    let (zero, n_zero) = zero_of(work, job, measured, &prepared.sensitivity.gauges)?;
+    if !measured.states_noise {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "noise-assumed",
+            "measured.noise_microstrain",
+            format!(
+                "the job does not say how much readings scatter: {} microstrain (1 sd) is taken, and all intervals rest on it",
+                measured.noise_microstrain
+            ),
+            "state noise_microstrain: the scatter of a gauge at rest",
+        ));
+    }
+    let (validation, estimating) = validation_rows(job, &prepared.sensitivity);
+    Ok(Task {
+        estimating,
+        validation,
+        job,
+        measured,
+        prepared,
+        errors: stated_errors(measured, &prepared.sensitivity, prepared.fields.as_ref()),
+        zero,
+        noise_factor: 1.0 + n_zero.map_or(0.0, |n| 1.0 / n),
+    })
+}
+
+/// Returns the rows of S of the job's validation gauges, then all other rows.
+pub(super) fn validation_rows(job: &Job, s: &Sensitivity) -> (Vec<usize>, Vec<usize>) {
+    let names: HashSet<String> = job.validation_readings().into_iter().collect();
+    (0..s.gauges.len()).partition(|&g| names.contains(&s.gauges[g]))
+}

@@ -1,0 +1,226 @@
+//! `respond`: strain and stress anywhere on the structure from recovered loads, by superposition of the unit fields.
+
+mod gauges;
+mod outcome;
+mod states;
+
+pub use gauges::{Check, GaugeCheck};
+pub use outcome::{Element, Field, Responded};
+
+use crate::estimate::NORMAL_95;
+use crate::finding::{Finding, Severity, few};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::{self, Job};
+use crate::model::{GridIx, Model};
+use crate::respond::{Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
+use crate::strain_chain::named_results::check_tables;
+use crate::strain_chain::{Prepared, WantedAt, has_covariance, prepare, read_fields};
+use crate::units::factor;
+use std::collections::BTreeSet;
+
+/// Strain and stress by superposition of the unit fields: the hottest elements of a job, or those it names, over all states of its loads.
+///
+/// # Errors
+/// Every fault of the job and of what it names; a given S, which has no fields.
+pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let answer = responded(&mut work, &job.estimating()?)?;
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// Reads the table of loads that the job names, as `respond` does, and drops it.
+///
+/// # Errors
+/// A table that can't be read, or that lacks a load.
+pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
+    let loads = job.respond.loads.as_ref();
+    loads.map_or(Ok(()), |named| {
+        states::from_table(work, job, named).map(|_| ())
+    })
+}
+
+fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
+    check_tables(work, job)?;
+    let calibrated = has_covariance(job) && job.model.is_some();
+    if job.sensitivity.is_some() && !calibrated {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "sensitivity",
+            "S was computed elsewhere: there are no unit fields to superpose",
+            "give a [model] instead",
+        )));
+    }
+    let prepared = if job.gauges.is_empty() {
+        Prepared {
+            sensitivity: crate::sensitivity::Sensitivity {
+                gauges: Vec::new(),
+                loads: Vec::new(),
+                values: crate::linalg::Matrix::zeros(0, job.loads.len()),
+                uncertainty: None,
+            },
+            fields: Some(read_fields(work, job, WantedAt::Anywhere)?),
+            gauges: Vec::new(),
+            mesh_error: Vec::new(),
+        }
+    } else {
+        prepare(work, job)?
+    };
+    let Some(fields) = &prepared.fields else {
+        return Err(Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )
+        .into());
+    };
+    let states = states::read(work, job, &prepared)?;
+    let wanted = job.respond.elements.as_ref();
+    let (rows, findings) = response_rows(fields.model(), &fields.load_cases(job), |_| true);
+    work.findings.extend(findings);
+    if rows.is_empty() {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "model",
+            "no element has strain in every load's subcase",
+            "ask for STRAIN(FIBER,CENTER) = ALL in every subcase",
+        )));
+    }
+    let peaks = work.stage("superpose", |_| envelope(&rows, &states));
+    let spots = hot_spots(fields.model(), &rows, &peaks);
+    let mut order: Vec<usize> = (0..rows.len()).collect();
+    match wanted {
+        Some(ids) => order.retain(|i| ids.contains(rows[*i].element)),
+        None => {
+            order.sort_by(|a, b| peaks[*b].von_mises.total_cmp(&peaks[*a].von_mises));
+            order.truncate(job.respond.hottest);
+        }
+    }
+    if order.is_empty() {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            job.respond.line,
+            "respond.elements",
+            "none of these elements has stress",
+            "name shells, bars or beams of the deck",
+        )));
+    }
+    say_findings(work, job, fields.model(), &rows, &peaks, &order);
+    let check = gauges::check(work, job, &prepared, &states)?;
+    let u = factor(job.units, job.report_units.stress);
+    let entry = |i: &usize| {
+        let (r, p) = (&rows[*i], &peaks[*i]);
+        Element {
+            element: r.element,
+            surface: r.surface_word(),
+            max_von_mises: p.von_mises * u,
+            at: states.get(p.at).map(|s| s.label.clone()),
+            sigma: p.sigma * u,
+            low: (p.von_mises - NORMAL_95 * p.sigma).max(0.0) * u,
+            high: (p.von_mises + NORMAL_95 * p.sigma) * u,
+        }
+    };
+    let hottest = spots.iter().take(job.respond.hottest);
+    Ok(Responded {
+        elements: order.iter().map(entry).collect(),
+        hot_spots: hottest.map(entry).collect(),
+        states: states.len(),
+        stress_unit: job.report_units.stress.name,
+        gauges: check.rows.clone(),
+        field: Field {
+            rows,
+            peaks,
+            order,
+            spots,
+            states,
+        },
+        check,
+        prepared,
+        job: job.clone(),
+    })
+}
+
+/// Grids of the element of a row.
+pub fn grids(model: &Model, row: &ResponseRow) -> Vec<GridIx> {
+    match row.place {
+        Place::Shell { shell, .. } => model
+            .shells
+            .get(shell.us())
+            .map_or_else(Vec::new, |s| s.grids[..s.shape.n_corners()].to_vec()),
+        Place::Beam { beam, .. } => model
+            .beams
+            .get(beam.us())
+            .map_or_else(Vec::new, |b| b.grids.to_vec()),
+    }
+}
+
+fn say_findings(
+    work: &mut Work,
+    job: &Job,
+    model: &Model,
+    rows: &[ResponseRow],
+    peaks: &[Peak],
+    order: &[usize],
+) {
+    let joints: BTreeSet<GridIx> = model
+        .rigids
+        .iter()
+        .flat_map(|r| r.kind.grids())
+        .chain(
+            model
+                .joints
+                .iter()
+                .flat_map(|j| &j.ends)
+                .flat_map(|e| e.motion.iter().map(|m| m.0)),
+        )
+        .collect();
+    let at_joint: Vec<String> = order
+        .iter()
+        .filter(|i| grids(model, &rows[**i]).iter().any(|g| joints.contains(g)))
+        .map(|i| rows[*i].element.to_string())
+        .collect::<BTreeSet<_>>()
+        .into_iter()
+        .collect();
+    if !at_joint.is_empty() {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "hot-at-a-joint",
+                few(&at_joint),
+                "these elements touch a rigid element: their stress is that of the idealised joint and grows as the mesh is refined",
+                "judge the joint by its forces, or by elements a plate thickness away",
+            )
+            .with_numbers(at_joint.len() as f64, 0.0),
+        );
+    }
+    if job
+        .measured
+        .as_ref()
+        .is_none_or(|m| m.reference == job::Reference::None)
+    {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "stress-is-change",
+            "respond",
+            "loads that are changes give stress that is the change from the state at which the gauges read zero",
+            "state [measured] reference to get totals",
+        ));
+    }
+    if let Some(p) = order.first().map(|i| &peaks[*i])
+        && p.sigma > 0.1 * p.von_mises
+    {
+        work.findings.push(
+            Finding::new(
+                Severity::Warning,
+                "stress-uncertain",
+                "respond",
+                "the loads are so uncertain that the largest stress is known to worse than 10 % (1 sd)",
+                "improve the gauge layout (`place`), or lower the noise",
+            )
+            .with_numbers(p.sigma / p.von_mises, 0.1),
+        );
+    }
+}

@@ -1,0 +1,73 @@
+//! What `respond` answers.
+
+use super::gauges::{Check, GaugeCheck};
+use crate::host::outcome::Answer;
+use crate::job::Job;
+use crate::respond::{LoadState, Peak, ResponseRow};
+use crate::strain_chain::Prepared;
+use serde::Serialize;
+
+/// Stress from loads.
+#[derive(Serialize)]
+pub struct Responded {
+    /// The elements asked for, or the hottest, the hottest first.
+    pub elements: Vec<Element>,
+    /// Elements hotter than all that share a grid with them.
+    pub hot_spots: Vec<Element>,
+    /// How many states of the loads there are.
+    pub states: usize,
+    /// Unit of the stresses.
+    pub stress_unit: &'static str,
+    /// Predicted against measured strain at the gauges.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gauges: Vec<GaugeCheck>,
+    /// All elements.
+    #[serde(skip)]
+    pub field: Field,
+    /// The comparison at the gauges, state by state.
+    #[serde(skip)]
+    pub check: Check,
+    /// S, gauges, model and strain fields.
+    #[serde(skip)]
+    pub prepared: Prepared,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Responded {
+    const COMMAND: &'static str = "respond";
+}
+
+/// Response of every element to every state, model units.
+pub struct Field {
+    /// Load-to-response matrix, row by row.
+    pub rows: Vec<ResponseRow>,
+    /// The largest von Mises stress of each row.
+    pub peaks: Vec<Peak>,
+    /// Rows asked for, or the hottest.
+    pub order: Vec<usize>,
+    /// Rows hotter than all that share a grid with them, the hottest first.
+    pub spots: Vec<usize>,
+    /// States of the loads.
+    pub states: Vec<LoadState>,
+}
+
+/// The largest stress of an element.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Element {
+    /// Element id.
+    pub element: u32,
+    /// Side of a shell, recovery point of a bar.
+    pub surface: String,
+    /// Largest von Mises stress over the states.
+    pub max_von_mises: f64,
+    /// The state.
+    pub at: Option<String>,
+    /// One standard deviation of it, from that of the loads.
+    pub sigma: f64,
+    /// Lower end of its 95 % interval.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}

@@ -1,0 +1,127 @@
+//! `sensitivity`: S of the job's gauges, or of its candidates where it has none.
+
+use crate::gauge::{Gauge, GaugeSpec, build};
+use crate::host::context::Context;
+use crate::host::fault::Faults;
+use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::{AngleStep, Job};
+use crate::sensitivity::{check_separability, common_shells, from_cases};
+use crate::strain_chain::named_results::check_tables;
+use crate::strain_chain::{
+    Conditioning, GaugeMeshError, Prepared, WantedAt, lay_gauges, load_units, mesh_errors, prepare,
+    read_fields, without_strain,
+};
+use crate::workflow::place::allowed_sites;
+use serde::Serialize;
+
+/// S of a job's gauges or candidates.
+#[derive(Serialize)]
+pub struct Sensed {
+    /// Rank and condition numbers.
+    #[serde(flatten)]
+    pub conditioning: Conditioning,
+    /// How many gauges.
+    pub gauges: usize,
+    /// Names of the loads, a column each.
+    pub loads: Vec<String>,
+    /// What reports count each load in.
+    pub report_units_of_loads: Vec<String>,
+    /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mesh_error: Vec<GaugeMeshError>,
+    /// S itself, with the model and the gauges it was made of.
+    #[serde(skip)]
+    pub prepared: Prepared,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Sensed {
+    const COMMAND: &'static str = "sensitivity";
+}
+
+/// S of the job's gauges, or of each allowed surface at each angle of the grid where it has none.
+///
+/// # Errors
+/// Every fault of the job and of the files it names.
+pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    check_tables(&work, job)?;
+    let prepared = prepared(&mut work, job)?;
+    let s = &prepared.sensitivity;
+    let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
+    let units = load_units(job, &loads).into_iter().map(|u| u.name);
+    let answer = Sensed {
+        conditioning: Conditioning::of(s),
+        gauges: s.gauges.len(),
+        report_units_of_loads: units.collect(),
+        loads,
+        mesh_error: prepared.mesh_error.clone(),
+        prepared,
+        job: job.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// S of a job's gauges, or of its candidates where it has none; whether it tells the loads apart goes to the work.
+///
+/// # Errors
+/// Every fault of the job and of the files it names.
+pub(crate) fn prepared(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
+        work.stage("candidates", |w| of_candidates(w, job))?
+    } else {
+        prepare(work, job)?
+    };
+    work.findings
+        .extend(check_separability(&prepared.sensitivity));
+    Ok(prepared)
+}
+
+/// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).
+fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    let fields = read_fields(work, job, WantedAt::Anywhere)?;
+    let cases = fields.load_cases(job);
+    let (common, findings) = common_shells(&cases);
+    work.findings.extend(findings);
+    let step = match job.candidates.angles {
+        AngleStep::Degrees(d) => d,
+        AngleStep::Continuous => 15.0,
+    };
+    let steps = (180.0 / step).ceil() as usize;
+    let corners = fields.corner_rows(job);
+    let (mut gauges, mut left_out): (Vec<Gauge>, usize) = (Vec::new(), 0);
+    for (shell, surface) in allowed_sites(job, &fields, &common)? {
+        for i in 0..steps {
+            let angle = step * i as f64;
+            let id = fields.model().shells.get(shell.us()).map_or(0, |s| s.id);
+            let spec = GaugeSpec {
+                surface: Some(surface),
+                angle_rad: angle.to_radians(),
+                grid_length: job.candidates.grid_length,
+                ..GaugeSpec::on(format!("{id}.{}.{angle}", surface.word()), shell)
+            };
+            match build(fields.model(), &spec, corners) {
+                Ok((g, _)) => gauges.extend(g),
+                Err(_) => left_out += 1,
+            }
+        }
+    }
+    if left_out > 0 {
+        work.notes.push(format!(
+            "{left_out} candidates are left out: the part is shorter than `grid_length` there, or the element has no area"
+        ));
+    }
+    gauges.extend(lay_gauges(work, job, &fields)?);
+    let sensitivity =
+        from_cases(&gauges, &cases).map_err(|missing| without_strain(job, &missing))?;
+    let mesh_error = mesh_errors(&gauges, &sensitivity, &fields.mesh_cases(job));
+    Ok(Prepared {
+        sensitivity,
+        fields: Some(fields),
+        gauges: Vec::new(),
+        mesh_error,
+    })
+}

@@ -1,0 +1,325 @@
+//! `solve`: the built-in solver on a job's unit loads or on a deck's own static subcases.
+
+use crate::fe::{
+    Balance, Corners, LoadCase, Reactions, Relief, Solution, SolveOptions, SolveReport, Support,
+    SupportChoice, refuse, relief_finding, suport_without_inrel,
+};
+use crate::finding::{Finding, Severity};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::linalg::sparse::OrderingMethod;
+use crate::model::{Model, Shell};
+use crate::strain_chain::combined_subcases::{CombinedSubcase, add_combinations, read_combination};
+use crate::strain_chain::deck::{DeckModel, read_model};
+use crate::strain_chain::job_deck::read_deck;
+use crate::strain_chain::named_results::{Absent, check_named};
+pub use crate::strain_chain::solved::MODES;
+use crate::strain_chain::solved::{
+    cases_of_job, faults_of, is_combination, refuse_repeated_subcases, relief_of_job, solve_kept,
+    static_case, support_of_job,
+};
+use crate::units::UnitSystem;
+use nastran::bdf::Request;
+use nastran::cards::ShellShape;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Load cases solved by the built-in solver.
+#[derive(Serialize)]
+pub struct SolvedCases {
+    /// Grids of the model.
+    pub grids: usize,
+    /// Unknowns.
+    pub dofs: usize,
+    /// Entries of the factor.
+    pub factor_nonzeros: usize,
+    /// How the unknowns were ordered.
+    pub ordering: Option<OrderingMethod>,
+    /// Smallest pivot over the largest entry of its row.
+    pub smallest_pivot: f64,
+    /// Nastran's epsilon of the worst case before and after refinement: |u'(f - K u)| / |u'f|.
+    pub epsilon: [f64; 2],
+    /// Units of mass, balance and reactions: those of the job's system; null for a deck, which doesn't say.
+    pub model_units: StatedUnits,
+    /// By load case: what acts, what inertia takes, what is left.
+    pub balance: Vec<Balance>,
+    /// Mass and its centre.
+    pub mass: Option<MassAndCentre>,
+    /// What holds the structure under the unit loads of a job, in words; `None` for a deck, whose subcases say so themselves.
+    pub support: Option<String>,
+    /// By load case: resultants of what acts and of the reactions, and the reactions grid by grid, basic frame; empty where nothing is held.
+    pub reactions: Vec<Reactions>,
+    /// First elastic frequencies, per unit of time.
+    pub elastic_modes_hz: Vec<f64>,
+    /// Largest resident memory of the process so far, bytes; `None` where the system does not tell.
+    pub peak_memory_bytes: Option<u64>,
+    /// Title of the report.
+    #[serde(skip)]
+    pub title: String,
+    /// The job's system of units.
+    #[serde(skip)]
+    pub system: Option<UnitSystem>,
+    /// The deck's model.
+    #[serde(skip)]
+    pub deck: DeckModel,
+    /// What was solved.
+    #[serde(skip)]
+    pub cases: Vec<LoadCase>,
+    /// Displacements and strain.
+    #[serde(skip)]
+    pub solution: Solution,
+    /// What the solver said.
+    #[serde(skip)]
+    pub report: SolveReport,
+}
+
+/// Mass and its centre, basic frame.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MassAndCentre {
+    /// Mass, the deck's units.
+    pub mass: f64,
+    /// Centre.
+    pub cg: [f64; 3],
+}
+
+impl Answer for SolvedCases {
+    const COMMAND: &'static str = "solve";
+}
+
+/// What is to be solved.
+struct Task {
+    read: DeckModel,
+    cases: Vec<LoadCase>,
+    /// Where strain is wanted.
+    corners: Corners,
+    /// Combinations of them.
+    combined: Vec<CombinedSubcase>,
+    /// Why a subcase of the deck is left out.
+    left_out: Vec<String>,
+    /// What holds the structure of a job.
+    support: Option<String>,
+}
+
+/// The unit loads of a job, solved by the built-in solver.
+///
+/// # Errors
+/// Every fault of the job and its deck; what stops the solver.
+pub fn solve(
+    job: &Job,
+    options: SolveOptions,
+    cx: &Context,
+) -> Result<Outcome<SolvedCases>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let task = work.stage("read", |w| of_job(w, job))?;
+    let title = title_of(Path::new(&job.file));
+    let answer = solved(&mut work, task, options, title, Some(job.units))?;
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// The static subcases of a deck, solved by the built-in solver.
+///
+/// # Errors
+/// Every fault of the deck; what stops the solver.
+pub fn solve_deck(
+    path: &Path,
+    options: SolveOptions,
+    cx: &Context,
+) -> Result<Outcome<SolvedCases>, Faults> {
+    let mut work = Work::new(cx);
+    let task = work.stage("read", |w| of_deck(w, path))?;
+    let answer = solved(&mut work, task, options, title_of(path), None)?;
+    Ok(work.finish(StatedUnits::default(), answer))
+}
+
+fn title_of(path: &Path) -> String {
+    let stem = path.file_stem();
+    stem.map_or_else(String::new, |s| s.to_string_lossy().into_owned())
+}
+
+fn solved(
+    work: &mut Work,
+    task: Task,
+    options: SolveOptions,
+    title: String,
+    system: Option<UnitSystem>,
+) -> Result<SolvedCases, Faults> {
+    let Task {
+        read,
+        mut cases,
+        combined,
+        corners,
+        left_out,
+        support,
+    } = task;
+    let options = SolveOptions { corners, ..options };
+    for why in left_out {
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "subcase-left-out",
+            read.given.clone(),
+            why,
+            "solve it with Nastran",
+        ));
+    }
+    let (mut solution, mut report) = solve_kept(work, &read, &cases, options)?;
+    add_combinations(&read, &combined, &mut cases, (&mut solution, &mut report))?;
+    work.findings.extend(solution.findings.iter().cloned());
+    Ok(SolvedCases {
+        grids: report.grids,
+        dofs: report.dofs,
+        factor_nonzeros: report.factor_nonzeros,
+        ordering: report.ordering,
+        smallest_pivot: report.smallest_pivot,
+        epsilon: report.epsilon,
+        model_units: system.map_or_else(StatedUnits::default, StatedUnits::of_model),
+        balance: report.balance.clone(),
+        mass: report.mass.map(|m| MassAndCentre {
+            mass: m.mass,
+            cg: [m.cg.x, m.cg.y, m.cg.z],
+        }),
+        support,
+        reactions: report.reactions.clone(),
+        elastic_modes_hz: report.modes.clone(),
+        peak_memory_bytes: peak_memory(),
+        title,
+        system,
+        deck: read,
+        cases,
+        solution,
+        report,
+    })
+}
+
+fn of_job(work: &mut Work, job: &Job) -> Result<Task, Faults> {
+    let Some(files) = &job.model else {
+        return Err(Fault::of(
+            &*job.file,
+            "model",
+            "the job has no [model]",
+            "name the deck: [model] deck = \"model.bdf\"",
+        )
+        .into());
+    };
+    check_named(work, job, Absent::Refused)?;
+    let read = read_deck(work, job, files)?;
+    let support = support_of_job(job, &read.model)?;
+    let cases = cases_of_job(job, &read)?;
+    work.findings.extend(relief_of_job(job, &read.model)?);
+    Ok(Task {
+        read,
+        cases,
+        combined: Vec::new(),
+        corners: Corners::Compute,
+        left_out: Vec::new(),
+        support: Some(support.words()),
+    })
+}
+
+fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
+    let given = path.display().to_string();
+    let base = PathBuf::new();
+    let read = read_model(&mut work.inputs, &base, &given)?;
+    work.findings.extend(read.findings.iter().cloned());
+    Faults::check(read.faults.clone())?;
+    refuse_repeated_subcases(&read)?;
+    refuse(&read.model, &[]).map_err(|e| faults_of(&e, &read))?;
+    work.findings
+        .extend(suport_without_inrel(&read.model, read.deck.sol));
+    work.findings.extend(other_sequence(&read));
+    let mut left_out = Vec::new();
+    let mut cases = Vec::new();
+    let mut combined = Vec::new();
+    let mut corners = corners_always_written(&read.model);
+    let subcases = read.deck.case_control.effective_subcases();
+    let mut solved = Vec::new();
+    for (i, s) in subcases.iter().enumerate() {
+        if is_combination(s) {
+            let at = cases.len() + combined.len();
+            let above = (&subcases[..i], solved.as_slice());
+            combined.push(read_combination(&read, s, above, at)?);
+            solved.push(None);
+            continue;
+        }
+        match static_case(&read.model, s) {
+            Ok(case) => {
+                if s.request("STRAIN").is_none_or(asks_for_corners) {
+                    corners = Corners::Compute;
+                }
+                solved.push(Some(cases.len()));
+                cases.push(case);
+            }
+            Err(why) => {
+                left_out.push(format!("subcase {}: {why}", s.id));
+                solved.push(None);
+            }
+        }
+    }
+    let relieved = cases.iter().find(|c| c.spc.is_none());
+    work.findings.extend(relieved.and_then(|c| {
+        let support = match c.relief {
+            Relief::None => return None,
+            _ => Support::free(&read.model),
+        };
+        relief_finding(&read.model, support, SupportChoice::Deck)
+    }));
+    if cases.is_empty() {
+        return Err(Faults::from(Fault::of(
+            given,
+            "case control",
+            "no static subcase with a LOAD",
+            "add `LOAD = n` to a subcase, or give a job with [[load]] entries",
+        )));
+    }
+    Ok(Task {
+        read,
+        cases,
+        combined,
+        corners,
+        left_out,
+        support: None,
+    })
+}
+
+/// Returns a note that loads of a deck for another linear analysis are solved as statics.
+fn other_sequence(read: &DeckModel) -> Option<Finding> {
+    /// Sequences with static subcases: statics, inertia relief, buckling, optimisation.
+    const STATICS: [u32; 9] = [1, 2, 5, 24, 61, 65, 101, 105, 200];
+    let sequence = read.deck.sol.filter(|s| !STATICS.contains(s))?;
+    Some(Finding::new(
+        Severity::Info,
+        "solution-sequence",
+        &read.given,
+        format!(
+            "SOL {sequence} has no static subcases: the loads that its subcases select are solved as linear statics"
+        ),
+        "write SOL 101 if statics is meant",
+    ))
+}
+
+/// Whether a request for strain names a method for corners; Nastran's default is the centre. A deck that asks for no strain at all gets
+/// both.
+fn asks_for_corners(r: &Request) -> bool {
+    ["CORNER", "BILIN", "CUBIC", "SGAGE"]
+        .iter()
+        .any(|o| r.has(o))
+}
+
+/// Result files have no element type for the centre of CQUAD8 and CTRIA6 alone.
+fn corners_always_written(model: &Model) -> Corners {
+    let curved = |s: &Shell| matches!(s.shape, ShellShape::Quad8 | ShellShape::Tria6);
+    if model.shells.iter().any(curved) {
+        Corners::Compute
+    } else {
+        Corners::Leave
+    }
+}
+
+/// Largest resident memory of this process so far, bytes; `None` where the system does not tell.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string("/proc/self/status").ok()?;
+    let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;
+    Some(line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024)
+}

@@ -1,0 +1,156 @@
+//! `strains`: shell and bar strain of every static subcase, in the element and the basic frame.
+
+use crate::fe::Solution;
+use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
+use crate::fe::strain_rows::{n_rows, without_normal_strain};
+use crate::finding::{Finding, Severity, few};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::files::FileBytes;
+use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::work::Work;
+use crate::model::Model;
+use crate::strain_chain::deck::{looks_like_op2, read_model};
+use crate::strain_chain::solved::find_repeated_subcases;
+use nastran::results::ResultsFile;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// Strain of every static subcase of results.
+#[derive(Serialize)]
+pub struct Strains {
+    /// Rows of `strains.csv`.
+    pub rows: usize,
+    /// How many static subcases.
+    pub subcases: usize,
+    /// Their ids.
+    pub subcase_ids: Vec<u32>,
+    /// The deck as given.
+    #[serde(skip)]
+    pub given: String,
+    /// Its model.
+    #[serde(skip)]
+    pub model: Model,
+    /// The strain.
+    #[serde(skip)]
+    pub solution: Solution,
+}
+
+impl Answer for Strains {
+    const COMMAND: &'static str = "strains";
+}
+
+/// Shell and bar strain of every static subcase, for `strains.csv`.
+///
+/// # Errors
+/// Files that can't be read, or that are no deck and results.
+pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome<Strains>, Faults> {
+    let mut work = Work::new(cx);
+    let given = deck.display().to_string();
+    let deck = work.stage("deck", |s| read_model(&mut s.inputs, Path::new(""), &given))?;
+    Faults::check(deck.incomplete())?;
+    work.findings.extend(deck.findings.iter().cloned());
+    work.findings.extend(find_repeated_subcases(&deck));
+    // Without elements nothing can be placed. Else the run was possible, and a fault elsewhere (an unused set, say) is worth a warning.
+    if deck.model.shells.is_empty() && deck.model.beams.is_empty() {
+        Faults::check(deck.faults.clone())?;
+    }
+    let warn = |f: &Fault| {
+        Finding::new(
+            Severity::Warning,
+            "deck-fault",
+            given.as_str(),
+            f.to_string(),
+            "see `check`; the mesh is used as it is",
+        )
+    };
+    work.findings.extend(deck.faults.iter().map(warn));
+    let files = work.stage("read", |s| result_bytes(results, &given, s))?;
+    let (mut opened, mut faults) = (Vec::new(), FaultList::new());
+    for (name, bytes) in &files {
+        match ResultsFile::read(bytes, name) {
+            Ok(file) => opened.push((name.as_str(), file)),
+            Err(e) => faults.push(Fault::of(
+                name,
+                "results",
+                e.to_string(),
+                "give a result file of this deck",
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    let options = ReadOptions {
+        displacements: Displacements::Leave,
+        ..ReadOptions::default()
+    };
+    let named: Vec<(&str, &ResultsFile)> =
+        opened.iter().map(|(name, file)| (*name, file)).collect();
+    let mut solution = work.stage("strain", |_| {
+        solution_from_results(&deck.model, &named, &options)
+    });
+    if let Some(cut) = deck.cut_beside(&solution.findings) {
+        return Err(cut.into());
+    }
+    work.findings.append(&mut solution.findings);
+    let silent = without_normal_strain(&deck.model, &solution.cases);
+    if !silent.is_empty() {
+        let ids: Vec<String> = silent.iter().map(u32::to_string).collect();
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "normal-strain-unknown",
+            format!("properties {}", few(&ids)),
+            "their material does not give the strain along the thickness: the basic-frame tensor holds the part in the surface alone",
+            "",
+        ));
+    }
+    let subcase_ids: Vec<u32> = solution.cases.iter().map(|c| c.subcase).collect();
+    let rows = solution.cases.iter().map(|c| n_rows(&deck.model, c)).sum();
+    if rows == 0 {
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "no-strain-rows",
+            given.as_str(),
+            "the results hold neither strain nor stress of shells, bars or beams in a static subcase",
+            "ask for STRAIN(FIBER) = ALL in every subcase, or let `solve` on the deck compute it",
+        ));
+    }
+    let answer = Strains {
+        rows,
+        subcases: subcase_ids.len(),
+        subcase_ids,
+        given,
+        model: deck.model,
+        solution,
+    };
+    Ok(work.finish(StatedUnits::default(), answer))
+}
+
+/// Name and bytes of every result file; the deck itself where it is an OP2 and no other file is given.
+fn result_bytes(
+    results: &[PathBuf],
+    deck: &str,
+    work: &mut Work,
+) -> Result<Vec<(String, FileBytes)>, Faults> {
+    let mut names: Vec<String> = results.iter().map(|p| p.display().to_string()).collect();
+    let from_deck = names.is_empty();
+    if from_deck {
+        names.push(deck.to_owned());
+    }
+    let (mut files, mut faults) = (Vec::new(), FaultList::new());
+    for name in names {
+        match work.inputs.read(Path::new(""), &name) {
+            Ok(bytes) if from_deck && !looks_like_op2(&bytes) => {
+                faults.push(Fault::of(
+                    &name,
+                    "results",
+                    "no result file given",
+                    "name the OP2, punch or H5 file after the deck, or let `solve` on the deck write one",
+                ));
+            }
+            Ok(bytes) => files.push((name, bytes)),
+            Err(fault) => faults.push(fault),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(files)
+}

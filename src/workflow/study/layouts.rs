@@ -1,0 +1,297 @@
+//! Layouts of a study: the gauges given, random ones, the best ones.
+
+use super::pool::{Prepared, on_model};
+use crate::finding::{Finding, Severity, few};
+use crate::gauge::GaugeSpec;
+use crate::host::fault::{Fault, Faults};
+use crate::host::work::Work;
+use crate::job::{Job, LoadRole, Optimality, Study};
+use crate::placement::candidates::{Angles, Candidates, Choice, Scatter};
+use crate::placement::sites::{Site, candidates};
+use crate::placement::{self, PlaceError, Spec, place};
+use crate::sensitivity::{LoadCaseOf, common_shells};
+use crate::study::PoolGauge;
+use crate::workflow::place::{allowed_sites, angles, column_order, scales, scatter};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// Random layouts that the trials are dealt over.
+const RANDOM_LAYOUTS: usize = 50;
+
+/// Gauges of one kind and count.
+pub(super) struct LayoutOf {
+    /// `given`, `random`, `D`, `Ds`.
+    pub name: String,
+    /// How many.
+    pub gauges: usize,
+    /// What the members index.
+    pub pool: Vec<PoolGauge>,
+    /// One layout, or many random ones.
+    pub members: Vec<Vec<usize>>,
+}
+
+/// Every layout and count that the job asks for and the pool allows.
+///
+/// # Errors
+/// No pool at all, candidates that can't be used.
+pub(super) fn of(
+    work: &mut Work,
+    job: &Job,
+    study: &Study,
+    prepared: &Prepared,
+) -> Result<Vec<LayoutOf>, Faults> {
+    let counts = if study.gauges.is_empty() {
+        let all = prepared.pool.len();
+        vec![if all > 0 {
+            all
+        } else {
+            2 * prepared.loads.len()
+        }]
+    } else {
+        study.gauges.clone()
+    };
+    // The job's gauges are the pool unless it says where others could go.
+    let from_model =
+        prepared.fields.is_some() && (job.candidates.line > 0 || prepared.pool.is_empty());
+    let mut out = Vec::new();
+    let mut skipped: Vec<String> = Vec::new();
+    let wide = if from_model {
+        Some(Wide::new(work, job, prepared)?)
+    } else {
+        None
+    };
+    for name in &study.layouts {
+        for &n in &counts {
+            work.go_on()?;
+            let layout = match (name.as_str(), &wide) {
+                ("given", _) => (n <= prepared.pool.len()).then(|| LayoutOf {
+                    name: name.clone(),
+                    gauges: n,
+                    pool: prepared.pool.clone(),
+                    members: vec![(0..n).collect()],
+                }),
+                ("random", _) if n <= prepared.pool.len() => Some(LayoutOf {
+                    name: name.clone(),
+                    gauges: n,
+                    pool: prepared.pool.clone(),
+                    members: random_subsets(prepared.pool.len(), n, study.seed),
+                }),
+                ("random", Some(w)) => w.random(job, prepared, n, study.seed),
+                ("random", None) => None,
+                (_, Some(w)) => Some(w.best(job, prepared, name, n)?),
+                (_, None) if n <= prepared.pool.len() => {
+                    Some(best_of_pool(job, prepared, name, n)?)
+                }
+                _ => None,
+            };
+            match layout {
+                Some(l) => out.push(l),
+                None => skipped.push(format!("{name} {n}")),
+            }
+        }
+    }
+    if !skipped.is_empty() {
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "layouts-skipped",
+            few(&skipped),
+            format!(
+                "the job has {} gauges: these layouts need more",
+                prepared.pool.len()
+            ),
+            "name more gauges, or a [candidates] section",
+        ));
+    }
+    if out.is_empty() {
+        return Err(Faults::from(Fault::at(
+            &*job.file,
+            study.line,
+            "study.layouts",
+            "no layout can be formed",
+            "name gauges, or a [candidates] section on a [model]",
+        )));
+    }
+    Ok(out)
+}
+
+/// Subsets of `n` out of `all`, the same for a seed every time.
+fn random_subsets(all: usize, n: usize, seed: u64) -> Vec<Vec<usize>> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    (0..RANDOM_LAYOUTS)
+        .map(|_| {
+            let mut left: Vec<usize> = (0..all).collect();
+            (0..n)
+                .map(|_| left.swap_remove(random.random_range(0..left.len())))
+                .collect()
+        })
+        .collect()
+}
+
+fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
+    let mut spec = Spec::new(n, k);
+    spec.spacing = job.placement.spacing;
+    spec.effort.seed = job.placement.seed;
+    for (l, &from) in order.iter().enumerate() {
+        let load = job.loads.get(from);
+        if load.is_some_and(|j| j.role == LoadRole::Nuisance && j.expected.is_some()) {
+            spec.prior[l * k + l] = 1.0;
+        }
+    }
+    if name == "Ds" || job.placement.criterion == Optimality::Ds {
+        let nuisance = job
+            .loads
+            .iter()
+            .filter(|l| l.role == LoadRole::Nuisance)
+            .count();
+        spec.criterion = placement::Criterion::Ds(nuisance);
+    }
+    spec
+}
+
+fn refused(job: &Job, study: &str, e: &PlaceError) -> Faults {
+    let line = job.study.as_ref().map_or(0, |s| s.line);
+    let (wrong, remedy) = e.parts();
+    let field = format!("study.layouts {study}");
+    Faults::from(Fault::at(&*job.file, line, field, wrong, remedy))
+}
+
+/// The D-optimal part of the job's own gauges.
+fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<LayoutOf, Faults> {
+    let k = prepared.loads.len();
+    let mut order: Vec<usize> = (0..k).collect();
+    order.sort_by_key(|&l| prepared.loads[l].wanted);
+    let noise = job.placement.noise_microstrain * 1e-6;
+    let scale: Vec<f64> = prepared
+        .loads
+        .iter()
+        .enumerate()
+        .map(|(l, load)| {
+            let norm = prepared
+                .pool
+                .iter()
+                .map(|g| g.row[l].powi(2))
+                .sum::<f64>()
+                .sqrt();
+            load.expected
+                .filter(|e| *e > 0.0)
+                .unwrap_or(if norm > 0.0 { 1.0 / norm } else { 1.0 })
+        })
+        .collect();
+    let c = Candidates::from_rows(k, prepared.pool.len(), Scatter::uniform(noise), |g, out| {
+        for (o, &l) in out.iter_mut().zip(&order) {
+            *o = prepared.pool[g].row[l] * scale[l];
+        }
+    });
+    let mut spec = spec_of(job, name, n, k, &order);
+    spec.spacing = 0.0;
+    let layout = place(&c, &spec).map_err(|e| refused(job, name, &e))?;
+    Ok(LayoutOf {
+        name: name.to_owned(),
+        gauges: n,
+        pool: prepared.pool.clone(),
+        members: vec![layout.gauges.iter().map(|g| g.place as usize).collect()],
+    })
+}
+
+/// Candidates on the model.
+struct Wide {
+    sites: Vec<Site>,
+    candidates: Candidates,
+    order: Vec<usize>,
+}
+
+impl Wide {
+    fn new(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<Self, Faults> {
+        let Some(fields) = &prepared.fields else {
+            return Err(Fault::of(
+                &*job.file,
+                "model",
+                "the job has no [model]",
+                "name the deck: [model] deck = \"model.bdf\"",
+            )
+            .into());
+        };
+        let cases = fields.load_cases(job);
+        let (common, _) = common_shells(&cases);
+        let sites = allowed_sites(job, fields, &common)?;
+        let sizes = scales(work, &cases, &common);
+        let order = column_order(job);
+        let (led, led_scales): (Vec<LoadCaseOf>, Vec<f64>) =
+            order.iter().map(|&l| (cases[l].clone(), sizes[l])).unzip();
+        let quarter = crate::gauge::Bridge::Quarter;
+        let scatter = scatter(job, fields.model(), &sites, quarter, &led, &led_scales);
+        let candidates = candidates(
+            fields.model(),
+            &sites,
+            &led,
+            &led_scales,
+            angles(job.candidates.angles),
+            scatter,
+        );
+        Ok(Self {
+            sites,
+            candidates,
+            order,
+        })
+    }
+
+    fn gauge(&self, job: &Job, prepared: &Prepared, choice: &Choice) -> Option<PoolGauge> {
+        let fields = prepared.fields.as_ref()?;
+        let (shell, surface) = *self.sites.get(choice.place as usize)?;
+        let spec = GaugeSpec {
+            surface: Some(surface),
+            angle_rad: choice.angle,
+            grid_length: job.candidates.grid_length,
+            ..GaugeSpec::on("candidate", shell)
+        };
+        on_model(fields, job, &fields.load_cases(job), &spec)
+    }
+
+    fn best(
+        &self,
+        job: &Job,
+        prepared: &Prepared,
+        name: &str,
+        n: usize,
+    ) -> Result<LayoutOf, Faults> {
+        let spec = spec_of(job, name, n, prepared.loads.len(), &self.order);
+        let layout = place(&self.candidates, &spec).map_err(|e| refused(job, name, &e))?;
+        let pool: Vec<PoolGauge> = layout
+            .gauges
+            .iter()
+            .filter_map(|c| self.gauge(job, prepared, c))
+            .collect();
+        Ok(LayoutOf {
+            name: name.to_owned(),
+            gauges: n,
+            members: vec![(0..pool.len()).collect()],
+            pool,
+        })
+    }
+
+    /// Random places and angles among the candidates.
+    fn random(&self, job: &Job, prepared: &Prepared, n: usize, seed: u64) -> Option<LayoutOf> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let pool: Vec<PoolGauge> = (0..n * RANDOM_LAYOUTS)
+            .filter_map(|_| {
+                let angle = match self.candidates.angles() {
+                    Angles::Grid(a) => a[random.random_range(0..a.len())],
+                    _ => random.random_range(0.0..std::f64::consts::PI),
+                };
+                let choice = Choice {
+                    place: random.random_range(0..self.sites.len()) as u32,
+                    step: 0,
+                    angle,
+                };
+                self.gauge(job, prepared, &choice)
+            })
+            .collect();
+        let all: Vec<usize> = (0..pool.len()).collect();
+        Some(LayoutOf {
+            name: "random".into(),
+            gauges: n,
+            members: all.chunks_exact(n).map(<[usize]>::to_vec).collect(),
+            pool,
+        })
+    }
+}

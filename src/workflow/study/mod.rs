@@ -1,0 +1,334 @@
+//! `study`: recovery repeated under stated errors, for a range of gauge counts and layouts.
+
+mod layouts;
+mod pool;
+
+use crate::finding::{Finding, Severity};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::work::Work;
+use crate::job::{Job, Study};
+use crate::measured::runs_file::{RunRow, read_runs};
+use crate::sensitivity::{Load, check_separability};
+use crate::strain_chain::named_results::check_tables;
+use crate::strain_chain::{Conditioning, LoadUnits, load_units};
+use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, TrueLoad, study_layout};
+use crate::units::{MICROSTRAIN, Quantity};
+use serde::Serialize;
+
+/// One line of the answer.
+struct Line {
+    layout: String,
+    gauges: usize,
+    error: String,
+    row: StudyRow,
+}
+
+/// Recovery repeated under stated errors.
+#[derive(Serialize)]
+pub struct Studied {
+    /// A row a layout, number of gauges and error.
+    pub study: Vec<StudiedLayout>,
+    /// Rank and condition numbers of the gauges that the job has.
+    #[serde(flatten)]
+    pub conditioning: Option<Conditioning>,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
+}
+
+impl Answer for Studied {
+    const COMMAND: &'static str = "study";
+}
+
+/// A layout under one error.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudiedLayout {
+    /// Which layout.
+    pub layout: String,
+    /// Its number of gauges.
+    pub gauges: usize,
+    /// Kind and size of the error.
+    pub error: String,
+    /// S in strain per job unit.
+    pub condition_number: Option<f64>,
+    /// Mean over the wanted loads of `relative_rms`.
+    pub mean_relative_rms: Option<f64>,
+    /// By load.
+    pub loads: Vec<StudiedLoad>,
+}
+
+/// A load under one error.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StudiedLoad {
+    /// Load.
+    pub name: String,
+    /// Mean error, report units.
+    pub bias: Option<f64>,
+    /// Standard deviation of the error, report units.
+    pub sigma: Option<f64>,
+    /// Root mean square error over the true size.
+    pub relative_rms: Option<f64>,
+    /// Share of the trials whose 95 % interval held the truth.
+    pub coverage: Option<f64>,
+    /// Report unit.
+    pub unit: String,
+    /// Whether it is asked for.
+    #[serde(skip)]
+    pub wanted: bool,
+}
+
+/// Recovery repeated under stated errors, for a range of gauge counts and layouts.
+///
+/// # Errors
+/// Every fault of the job and of the files it names; loads of unknown size.
+pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
+    let mut work = Work::of_job(cx, job);
+    let job = &job.estimating()?;
+    let Some(study) = &job.study else {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "study",
+            "the job has no [study]",
+            "state it: [study] layouts = [\"given\", \"D\"], gauges = [8, 10], errors = [{ kind = \"relative-uniform\", size = 0.1 }]",
+        )));
+    };
+    let errors = errors(job, study)?;
+    check_tables(&work, job)?;
+    let prepared = pool::prepare(&mut work, job)?;
+    let loads = &prepared.loads;
+    let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
+    let units = load_units(job, &names);
+    let truth = truth(&mut work, job, study, loads)?;
+    let spec = StudySpec {
+        truth: truth.clone(),
+        prior: loads
+            .iter()
+            .map(|l| if l.wanted { None } else { l.expected })
+            .collect(),
+        sizes: loads.iter().map(|l| l.expected).collect(),
+        noise: MICROSTRAIN
+            * job
+                .measured
+                .as_ref()
+                .map_or(job.placement.noise_microstrain, |m| m.noise_microstrain),
+        trials: study.trials,
+        seed: study.seed,
+    };
+    if let Some(l) = loads.iter().find(|l| !l.wanted && l.expected.is_none()) {
+        return Err(Faults::from(Fault::of(
+            &*job.file,
+            "load.expected",
+            format!("nuisance load `{}` has no size", l.name),
+            "state `expected`, its standard deviation: it is drawn in every trial",
+        )));
+    }
+    let layouts = layouts::of(&mut work, job, study, &prepared)?;
+    let mut lines: Vec<Line> = Vec::new();
+    work.stage("repeat", |w| -> Result<(), Faults> {
+        w.cx.progress.parts(layouts.len() * errors.len());
+        for l in &layouts {
+            for (error, word) in &errors {
+                w.go_on()?;
+                lines.push(Line {
+                    layout: l.name.clone(),
+                    gauges: l.gauges,
+                    error: word.clone(),
+                    row: study_layout(&l.pool, &l.members, *error, &spec),
+                });
+                w.cx.progress.advance(1);
+            }
+        }
+        Ok(())
+    })?;
+    if let Some(s) = &prepared.installed {
+        work.findings.extend(check_separability(s));
+    }
+    findings(&mut work, &lines, loads);
+    let rows = lines
+        .iter()
+        .map(|line| studied(line, loads, &units, &truth));
+    let answer = Studied {
+        study: rows.collect(),
+        conditioning: prepared.installed.as_ref().map(Conditioning::of),
+        job: job.clone(),
+    };
+    Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults> {
+    if study.errors.is_empty() {
+        let size = job.placement.noise_microstrain;
+        let error = StudyError {
+            kind: ErrorKind::AbsoluteNormal,
+            size,
+        };
+        return Ok(vec![(error, format!("absolute-normal {size}"))]);
+    }
+    let known: Vec<&str> = ErrorKind::ALL.iter().map(|k| k.word()).collect();
+    let mut faults = FaultList::new();
+    let mut out = Vec::new();
+    for (word, size) in &study.errors {
+        match ErrorKind::from_word(word) {
+            Some(kind) => out.push((
+                StudyError { kind, size: *size },
+                format!("{} {size}", kind.word()),
+            )),
+            None => faults.push(Fault::at(
+                &*job.file,
+                study.line,
+                "study.errors.kind",
+                format!("`{word}` is no kind of error"),
+                format!("write one of {}", known.join(", ")),
+            )),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// Returns the true loads: those of the first run of the runs file that has all wanted ones, else drawn in every trial with `expected` as
+/// standard deviation. Nuisance loads are always drawn.
+fn truth(
+    work: &mut Work,
+    job: &Job,
+    study: &Study,
+    loads: &[Load],
+) -> Result<Vec<TrueLoad>, Faults> {
+    let drawn = |l: &Load| TrueLoad::Drawn(l.expected.unwrap_or(0.0));
+    if let Some(runs) = &job.runs {
+        let rows = read_runs(&mut work.inputs, job, runs)?;
+        let (n, nm) = (
+            job.units.si(Quantity::Force),
+            job.units.si(Quantity::Moment),
+        );
+        let of = |row: &RunRow| -> Option<Vec<f64>> {
+            loads
+                .iter()
+                .map(|l| {
+                    let si = row.loads_si.get(&l.name).copied();
+                    let stated = job.loads.iter().find(|j| j.name == l.name);
+                    let moment = stated
+                        .and_then(|j| j.report_unit(&job.report_units))
+                        .is_some_and(|u| u.quantity == Quantity::Moment);
+                    match (si, l.wanted) {
+                        (Some(v), _) => Some(v / if moment { nm } else { n }),
+                        (None, false) => Some(0.0),
+                        (None, true) => None,
+                    }
+                })
+                .collect()
+        };
+        if let Some((run, values)) = rows.iter().find_map(|r| of(r).map(|v| (r.run.clone(), v))) {
+            work.findings.push(Finding::new(
+                Severity::Info,
+                "true-loads",
+                &run,
+                format!("the loads of run `{run}` are taken as true"),
+                "",
+            ));
+            let known = loads.iter().zip(values).map(|(l, f)| match l.wanted {
+                true => TrueLoad::Known(f),
+                false => drawn(l),
+            });
+            return Ok(known.collect());
+        }
+    }
+    let without: Vec<&str> = loads
+        .iter()
+        .filter(|l| l.wanted && l.expected.is_none())
+        .map(|l| l.name.as_str())
+        .collect();
+    if without.is_empty() {
+        work.findings.push(Finding::new(
+            Severity::Info,
+            "true-loads",
+            "load.expected",
+            "no run states all loads: in every trial each load is drawn, normal with mean 0 and standard deviation `expected`",
+            "",
+        ));
+        return Ok(loads.iter().map(drawn).collect());
+    }
+    Err(Faults::from(Fault::at(
+        &*job.file,
+        study.line,
+        "load.expected",
+        format!("nothing says how large {} are", without.join(", ")),
+        "state `expected` of every load, or a runs file with them",
+    )))
+}
+
+/// Root mean square error of a load over its true size.
+fn relative(row: &StudyRow, truth: &[TrueLoad], l: usize) -> f64 {
+    row.bias[l].hypot(row.sigma[l]) / truth[l].size()
+}
+
+fn mean_relative(row: &StudyRow, truth: &[TrueLoad], loads: &[Load]) -> f64 {
+    let all: Vec<f64> = (0..loads.len())
+        .filter(|l| loads[*l].wanted && truth[*l].size() != 0.0)
+        .map(|l| relative(row, truth, l))
+        .collect();
+    all.iter().sum::<f64>() / all.len().max(1) as f64
+}
+
+fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
+    for line in lines {
+        if line.row.sigma.iter().all(|s| s.is_nan()) {
+            work.findings.push(Finding::new(
+                Severity::Warning,
+                "layout-singular",
+                format!("{} {}", line.layout, line.gauges),
+                format!(
+                    "none of these layouts separates the {} loads: there is no answer to study",
+                    loads.len()
+                ),
+                "ask for more gauges than loads",
+            ));
+        } else if line.row.singular > 0 {
+            work.findings.push(
+                Finding::new(
+                    Severity::Info,
+                    "layouts-singular",
+                    format!("{} {}", line.layout, line.gauges),
+                    "some layouts do not separate the loads and are left out",
+                    "ask for more gauges than loads",
+                )
+                .with_numbers(line.row.singular as f64, 0.0),
+            );
+        }
+    }
+    let bars: Vec<&Line> = lines
+        .iter()
+        .filter(|l| l.error.starts_with("position") && l.row.sigma.iter().all(|s| *s == 0.0))
+        .collect();
+    if !bars.is_empty() {
+        work.findings.push(Finding::new(
+            Severity::Warning,
+            "place-without-effect",
+            "position",
+            "S is given, or the gauges sit on bars: nothing tells how strain changes with place, and errors of place do nothing here",
+            "give a [model] with shells",
+        ));
+    }
+}
+
+fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[TrueLoad]) -> StudiedLayout {
+    let by_load = (0..loads.len()).map(|l| StudiedLoad {
+        name: loads[l].name.clone(),
+        bias: finite(line.row.bias[l] * units[l].factor),
+        sigma: finite(line.row.sigma[l] * units[l].factor),
+        relative_rms: finite(relative(&line.row, truth, l)),
+        coverage: finite(line.row.coverage[l]),
+        unit: units[l].name.clone(),
+        wanted: loads[l].wanted,
+    });
+    StudiedLayout {
+        layout: line.layout.clone(),
+        gauges: line.gauges,
+        error: line.error.clone(),
+        condition_number: finite(line.row.condition_number),
+        mean_relative_rms: finite(mean_relative(&line.row, truth, loads)),
+        loads: by_load.collect(),
+    }
+}

@@ -1,0 +1,203 @@
+//! Gauges that a study can choose from, with how their rows change when they are turned or shifted.
+
+use crate::fe::shell_frame::{ShellPlace, shell_axes};
+use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading, to_side};
+use crate::host::fault::Faults;
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::model::{Model, Vec3};
+use crate::sensitivity::{Load, LoadCaseOf, Sensitivity};
+use crate::strain_chain::{Fields, WantedAt, corrected_spec_of, read_fields};
+use crate::study::PoolGauge;
+
+/// What the layouts are made of.
+pub(super) struct Prepared {
+    /// Columns.
+    pub loads: Vec<Load>,
+    /// The job's gauges; empty without.
+    pub pool: Vec<PoolGauge>,
+    /// S of the job's gauges.
+    pub installed: Option<Sensitivity>,
+    /// Model and fields; `None` where S is given.
+    pub fields: Option<Fields>,
+}
+
+/// S of the job's gauges by the chain of all commands; the model alone where the job has neither gauges nor S.
+///
+/// # Errors
+/// Faults of the deck, the results, the gauges.
+pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+    if job.sensitivity.is_none() && job.gauges.is_empty() {
+        let fields = read_fields(work, job, WantedAt::Anywhere)?;
+        let cases = fields.load_cases(job);
+        return Ok(Prepared {
+            loads: cases.into_iter().map(|c| c.load).collect(),
+            pool: Vec::new(),
+            installed: None,
+            fields: Some(fields),
+        });
+    }
+    let prepared = crate::strain_chain::prepare(work, job)?;
+    let s = prepared.sensitivity;
+    // Beside a given S the model says nothing of gauges turned or moved.
+    let fields = prepared.fields.filter(|_| job.sensitivity.is_none());
+    let row = |g: usize| -> Vec<f64> { s.values.row(g).iter().copied().collect() };
+    let pool = match &fields {
+        None => (0..s.gauges.len())
+            .map(|g| PoolGauge {
+                row: row(g),
+                turned: None,
+                slope: None,
+            })
+            .collect(),
+        Some(fields) => {
+            let cases = fields.load_cases(job);
+            let mut pool = Vec::new();
+            for g in &job.gauges {
+                let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
+                let n = spec.rosette.map_or(1, |r| r.legs().len());
+                for leg in 0..n {
+                    let row = row(pool.len());
+                    pool.push(variants(fields, job, &cases, &spec, leg, row));
+                }
+            }
+            pool
+        }
+    };
+    Ok(Prepared {
+        loads: s.loads.clone(),
+        pool,
+        installed: Some(s),
+        fields,
+    })
+}
+
+/// The pool gauge of a specification on the model.
+pub(super) fn on_model(
+    fields: &Fields,
+    job: &Job,
+    cases: &[LoadCaseOf],
+    spec: &GaugeSpec,
+) -> Option<PoolGauge> {
+    let (gauges, _) = build(fields.model(), spec, fields.corner_rows(job)).ok()?;
+    let row = row_of(gauges.first()?, cases)?;
+    Some(variants(fields, job, cases, spec, 0, row))
+}
+
+fn row_of(gauge: &Gauge, cases: &[LoadCaseOf]) -> Option<Vec<f64>> {
+    cases
+        .iter()
+        .map(|c| reading(gauge, c.case).map(|v| v / c.applied))
+        .collect()
+}
+
+/// Turned by 45 and 90 degrees, and moved to the neighbouring elements.
+fn variants(
+    fields: &Fields,
+    job: &Job,
+    cases: &[LoadCaseOf],
+    spec: &GaugeSpec,
+    leg: usize,
+    row: Vec<f64>,
+) -> PoolGauge {
+    let model = fields.model();
+    let corners = fields.corner_rows(job);
+    let laid = |spec: &GaugeSpec| -> Option<Gauge> {
+        build(model, spec, corners).ok()?.0.into_iter().nth(leg)
+    };
+    let turned = |by: f64| {
+        row_of(
+            &laid(&GaugeSpec {
+                angle_rad: spec.angle_rad + by,
+                ..spec.clone()
+            })?,
+            cases,
+        )
+    };
+    let quarter = std::f64::consts::FRAC_PI_4;
+    let is_beam = matches!(spec.place, GaugePlace::Beam { .. });
+    let turned = if is_beam {
+        None
+    } else {
+        turned(quarter)
+            .zip(turned(2.0 * quarter))
+            .map(|(a, b)| [a, b])
+    };
+    let here = laid(spec);
+    let slope = here.filter(|_| !is_beam).and_then(|g| {
+        let [x, y] = [0, 1].map(|k| slope(model, &laid, spec, &g, cases, k));
+        Some([x?, y?])
+    });
+    PoolGauge { row, turned, slope }
+}
+
+/// Cosine between normals up to which a neighbour counts as the same plate.
+const SAME_PLATE: f64 = 0.98;
+
+/// Change of the row per length along direction `k` of the element: from the neighbours on both sides that lie in the same plate; zero
+/// at an edge without one.
+fn slope(
+    model: &Model,
+    laid: &dyn Fn(&GaugeSpec) -> Option<Gauge>,
+    spec: &GaugeSpec,
+    here: &Gauge,
+    cases: &[LoadCaseOf],
+    k: usize,
+) -> Option<Vec<f64>> {
+    let ix = model.shell_ix(here.element)?;
+    let shell = model.shells.get(ix.us())?;
+    let axes = shell_axes(model, shell, ShellPlace::Centre)?;
+    let along: Vec3 = axes.row(k).transpose();
+    let corners: Vec<Vec3> = shell.grids[..shell.shape.n_corners()]
+        .iter()
+        .filter_map(|g| model.grids.get(g.us()).map(|g| g.x))
+        .collect();
+    let reach = corners.iter().map(|x| x.dot(&along));
+    let size =
+        reach.clone().fold(f64::NEG_INFINITY, f64::max) - reach.fold(f64::INFINITY, f64::min);
+    let middle = corners.iter().sum::<Vec3>() / corners.len() as f64;
+    // On the skin, so that the neighbour's side is the same one in space.
+    let skin = here.normal * to_side(model, shell, here.surface);
+    let mut ends: Vec<(f64, Vec<f64>)> = Vec::new();
+    for sign in [-1.0, 1.0] {
+        let at = middle + skin + along * (sign * size);
+        let moved = GaugeSpec {
+            place: GaugePlace::Nearest(at),
+            direction: Some(here.direction),
+            angle_rad: 0.0,
+            surface: None,
+            rosette: None,
+            ..spec.clone()
+        };
+        let Some(g) = laid(&moved) else { continue };
+        if g.outward().dot(&here.outward()) < SAME_PLATE {
+            continue;
+        }
+        // With centre strain a gauge reads its element's centre: the distance is that of the centres.
+        let other = model
+            .shell_ix(g.element)
+            .and_then(|i| model.shells.get(i.us()));
+        let centre = other.map(|s| {
+            let n = s.shape.n_corners();
+            let sum: Vec3 = s.grids[..n]
+                .iter()
+                .filter_map(|g| model.grids.get(g.us()).map(|g| g.x))
+                .sum();
+            sum / n as f64
+        })?;
+        let distance = (centre - middle).dot(&along);
+        if let Some(row) = row_of(&g, cases).filter(|_| distance.abs() > 0.1 * size) {
+            ends.push((distance, row));
+        }
+    }
+    let own = row_of(here, cases)?;
+    Some(match ends.as_slice() {
+        [(a, low), (b, high)] => low
+            .iter()
+            .zip(high)
+            .map(|(l, h)| (h - l) / (b - a))
+            .collect(),
+        [(d, row)] => row.iter().zip(&own).map(|(r, o)| (r - o) / d).collect(),
+        _ => vec![0.0; cases.len()],
+    })
+}

@@ -1,0 +1,304 @@
+//! `verify`: a result folder against what its inputs give now, file by file and number by number.
+
+use crate::finding::{Finding, LISTED, Severity};
+use crate::host::context::Context;
+use crate::host::fault::{Fault, Faults};
+use crate::host::files::Input;
+use crate::host::manifest::Manifest;
+use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::work::Work;
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Keys of result.json that are of the run and not of the answer.
+const OF_THE_RUN: [&str; 3] = ["seconds", "peak_memory_bytes", "extended_model"];
+
+/// What a recomputation found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Verified {
+    /// Inputs that still have the bytes that were read, and files that came out the same.
+    pub same: Vec<String>,
+    /// Everything else.
+    pub differs: Vec<Difference>,
+}
+
+impl Answer for Verified {
+    const COMMAND: &'static str = "verify";
+}
+
+/// A difference between what stands in the folder and what its inputs give now.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Difference {
+    /// Input as given, or file of the folder.
+    pub file: String,
+    /// Key of result.json, or line of a table; empty for a file as a whole.
+    pub at: String,
+    /// What stands in the folder.
+    pub was: String,
+    /// What comes out now.
+    pub now: String,
+}
+
+/// What a folder says of how it was made.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Made {
+    /// The command.
+    pub command: String,
+    /// What it read, the job or deck first.
+    pub inputs: Vec<Input>,
+}
+
+/// How a result folder was made, by its `result.json`.
+///
+/// # Errors
+/// A fault where there is none, or it is none of ours.
+pub fn made(folder: &Path) -> Result<Made, Fault> {
+    let file = folder.join("result.json");
+    let name = file.display().to_string();
+    let fault = |wrong: String| {
+        Fault::of(
+            &*name,
+            "result.json",
+            wrong,
+            "name a folder that a command wrote",
+        )
+    };
+    let text = std::fs::read_to_string(&file).map_err(|e| fault(format!("can't be read ({e})")))?;
+    let json: Value = serde_json::from_str(&text).map_err(|e| fault(e.to_string()))?;
+    let command = json.get("command").and_then(Value::as_str);
+    let inputs = json.get("inputs").and_then(Value::as_array);
+    let (Some(command), Some(inputs)) = (command, inputs) else {
+        return Err(fault("it names no command and no inputs".to_owned()));
+    };
+    let text_of = |v: &Value, key: &str| v.get(key).and_then(Value::as_str).map(str::to_owned);
+    let inputs = inputs.iter().filter_map(|v| {
+        Some(Input {
+            path: text_of(v, "path")?,
+            sha256: text_of(v, "sha256")?,
+        })
+    });
+    Ok(Made {
+        command: command.to_owned(),
+        inputs: inputs.collect(),
+    })
+}
+
+/// A result folder against what its inputs give now.
+///
+/// `again` makes the same answer anew from what the folder says of itself and from the job or deck that it was made from, and returns the folder
+/// where it wrote it. Whoever calls says how: the command starts a process of its own, in which nothing that this one holds can colour the answer.
+///
+/// # Errors
+/// Folders that can't be read, a job or deck that isn't found, and what `again` returns.
+pub fn verify(
+    folder: &Path,
+    again: impl FnOnce(&Made, &Path) -> Result<PathBuf, Faults>,
+    cx: &Context,
+) -> Result<Outcome<Verified>, Faults> {
+    let mut work = Work::new(cx);
+    let made = made(folder)?;
+    work.sources.push(folder.join("result.json"));
+    let main = main_input(folder, &made)?;
+    let anew = work.stage("recompute", |_| again(&made, &main))?;
+    let found = work.stage("compare", |_| compare(folder, &anew))?;
+    work.findings.extend(found.findings(folder));
+    Ok(work.finish(StatedUnits::default(), found))
+}
+
+/// The job or deck that a folder was made from: as it was given, else beside a folder of the default name.
+///
+/// # Errors
+/// A fault where it stands in neither place.
+pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
+    let given = made.inputs.first().map(|i| PathBuf::from(&i.path));
+    let beside = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));
+    let beside = given.as_ref().and_then(beside);
+    let mut places = [given, beside].into_iter().flatten();
+    places.find(|p| p.is_file()).ok_or_else(|| {
+        Fault::of(
+            folder.display().to_string(),
+            "inputs",
+            "the job or deck that it was made from isn't found",
+            "call `verify` from the folder that the command was called from",
+        )
+    })
+}
+
+/// Compares a folder with a recomputation of it in another.
+fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
+    let (old, new) = (made(folder)?, made(again)?);
+    let mut out = Verified::default();
+    for (i, input) in old.inputs.iter().enumerate() {
+        // The main input may be named from elsewhere now.
+        let now = new.inputs.iter().find(|n| n.path == input.path);
+        let now = now.or_else(|| new.inputs.first().filter(|_| i == 0));
+        out.file(
+            &input.path,
+            &input.sha256,
+            now.map_or("not read", |n| &n.sha256),
+        );
+    }
+    // A folder may hold files of other commands; one without a manifest tells nothing of whose they are.
+    let ours = match Manifest::read(folder).names_of(&old.command) {
+        own if own.is_empty() => names(folder)?,
+        own => own,
+    };
+    let theirs = names(again)?;
+    for name in ours.union(&theirs) {
+        let read = |f: &Path| std::fs::read(f.join(name)).ok();
+        match (read(folder), read(again)) {
+            (Some(was), Some(now)) if name == "result.json" => out.json(name, &was, &now),
+            (Some(was), Some(now)) => out.bytes(name, &was, &now),
+            (was, now) => {
+                let word = |there: bool| if there { "there" } else { "missing" };
+                out.file(name, word(was.is_some()), word(now.is_some()));
+            }
+        }
+    }
+    Ok(out)
+}
+
+/// Names of the files of a folder, without hidden ones.
+fn names(folder: &Path) -> Result<BTreeSet<String>, Fault> {
+    let unreadable = |e: std::io::Error| {
+        Fault::of(
+            folder.display().to_string(),
+            "folder",
+            format!("can't be read ({e})"),
+            "name a folder that a command wrote",
+        )
+    };
+    let entries = std::fs::read_dir(folder).map_err(unreadable)?;
+    Ok(entries
+        .filter_map(Result::ok)
+        .filter(|e| e.path().is_file())
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .filter(|n| !n.starts_with('.'))
+        .collect())
+}
+
+impl Made {
+    /// The result files among the inputs of a command on deck and results.
+    pub fn results(&self) -> Vec<&str> {
+        let is_result = |p: &&str| {
+            let name = p.to_ascii_lowercase();
+            [".op2", ".pch", ".h5"].iter().any(|e| name.ends_with(e))
+        };
+        let others = self.inputs.iter().skip(1).map(|i| i.path.as_str());
+        others.filter(is_result).collect()
+    }
+}
+
+impl Verified {
+    /// An error where anything differs.
+    fn findings(&self, folder: &Path) -> Option<Finding> {
+        let first = self.differs.first()?;
+        let n = self.differs.len();
+        let message = format!(
+            "{n} differences from what its inputs give now, the first in `{}`",
+            first.file
+        );
+        let finding = Finding::new(
+            Severity::Error,
+            "result-differs",
+            folder.display().to_string(),
+            message,
+            "restore the inputs or the version of the program, or run the command again",
+        );
+        Some(finding.with_numbers(n as f64, 0.0))
+    }
+
+    fn file(&mut self, name: &str, was: &str, now: &str) {
+        if was == now {
+            self.same.push(name.to_owned());
+        } else {
+            self.differs.push(Difference {
+                file: name.to_owned(),
+                at: String::new(),
+                was: was.to_owned(),
+                now: now.to_owned(),
+            });
+        }
+    }
+
+    /// A text is compared line by line, anything else as a whole.
+    fn bytes(&mut self, name: &str, was: &[u8], now: &[u8]) {
+        if was == now {
+            return self.same.push(name.to_owned());
+        }
+        let is_table = name.ends_with(".csv") || name.ends_with(".bdf");
+        let (Ok(a), Ok(b)) = (std::str::from_utf8(was), std::str::from_utf8(now)) else {
+            return self.file(name, &size(was), &format!("{}, others", size(now)));
+        };
+        if !is_table {
+            return self.file(name, &size(was), &format!("{}, others", size(now)));
+        }
+        let (mut a, mut b) = (a.lines(), b.lines());
+        let mut listed = 0;
+        for line in 1_usize.. {
+            let (x, y) = (a.next(), b.next());
+            if x.is_none() && y.is_none() || listed == LISTED {
+                break;
+            }
+            if x != y {
+                listed += 1;
+                self.differs.push(Difference {
+                    file: name.to_owned(),
+                    at: format!("line {line}"),
+                    was: x.unwrap_or("no such line").to_owned(),
+                    now: y.unwrap_or("no such line").to_owned(),
+                });
+            }
+        }
+    }
+
+    fn json(&mut self, name: &str, was: &[u8], now: &[u8]) {
+        let parse = |bytes: &[u8]| serde_json::from_slice::<Value>(bytes).unwrap_or_default();
+        let before = self.differs.len();
+        self.value(name, "", &parse(was), &parse(now), before + LISTED);
+        if self.differs.len() == before {
+            self.same.push(name.to_owned());
+        }
+    }
+
+    fn value(&mut self, name: &str, at: &str, was: &Value, now: &Value, most: usize) {
+        if was == now || self.differs.len() >= most || OF_THE_RUN.contains(&at) {
+            return;
+        }
+        let below = |key: &str| match at {
+            "" => key.to_owned(),
+            _ => format!("{at}.{key}"),
+        };
+        match (was, now) {
+            (Value::Object(a), Value::Object(b)) => {
+                let keys: BTreeSet<&String> = a.keys().chain(b.keys()).collect();
+                for key in keys {
+                    let none = Value::Null;
+                    let (x, y) = (a.get(key).unwrap_or(&none), b.get(key).unwrap_or(&none));
+                    // Paths are as given, and digests are compared with the files.
+                    if at.is_empty() && key == "inputs" {
+                        continue;
+                    }
+                    self.value(name, &below(key), x, y, most);
+                }
+            }
+            (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+                for (i, (x, y)) in a.iter().zip(b).enumerate() {
+                    self.value(name, &below(&i.to_string()), x, y, most);
+                }
+            }
+            _ => self.differs.push(Difference {
+                file: name.to_owned(),
+                at: at.to_owned(),
+                was: was.to_string(),
+                now: now.to_string(),
+            }),
+        }
+    }
+}
+
+fn size(bytes: &[u8]) -> String {
+    format!("{} bytes", bytes.len())
+}
