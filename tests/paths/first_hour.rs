@@ -44,7 +44,11 @@ fn with_runs(deck: &str, units: &[Unit]) -> String {
     format!("{head}{cases}BEGIN BULK\n{cards}{bulk}")
 }
 
-/// Readings of `gauges.csv` in the runs, microstrain, from the tensors of `strains.csv`, with an error of 1 microstrain, uniform.
+/// Times that each run is repeated, with other errors of the readings.
+const REPEATS: usize = 40;
+
+/// Readings of `gauges.csv` in the runs, microstrain, from the tensors of `strains.csv`, each run repeated with an error of 1 microstrain,
+/// uniform.
 fn readings(gauges: &Path, strains: &Path) -> String {
     let (head, rows) = csv(strains);
     let at = |name: &str| head.iter().position(|h| h == name).unwrap();
@@ -55,8 +59,9 @@ fn readings(gauges: &Path, strains: &Path) -> String {
     let list: Vec<&str> = gauges.iter().map(|g| g[name].as_str()).collect();
     let mut text = format!("run,{}\n", list.join(","));
     let mut seed = 7_u64;
-    for r in 1..=3 {
-        let _ = write!(text, "R{r}");
+    for repeat in 0..3 * REPEATS {
+        let r = 1 + repeat / REPEATS;
+        let _ = write!(text, "R{r}.{}", repeat % REPEATS);
         for g in &gauges {
             let d = ["dir_x", "dir_y", "dir_z"].map(|n| g[of(n)].parse::<f64>().unwrap());
             let row = rows.iter().find(|row| {
@@ -150,6 +155,7 @@ fn walk(name: &str, deck: &str, units: &[Unit], expected: &[&str]) {
     };
     let loads = recovered.result["loads"].as_array().unwrap();
     let mut missed = Vec::new();
+    assert_eq!(rows.len(), 3 * REPEATS);
     for u in units {
         let unit = loads.iter().find(|l| l["name"] == u.label).unwrap()["unit"]
             .as_str()
@@ -159,15 +165,17 @@ fn walk(name: &str, deck: &str, units: &[Unit], expected: &[&str]) {
                 .position(|h| *h == format!("{}.{end}", u.label))
                 .unwrap()
         };
-        for (row, truth) in rows.iter().zip(u.runs) {
+        for (row, truth) in rows.iter().zip(u.runs.iter().flat_map(|f| [*f; REPEATS])) {
             let value = |i: usize| row[i].parse::<f64>().unwrap() * kilo(unit);
             if !(value(at("low"))..=value(at("high"))).contains(&truth) {
                 missed.push((u.label, truth, value(at("low")), value(at("high"))));
             }
         }
     }
-    // Nineteen of twenty intervals hold the truth; among these few, one may miss.
-    assert!(missed.len() <= 1, "{name}: {missed:?}");
+    // Nineteen of twenty intervals hold the truth. Loads of one run share its errors: at worst a run counts once, 1 sd of the share is then
+    // sqrt(0.95 * 0.05 / 120) = 2 %.
+    let held = 1.0 - missed.len() as f64 / (3 * REPEATS * units.len()) as f64;
+    assert!((held - 0.95).abs() < 0.04, "{name}: {held}: {missed:?}");
 }
 
 /// A square tube along x from `x0`, of `n` cells of 250, side 200, about `y`: ring of eight grids a station; ids from `first`.
