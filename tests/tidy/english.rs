@@ -3,13 +3,16 @@
 use super::root;
 
 /// Pages that follow the rules; a page that is rewritten joins the list.
-const PAGES: [&str; 14] = [
+const PAGES: [&str; 31] = [
+    "CHANGELOG.md",
     "CONTRIBUTING.md",
     "README.md",
     "docs/1-first-hour.md",
     "docs/2-own-export.md",
     "docs/3-placing-gauges.md",
+    "docs/4-recovering-loads.md",
     "docs/5-reconciling.md",
+    "docs/6-calibrating.md",
     "docs/7-planning-by-pointing.md",
     "docs/choosing-uncertainties.md",
     "docs/concepts.md",
@@ -17,7 +20,21 @@ const PAGES: [&str; 14] = [
     "docs/glossary.md",
     "docs/glue-and-wire.md",
     "docs/how-many-gauges.md",
+    "docs/reference/accelerations.md",
+    "docs/reference/benchmarks.md",
+    "docs/reference/calibration.md",
+    "docs/reference/conventions.md",
+    "docs/reference/files.md",
+    "docs/reference/fleet.md",
     "docs/reference/limits.md",
+    "docs/reference/placement.md",
+    "docs/reference/python.md",
+    "docs/reference/reconcile.md",
+    "docs/reference/recovering.md",
+    "docs/reference/reports.md",
+    "docs/reference/truck.md",
+    "docs/reference/trust.md",
+    "docs/reference/verification.md",
 ];
 
 /// Words and phrases that have a plain replacement.
