@@ -20,46 +20,47 @@ pub fn read_number(field: &[u8]) -> Option<Number> {
         negative = sign == b'-';
         at = skip_blanks(field, 1);
     }
-    let mut mantissa = 0_u64;
-    let mut digits = 0_usize; // significant digits taken into `mantissa`
-    let mut any = false;
-    let mut scale = 0_i64; // digits after the point
-    let mut point = false;
-    while let Some(&c) = field.get(at) {
-        match c {
-            b'0'..=b'9' => {
-                any = true;
-                if digits > 0 || c != b'0' {
-                    digits += 1;
-                }
-                if digits <= 19 {
-                    mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(c - b'0'));
-                }
-                scale += i64::from(point);
-            }
-            b'.' if !point => point = true,
-            _ => break,
-        }
-        at += 1;
-    }
-    if !any {
+    let (point_at, whole) = digits(field, at, 0);
+    let point = field.get(point_at) == Some(&b'.');
+    let (end, mantissa) = match point {
+        true => digits(field, point_at + 1, whole),
+        false => (point_at, whole),
+    };
+    let behind = end - point_at - usize::from(point);
+    let count = point_at - at + behind;
+    if count == 0 {
         return None;
     }
-    if at == field.len() && !point {
-        return integer(mantissa, digits, negative);
+    if end == field.len() && !point {
+        return integer(field.get(at..end)?, mantissa, negative);
     }
-    let exponent = if at == field.len() {
+    let exponent = if end == field.len() {
         0
     } else {
-        exponent(field, at, point)?
+        exponent(field, end, point)?
     };
-    if digits <= 19 && mantissa <= 1 << 53 {
-        let power = exponent - scale;
-        if let Some(value) = exact(mantissa, power) {
-            return Some(Number::Real(if negative { -value } else { value }));
-        }
+    if count <= DIGITS
+        && mantissa <= 1 << 53
+        && let Some(value) = exact(mantissa, exponent - behind as i64)
+    {
+        return Some(Number::Real(if negative { -value } else { value }));
     }
     slow(field)
+}
+
+/// Digits that a `u64` holds whatever they are.
+const DIGITS: usize = 18;
+
+/// The digits from `at` on appended to a mantissa, modulo 2^64, and where they end.
+#[inline]
+fn digits(field: &[u8], mut at: usize, mut mantissa: u64) -> (usize, u64) {
+    while let Some(digit) = field.get(at).map(|c| c.wrapping_sub(b'0'))
+        && digit < 10
+    {
+        mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(digit));
+        at += 1;
+    }
+    (at, mantissa)
 }
 
 fn skip_blanks(field: &[u8], mut at: usize) -> usize {
@@ -69,8 +70,9 @@ fn skip_blanks(field: &[u8], mut at: usize) -> usize {
     at
 }
 
-fn integer(mantissa: u64, digits: usize, negative: bool) -> Option<Number> {
-    if digits > 18 {
+/// The integer of these digits; zeros before them do not count.
+fn integer(digits: &[u8], mantissa: u64, negative: bool) -> Option<Number> {
+    if digits.len() > DIGITS && digits.iter().skip_while(|c| **c == b'0').count() > DIGITS {
         return None;
     }
     let value = i64::try_from(mantissa).ok()?;
