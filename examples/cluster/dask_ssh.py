@@ -8,6 +8,7 @@ Python with strainbridge and dask[distributed]. JOB, OUT and the records have th
 
 import sys
 from pathlib import Path
+from typing import Any
 
 from dask.distributed import Client, LocalCluster, SSHCluster
 
@@ -16,6 +17,7 @@ import strainbridge as sb
 
 def main(job: str, out: str, records: str, *hosts: str) -> int:
     files = [line for line in Path(records).read_text(encoding="utf-8").splitlines() if line]
+    cluster: Any
     if hosts == ("local",):
         cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
     else:

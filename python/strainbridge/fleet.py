@@ -10,7 +10,7 @@ same bytes of `fleet.csv`, whoever processed them. `out`, `job` and `files` must
 a URL of an object store (``s3://bucket/T1_2026-05-01.parquet``): the worker that reads it copies it by fsspec.
 
 Where the environment variable STRAINBRIDGE names a command, or the engine of the package is missing (this file alone will do), that command
-does the work.
+does the work. This file alone returns dictionaries, with the keys of `result.json`.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import socket
 import subprocess
 import tempfile
 import uuid
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence, cast
@@ -116,7 +116,7 @@ def part(
         raise _bad([(f, None, "files", "the worker does not find the file", remedy) for f in missing])
     urls = [f for f in files if _is_object(f)]
     known = _objects.known_digests(urls, out) if urls else {}
-    with _objects.copies([u for u in urls if u not in known], out) if urls else nullcontext({}) as states:
+    with _copies([u for u in urls if u not in known], out) as states:
         names = _local_names(files, out)
         # What counts is kept under `out/days`, which all tasks share; the answer of a part is not.
         task = _Task(job, list(names), out, threads, digests={_local_name(u, out): d for u, d in known.items()})
@@ -188,7 +188,7 @@ def run(
     task = _Task(job, list(names), out, threads, shard, progress, {_local_name(f, out): d for f, d in digests.items()})
     # Nothing is kept of a failed record: it is read again for its message.
     failed = [f["path"] for f in done if f["status"] == "failed" and _is_object(f["path"])]
-    with _objects.copies(failed, out) if failed else nullcontext():
+    with _copies(failed, out):
         return _saved(task, to)
 
 
@@ -263,6 +263,11 @@ def _is_object(file: str) -> bool:
     return _objects is not None and _objects.is_object(file)
 
 
+def _copies(urls: Sequence[str], out: str) -> AbstractContextManager[dict[str, str]]:
+    """Copies of objects in `out` for the time of a block; yields their states."""
+    return _objects.copies(urls, out) if urls else nullcontext({})
+
+
 def _local_name(file: str, out: str) -> str:
     """The path of a file for the engine: that of the copy if it is in an object store."""
     return _objects.local_name(file, out) if _is_object(file) else file
@@ -327,7 +332,11 @@ class _Task:
 def _saved(task: _Task, out: str) -> Answer:
     """The answer, its files written into `out`."""
     if not _in_process():
-        return cast("Answer", task.by_command(out))
+        answer = task.by_command(out)
+        if _engine is None:
+            # This file alone: a dictionary with the keys of result.json.
+            return cast("Answer", answer)
+        return Outcome.of_folder(answer, out)
     outcome = task.by_engine()
     outcome.save(out)
     return outcome
