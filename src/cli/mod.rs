@@ -12,11 +12,38 @@ mod voice;
 
 pub use arguments::*;
 
+use crate::host::fault::Fault;
 use crate::{job, workflow};
 use clap::CommandFactory;
 use run::Run;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use voice::print;
+
+/// The paths of a list in a file, or on standard input.
+fn listed(list: &Path) -> Result<Vec<PathBuf>, Fault> {
+    let is_input = list == Path::new("-");
+    let shown = match is_input {
+        true => "standard input".to_owned(),
+        false => list.display().to_string(),
+    };
+    let mut text = String::new();
+    let read = match is_input {
+        true => std::io::stdin().read_to_string(&mut text).map(drop),
+        false => std::fs::read_to_string(list).map(|t| text = t),
+    };
+    read.map_err(|e| {
+        let wrong = format!("the list can't be read ({e})");
+        Fault::of(
+            &*shown,
+            "--files",
+            wrong,
+            "name a text file with a path a line",
+        )
+    })?;
+    workflow::fleet::records::paths_of_list(&shown, &text)
+}
 
 /// Runs the command and returns the exit code: 0 done, 1 done with error findings, 2 bad input.
 pub fn run(arguments: Arguments) -> ExitCode {
@@ -48,6 +75,10 @@ pub fn run(arguments: Arguments) -> ExitCode {
                 digests: a.digests.unwrap_or_default(),
             };
             run.job_into(&a.job, &answer, |job, cx| {
+                let mut spec = spec;
+                if let Some(list) = &a.list {
+                    spec.files.extend(listed(list)?);
+                }
                 workflow::fleet::fleet(job, &spec, cx)
             })
         }

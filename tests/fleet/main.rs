@@ -7,3 +7,4 @@ mod days;
 mod drawn;
 mod health;
 mod program;
+mod records;

@@ -188,6 +188,22 @@ fn only_the_command_line_prints_and_touches_files() {
 }
 
 #[test]
+fn stops_of_the_walk_in_the_architecture_page_exist() {
+    let page = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let stops: Vec<(&str, &str)> = (page.lines())
+        .filter_map(|l| l.strip_prefix("| `")?.split_once('`')?.0.split_once("::"))
+        .collect();
+    assert!((20..=40).contains(&stops.len()), "{stops:?}");
+    let missing: Vec<_> = (stops.iter())
+        .filter(|(file, name)| {
+            let text = std::fs::read_to_string(root().join("src").join(file)).unwrap_or_default();
+            !text.contains(&format!("fn {name}(")) && !text.contains(&format!("fn {name}<"))
+        })
+        .collect();
+    assert!(missing.is_empty(), "not there any more: {missing:?}");
+}
+
+#[test]
 fn nothing_is_unsafe() {
     let places: Vec<String> = sources()
         .into_iter()

@@ -10,7 +10,7 @@ mod traces;
 mod trails;
 
 pub(super) use chart::pictures;
-pub(super) use sketch::{STROKES, views};
+pub(super) use sketch::{Look, STROKES, marks, views};
 pub(super) use svg::to_svg;
 
 #[cfg(test)]

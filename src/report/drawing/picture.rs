@@ -27,6 +27,13 @@ pub(in crate::report) enum Shape {
     },
     /// An upright rectangle: corner, width and height, filled.
     Area([f64; 4], String),
+    /// A filled triangle.
+    Face {
+        /// Corners.
+        corners: [[f64; 2]; 3],
+        /// Colour, `#rrggbb`.
+        colour: String,
+    },
     /// A circle about a point: an outline where the pen is not 0, else filled.
     Circle {
         /// Centre.

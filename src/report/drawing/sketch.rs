@@ -119,10 +119,15 @@ fn drawing(scene: &SceneView, view: &View, [low, high]: [Vec3; 2]) -> Picture {
         ..Picture::default()
     };
     picture.strokes(outline(&scene.lines, &place), MESH, 0.12);
-    marks(&mut picture, &scene.marks, &place, &|v| {
+    let turn = |v: Vec3| {
         let p = flat(v);
         [p[0], -p[1]]
-    });
+    };
+    let look = Look {
+        place: &place,
+        turn: &turn,
+    };
+    marks(&mut picture, &scene.marks, &look);
     let bar = round_step(0.1 * room / scale);
     let y = picture.size[1] - 1.5;
     picture.line([0.0, y], [bar * scale, y], INK, 0.5);
@@ -151,13 +156,15 @@ fn outline(lines: &[[Vec3; 2]], place: &dyn Fn(Vec3) -> [f64; 2]) -> Vec<Vec<[f6
         .collect()
 }
 
+/// How points and directions of the basic frame lie on the paper.
+pub(in crate::report) struct Look<'a> {
+    pub(in crate::report) place: &'a dyn Fn(Vec3) -> [f64; 2],
+    pub(in crate::report) turn: &'a dyn Fn(Vec3) -> [f64; 2],
+}
+
 /// Strokes along the gauges, circles of their gap, their names beside them.
-fn marks(
-    picture: &mut Picture,
-    marks: &[Mark],
-    place: &dyn Fn(Vec3) -> [f64; 2],
-    turn: &dyn Fn(Vec3) -> [f64; 2],
-) {
+pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Look) {
+    let Look { place, turn } = look;
     let most = marks.iter().filter_map(|m| m.gap).flatten();
     let most = most.filter(|v| v.is_finite()).fold(0.0, f64::max);
     // Names keep clear of all gauges.

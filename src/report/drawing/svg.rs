@@ -61,6 +61,7 @@ fn same_pen(a: &Shape, b: &Shape) -> bool {
                 ..
             },
         ) => *pen == 0.0 && *wide == 0.0 && colour == other && radius == size,
+        (Shape::Face { colour, .. }, Shape::Face { colour: other, .. }) => colour == other,
         _ => false,
     }
 }
@@ -79,6 +80,15 @@ fn drawn(group: &[Shape]) -> String {
             let lines = lines.map(|l| l.iter().map(|p| p.map(tenths)).collect());
             let d = path(&trails(lines.collect()));
             html! { path d=(d) stroke=(colour) stroke-width=(fine(*pen)) {} }
+        }
+        // A pen of its own colour closes the seams between neighbours.
+        Shape::Face { colour, .. } => {
+            let lines = group.iter().filter_map(|s| match s {
+                Shape::Face { corners, .. } => Some(corners.map(|p| p.map(tenths)).to_vec()),
+                _ => None,
+            });
+            let d = path(&lines.collect::<Vec<_>>());
+            html! { path d=(d) fill=(colour) stroke=(colour) stroke-width="2" {} }
         }
         // A stroke of no length with a round pen is a dot.
         Shape::Circle {

@@ -2,6 +2,7 @@
 
 use super::block::{Block, Page, Table};
 use crate::finding::{Finding, Severity};
+use crate::report::drawing::to_svg;
 use crate::report::figure::scripts;
 use crate::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -54,7 +55,10 @@ pub(in crate::report) fn block(b: &Block) -> Markup {
         Block::Note(t) => html! { p.muted { (t) } },
         Block::Table(t) => table(t),
         Block::Figure(f) => html! { (f) },
-        Block::Scene(s) => s.markup.clone(),
+        Block::Scene(s) => html! {
+            (s.markup)
+            noscript { figure.plot { (to_svg(&s.still, "the model with its gauges and loads")) } }
+        },
         Block::Lines(t) => html! { pre { (t) } },
         Block::Links(links) => html! {
             p.muted { @for (i, (words, path)) in links.iter().enumerate() {

@@ -22,6 +22,9 @@ fn shape(s: &Shape) -> Value {
             let lines: Vec<Vec<[f64; 2]>> = lines.iter().map(|l| rounded(l)).collect();
             json!({ "kind": "strokes", "lines": lines, "colour": colour, "pen": pen })
         }
+        Shape::Face { corners, colour } => {
+            json!({ "kind": "face", "corners": rounded(corners), "colour": colour })
+        }
         Shape::Area(area, colour) => json!({ "kind": "area", "area": area, "colour": colour }),
         Shape::Circle {
             at,

@@ -5,6 +5,7 @@ use super::pack::packed_scene;
 use super::part::Part;
 use super::pointing::{result, tools};
 use super::skin::{Finest, skin};
+use super::still::still;
 use super::types::{FieldValues, Pointing, Scene};
 use super::view::SceneView;
 use crate::report::figure::embedded;
@@ -39,6 +40,7 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
     lines.extend(rods);
     let view = SceneView {
         markup,
+        still: still(scene),
         lines,
         marks: scene.marks.clone(),
     };

@@ -10,6 +10,7 @@ mod part;
 mod pointing;
 mod skin;
 mod solids;
+mod still;
 mod types;
 mod view;
 

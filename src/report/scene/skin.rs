@@ -26,14 +26,19 @@ pub(super) enum Finest {
 
 /// Faces by property, coarsened so that all together stay below a limit: small parts whole, large ones with what is left.
 pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
-    let mut parts = together(raw(model));
-    let mut order: Vec<usize> = (0..parts.len()).collect();
-    order.sort_by_key(|i| parts[*i].n_triangles());
     let limit = match finest {
         Finest::Always => MOST_TRIANGLES,
         Finest::FewFields => MOST_TRIANGLES * FEW_FIELDS / fields.max(FEW_FIELDS),
     };
-    let (mut left, mut n) = (limit.max(LEAST_TRIANGLES), parts.len());
+    skin_within(model, limit.max(LEAST_TRIANGLES))
+}
+
+/// Faces by property, at most so many triangles in all.
+pub(super) fn skin_within(model: &Model, most: usize) -> Vec<Part> {
+    let mut parts = together(raw(model));
+    let mut order: Vec<usize> = (0..parts.len()).collect();
+    order.sort_by_key(|i| parts[*i].n_triangles());
+    let (mut left, mut n) = (most, parts.len());
     for i in order {
         let most = left / n.max(1);
         parts[i].drawn = coarsened(model, &parts[i], most);

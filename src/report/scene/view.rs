@@ -2,6 +2,7 @@
 
 use super::types::Mark;
 use crate::model::Vec3;
+use crate::report::drawing::picture::Picture;
 use maud::Markup;
 
 /// A scene ready to be shown.
@@ -9,6 +10,8 @@ use maud::Markup;
 pub struct SceneView {
     /// In three dimensions, for a browser.
     pub markup: Markup,
+    /// What it shows before anybody turns it.
+    pub(in crate::report) still: Picture,
     /// Outline of the shells and axes of the bars, basic frame.
     pub lines: Vec<[Vec3; 2]>,
     /// Gauges.

@@ -24,6 +24,7 @@ mod other_scale;
 mod other_unit;
 mod outcome;
 mod prepared;
+pub mod records;
 mod recovering;
 mod scale;
 
@@ -61,7 +62,8 @@ use std::path::{Path, PathBuf};
 /// What is asked of a fleet.
 #[derive(Clone, Debug, Default)]
 pub struct FleetSpec {
-    /// Records, relative to the working folder; none: what the output folder holds is merged.
+    /// Records, folders of records and patterns, relative to the working folder ([`records::records_of`]); none: what the output folder holds is
+    /// merged.
     pub files: Vec<PathBuf>,
     /// The part of them that is done here; all where `None`.
     pub shard: Option<Shard>,
@@ -103,6 +105,10 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
             let line = section.file_name.line;
             Fault::at(&*job.file, line, "fleet.file_name", e.wrong, e.remedy)
         })
+    };
+    let spec = &FleetSpec {
+        files: records::records_of(&spec.files, &form)?,
+        ..spec.clone()
     };
     // Before hours of work come to nothing.
     let asked = spec.files.iter();
@@ -378,7 +384,7 @@ fn one(
     let before = kept.latest(path);
     let (hash, result) = match (&named, &before) {
         (None, _) => {
-            let wrong = "its name is not of the form that [fleet] file_name states";
+            let wrong = "its path is not of the form that [fleet] file_name states";
             (opened.sha256(), Some(Err(wrong.to_owned())))
         }
         (Some(_), Some(_)) => (opened.sha256(), None),

@@ -1,6 +1,7 @@
-//! Which vehicle and which day a file is of, by its name.
+//! Which vehicle and which day a file is of, by its path.
 
-/// The form of file names: text with `{vehicle}` and `{day}`, each once; `{any}` for what doesn't matter.
+/// The form of file names: text with `{vehicle}` and `{day}`, each once; `{any}` for what doesn't matter. With `/` in it the folders count too:
+/// `vehicle={vehicle}/day={day}/{any}.parquet` is held against the last two folders and the name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NameForm {
     parts: Vec<Part>,
@@ -67,9 +68,21 @@ impl NameForm {
         Ok(Self { parts })
     }
 
-    /// Vehicle and day of a file; `None` where its name has another form. A place takes as little as it can, the last all that is left.
+    /// Vehicle and day of a file; `None` where its path has another form. A place takes as little as it can, the last all that is left; none
+    /// goes beyond a folder.
     pub fn read(&self, file: &str) -> Option<Named> {
-        let name = file.rsplit(['/', '\\']).next()?;
+        let path = file.replace('\\', "/");
+        let folders = (self.parts.iter())
+            .filter_map(|p| match p {
+                Part::Text(text) => Some(text.matches('/').count()),
+                _ => None,
+            })
+            .sum::<usize>();
+        let from = path
+            .rmatch_indices('/')
+            .nth(folders)
+            .map_or(0, |(i, _)| i + 1);
+        let name = path.get(from..)?;
         let (mut vehicle, mut day) = (None, None);
         let mut rest = name;
         let mut parts = self.parts.iter().peekable();
@@ -90,6 +103,9 @@ impl NameForm {
                 _ => rest,
             };
             rest = rest.get(taken.len()..)?;
+            if taken.contains('/') {
+                return None;
+            }
             match part {
                 Part::Vehicle => vehicle = Some(taken.to_owned()),
                 Part::Day => day = Some(taken.to_owned()),
@@ -160,6 +176,33 @@ mod tests {
         let form = NameForm::of("{day}-{any}-{vehicle}.mf4").unwrap();
         let named = form.read("0502-west-T7.mf4").unwrap();
         assert_eq!((named.vehicle.as_str(), named.day.as_str()), ("T7", "0502"));
+    }
+
+    #[test]
+    fn vehicle_and_day_stand_anywhere_in_the_path() {
+        let form = NameForm::of("vehicle={vehicle}/day={day}/{any}.parquet").unwrap();
+        let read = |path: &str| form.read(path).map(|n| (n.vehicle, n.day));
+        let wanted = Some(("T9".to_owned(), "2026-05-01".to_owned()));
+        assert_eq!(
+            read("lake/vehicle=T9/day=2026-05-01/part-0.parquet"),
+            wanted
+        );
+        assert_eq!(read("vehicle=T9/day=2026-05-01/part-0.parquet"), wanted);
+        assert_eq!(
+            read("lake\\vehicle=T9\\day=2026-05-01\\part-0.parquet"),
+            wanted
+        );
+        for other in [
+            "vehicle=T9/part-0.parquet",
+            "day=2026-05-01/part-0.parquet",
+            "vehicle=T9/day=2026-05-01/deeper/part-0.parquet",
+            "vehicle=/day=1/p.parquet",
+        ] {
+            assert_eq!(read(other), None, "{other}");
+        }
+        let form = NameForm::of("{vehicle}/{day}.csv").unwrap();
+        let named = form.read("data/T1/0502.csv").unwrap();
+        assert_eq!((named.vehicle.as_str(), named.day.as_str()), ("T1", "0502"));
     }
 
     #[test]

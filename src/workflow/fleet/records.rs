@@ -1,0 +1,194 @@
+//! The records that are asked for: files as they are, folders with all records below them, patterns, lists of paths.
+
+use super::name::NameForm;
+use crate::finding::few;
+use crate::host::fault::{Fault, Faults};
+use glob::{MatchOptions, Pattern, glob_with};
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Returns the paths of a list: one a line, without blank lines.
+///
+/// # Errors
+/// A list that names no record: an empty one is a mistake of whoever wrote it, and not the question to merge what is kept.
+pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
+    let lines = text.strip_prefix('\u{feff}').unwrap_or(text).lines();
+    let paths: Vec<PathBuf> = (lines.map(str::trim).filter(|l| !l.is_empty()))
+        .map(PathBuf::from)
+        .collect();
+    match paths.is_empty() {
+        true => Err(Fault::of(
+            shown,
+            "--files",
+            "the list names no record",
+            "write a path a line, or leave --files out to merge what is kept",
+        )),
+        false => Ok(paths),
+    }
+}
+
+/// Returns the records asked for, each once and in order: of a folder the files below it whose path has the form, of a pattern (`*`, `?`,
+/// `[0-9]`, `**` for any folders) those that match. A path that exists is taken as it is, whatever signs are in it.
+///
+/// # Errors
+/// A fault for each folder without such a file, pattern that nothing matches or that is none, and folder that can't be read.
+pub fn records_of(asked: &[PathBuf], form: &NameForm) -> Result<Vec<PathBuf>, Faults> {
+    let mut found = BTreeSet::new();
+    let mut faults = Vec::new();
+    for path in asked {
+        let shown = path.display().to_string();
+        let of = if path.is_dir() {
+            below(path, form)
+        } else if !path.exists() && is_pattern(&shown) {
+            matching(&shown)
+        } else {
+            Ok(vec![path.clone()])
+        };
+        match of {
+            Ok(some) => found.extend(some),
+            Err((wrong, remedy)) => faults.push(Fault::of(shown, "files", wrong, remedy)),
+        }
+    }
+    Faults::check(faults)?;
+    Ok(found.into_iter().collect())
+}
+
+type Wrong = (String, &'static str);
+
+fn is_pattern(path: &str) -> bool {
+    path.contains(['*', '?', '['])
+}
+
+/// The records below a folder.
+fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
+    let files = all_matching(&format!(
+        "{}/**/*",
+        Pattern::escape(&folder.display().to_string())
+    ))?;
+    let (records, others): (Vec<PathBuf>, Vec<PathBuf>) =
+        (files.into_iter()).partition(|p| form.read(&p.display().to_string()).is_some());
+    if !records.is_empty() {
+        return Ok(records);
+    }
+    let others: Vec<String> = others.iter().map(|p| p.display().to_string()).collect();
+    let held = match others.is_empty() {
+        true => "holds no file".to_owned(),
+        false => format!("holds {}", few(&others)),
+    };
+    Err((
+        format!("no file below the folder has the form that [fleet] file_name states: it {held}"),
+        "name another folder, or change file_name",
+    ))
+}
+
+/// The files that a pattern matches.
+fn matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
+    match all_matching(pattern)? {
+        files if files.is_empty() => Err((
+            "no file matches the pattern".to_owned(),
+            "check the path; patterns are relative to the working folder",
+        )),
+        files => Ok(files),
+    }
+}
+
+/// The same, or none. Names that begin with a point are left out, as a shell leaves them out.
+fn all_matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
+    let options = MatchOptions {
+        require_literal_separator: true,
+        require_literal_leading_dot: true,
+        ..MatchOptions::default()
+    };
+    let paths = glob_with(pattern, options).map_err(|e| {
+        (
+            format!("no pattern: {}", e.msg),
+            "write it as data/*.parquet",
+        )
+    })?;
+    let mut files = Vec::new();
+    for path in paths {
+        let path = path.map_err(|e| {
+            let wrong = format!("`{}` can't be read ({})", e.path().display(), e.error());
+            (wrong, "check the permissions of the folder")
+        })?;
+        if path.is_file() {
+            files.push(path);
+        }
+    }
+    Ok(files)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder(name: &str, files: &[&str]) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!(
+            "strainbridge-records-{name}-{}",
+            std::process::id()
+        ));
+        let _ = std::fs::remove_dir_all(&folder);
+        for f in files {
+            let path = folder.join(f);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, "x").unwrap();
+        }
+        folder
+    }
+
+    fn names(folder: &Path, found: &[PathBuf]) -> Vec<String> {
+        found
+            .iter()
+            .map(|p| {
+                p.strip_prefix(folder)
+                    .unwrap()
+                    .display()
+                    .to_string()
+                    .replace('\\', "/")
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_folder_gives_the_records_below_it_and_a_pattern_what_it_matches() {
+        let of = [
+            "a/T1_1.csv",
+            "a/b/T1_2.csv",
+            "a/notes.txt",
+            "a/.T1_3.csv",
+            "[a]_1.csv",
+        ];
+        let folder = folder("tree", &of);
+        let form = NameForm::of("{vehicle}_{day}.csv").unwrap();
+        let found = |asked: &[&str]| {
+            let asked: Vec<PathBuf> = asked.iter().map(|p| folder.join(p)).collect();
+            records_of(&asked, &form).map(|f| names(&folder, &f))
+        };
+        assert_eq!(found(&["a"]).unwrap(), ["a/T1_1.csv", "a/b/T1_2.csv"]);
+        // What is asked for twice is one record.
+        assert_eq!(found(&["a", "a/T1_1.csv"]).unwrap(), found(&["a"]).unwrap());
+        assert_eq!(found(&["*/*.csv"]).unwrap(), ["a/T1_1.csv"]);
+        assert_eq!(found(&["**/*_2.csv"]).unwrap(), ["a/b/T1_2.csv"]);
+        // A name that is there is no pattern; one that is missing is for the record's own reading to say.
+        assert_eq!(found(&["[a]_1.csv"]).unwrap(), ["[a]_1.csv"]);
+        assert_eq!(found(&["a/T9_9.csv"]).unwrap(), ["a/T9_9.csv"]);
+        let wrong = found(&["*.mf4", "a/b/*.txt"]).unwrap_err().into_list();
+        assert_eq!(wrong.len(), 2);
+        assert!(
+            wrong
+                .iter()
+                .all(|f| f.wrong == "no file matches the pattern")
+        );
+        let other = NameForm::of("{vehicle}-{day}.mf4").unwrap();
+        let wrong = records_of(std::slice::from_ref(&folder), &other).unwrap_err();
+        assert!(wrong.into_list()[0].wrong.contains("notes.txt"));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_list_is_a_path_a_line_and_never_empty() {
+        let list = paths_of_list("l.txt", "\u{feff}a.csv\r\n\n  b c.csv \n").unwrap();
+        assert_eq!(list, [PathBuf::from("a.csv"), PathBuf::from("b c.csv")]);
+        assert!(paths_of_list("l.txt", " \n").is_err());
+    }
+}
