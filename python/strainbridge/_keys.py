@@ -128,7 +128,8 @@ class FleetKeys(Section):
     """Keys of ``fleet``."""
 
     file_name: _Key[Any]
-    """Form of their file names: text with {vehicle} and {day}, and {any} for what doesn't matter; required."""
+    """Form of their paths: text with {vehicle} and {day}, and {any} for a part without meaning. Folders count where it holds /:
+    vehicle={vehicle}/day={day}/{any}.parquet; required."""
     knee_range: _Key[Any]
     """Load range below which the S-N line is flatter [report unit of each load]; default: no knee."""
     mission: _Key[Any]

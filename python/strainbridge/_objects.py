@@ -31,7 +31,29 @@ def local_name(url: str, out: str) -> str:
     parts = [p for p in rest.replace("\\", "/").split("/") if p]
     if not parts or ".." in parts:
         raise Faults([(url, None, "files", "the URL names no object", "give scheme, bucket and key: s3://bucket/T1_2026-05-01.parquet")])
+    if is_pattern(rest):
+        # The engine would take the path of the copy for a pattern.
+        raise Faults([(url, None, "files", "no object has this name, or it has a sign of a pattern: * ? [", "check bucket and key, or rename the object")])
     return os.path.join(out, _COPIES, scheme, *parts)
+
+
+def is_pattern(path: str) -> bool:
+    """Whether a path has a sign of a pattern."""
+    return any(sign in path for sign in "*?[")
+
+
+def matching(url: str) -> list[str]:
+    """The URLs of the objects that a pattern matches.
+
+    Raises:
+        Faults: none.
+    """
+    system, path = _opened(url)
+    scheme, _, rest = url.partition("://")
+    found = [p for p in system.glob(path) if system.isfile(p)]
+    if not found:
+        raise Faults([(url, None, "files", "no object matches the pattern", "check bucket and key")])
+    return [f"{scheme}://{p if rest.startswith('/') else p.lstrip('/')}" for p in found]
 
 
 def _opened(url: str) -> tuple[Any, str]:

@@ -15,6 +15,7 @@ does the work. This file alone returns dictionaries, with the keys of `result.js
 
 from __future__ import annotations
 
+import glob
 import json
 import os
 import shutil
@@ -150,7 +151,8 @@ def run(
 
     Args:
         job: a job with ``[fleet]``, or the path of one.
-        files: records, relative to the working folder, or URLs of an object store that fsspec reads; a text or path is one file.
+        files: records, relative to the working folder, or URLs of an object store that fsspec reads; a text or path is one file. A pattern
+            (``data/**/*.parquet``) stands for the files or objects that it matches, a folder for the records below it (without a client).
         out: where the results of single files are kept, and those of the fleet written.
         client: a `dask.distributed.Client`, whose workers process the files in tasks of eight; None: they are processed here. A task of a lost
             worker is repeated; bad input is not.
@@ -167,11 +169,16 @@ def run(
     """
     job = str(job) if isinstance(job, os.PathLike) else job
     out = str(out)
-    listed = sorted({str(f) for f in ([files] if isinstance(files, (str, os.PathLike)) else files)})
+    given = [files] if isinstance(files, (str, os.PathLike)) else files
+    listed = sorted({f for g in given for f in _matching(str(g))})
     digests = dict(digests or {})
     missing = [f for f in listed if f not in digests and not _is_object(f) and not os.path.exists(f)]
     if missing and client is None:
         raise _missing(missing)
+    folders = [f for f in listed if os.path.isdir(f)]
+    if folders and (client is not None or any(map(_is_object, listed))):
+        remedy = "give a pattern, such as data/**/*.parquet"
+        raise _bad([(f, None, "files", "a folder is not divided among workers or mixed with objects", remedy) for f in folders])
     threads = _threads(threads)
     names = {_local_name(f, out): f for f in listed}
     done: list[dict[str, str]] = []
@@ -190,6 +197,22 @@ def run(
     failed = [f["path"] for f in done if f["status"] == "failed" and _is_object(f["path"])]
     with _copies(failed, out):
         return _saved(task, to)
+
+
+def _matching(file: str) -> list[str]:
+    """The files that a pattern matches; another path itself.
+
+    Raises:
+        Faults: none.
+    """
+    if not any(sign in file for sign in "*?[") or os.path.exists(file):
+        return [file]
+    if _is_object(file):
+        return list(_objects.matching(file))
+    found = [f for f in glob.glob(file, recursive=True) if os.path.isfile(f)]
+    if not found:
+        raise _bad([(file, None, "files", "no file matches the pattern", "check the path; patterns are relative to the working folder")])
+    return found
 
 
 def _tasks(files: Sequence[str]) -> list[list[str]]:

@@ -250,6 +250,32 @@ def test_workers_read_an_object_store(sixty, cluster, tmp_path):
     assert not (tmp_path / "out" / "records").exists()
 
 
+def test_patterns_name_files_and_objects(sixty, cluster, store, tmp_path):
+    folder, _, here = sixty
+    for out, client in (("here", None), ("spread", cluster)):
+        sb.fleet.run(folder / "job.toml", str(folder / "T?_*.csv"), tmp_path / out, client=client)
+        assert (tmp_path / out / "fleet.csv").read_bytes() == here
+    sb.fleet.run(folder / "job.toml", [f"memory://bucket/**/T{v}_*.csv" for v in range(3)], tmp_path / "store")
+    assert (tmp_path / "store" / "fleet.csv").read_bytes() == here
+    for nothing in (str(folder / "X*.csv"), "memory://bucket/X*.csv"):
+        with pytest.raises(sb.Faults, match="matches the pattern"):
+            sb.fleet.run(folder / "job.toml", nothing, tmp_path / "none")
+    with pytest.raises(sb.Faults, match="pattern"):
+        sb.fleet.run(folder / "job.toml", folder, tmp_path / "none", client=cluster)
+
+
+def test_vehicle_and_day_may_be_folders_of_a_store(sixty, store, tmp_path):
+    folder, files, here = sixty
+    system, _ = store
+    job = sb.Job.read(folder / "job.toml")
+    job.fleet.file_name = "vehicle={vehicle}/day={day}/{any}.csv"
+    for file in map(Path, files):
+        vehicle, day = file.stem.split("_")
+        system.pipe(f"/bucket/lake/vehicle={vehicle}/day={day}/part-0.csv", file.read_bytes())
+    sb.fleet.run(job, "memory://bucket/lake/**/*.csv", tmp_path / "out")
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
+
+
 class Leaving:
     """A client that takes the records away when its workers are done."""
 
