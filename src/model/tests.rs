@@ -101,11 +101,14 @@ fn mcid_is_projected_on_the_element_and_theta_is_in_degrees() {
 #[test]
 fn default_fibre_distances_are_half_the_thickness() {
     let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4"));
-    assert_eq!(m.shell_properties[0].z, [-0.005, 0.005]);
+    assert_eq!(m.fibres(&m.shells[0]).centre, [-0.005, 0.005]);
     let (m, _) = model("MAT1,1,2.+11,,.3\nPCOMP,1,,,,,,,SYM\n,1,.1,45.,,1,.2,0.");
     let p = &m.shell_properties[0];
     assert!(
-        (p.z[0] + 0.3).abs() < 1e-15 && (p.z[1] - 0.3).abs() < 1e-15,
+        p.fibres(9.0)
+            .iter()
+            .zip([-0.3, 0.3])
+            .all(|(z, right)| (z - right).abs() < 1e-15),
         "{:?}",
         p.z
     );

@@ -13,4 +13,5 @@ mod placement;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;
+mod thickness;
 mod wing;

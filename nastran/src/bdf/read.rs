@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicUsize;
 use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
-use super::continuation_name::{Claimed, claimed_elsewhere};
+use super::continuation_name::{Claimed, unasked};
 use super::deck::Deck;
 use super::fault::{Fault, Wrong};
 use super::fields::MAX_FAULTS;
@@ -107,8 +107,8 @@ fn program_changes(statements: &[Statement]) -> Vec<Note> {
 fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     let mut budget = AtomicUsize::new(BUDGET);
     let mut part = read_chunks(chunks, sources, &budget, &Claimed::default());
-    let claimed = claimed_elsewhere(&part.loose, chunks, sources);
-    if !claimed.is_empty() {
+    if !part.loose.is_empty() {
+        let claimed = unasked(&part.loose, sources);
         budget = AtomicUsize::new(BUDGET);
         part = read_chunks(chunks, sources, &budget, &claimed);
     }
