@@ -103,13 +103,9 @@ fn fill(
                 let local = local::<24>(u, &shell.grids[..4]);
                 centre[at] = surfaces(&m.centre, fibres.centre, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
-                    *slot =
-                        std::array::from_fn(|k| surfaces(
-                            &m.corners[k],
-                            fibres.corners[k],
-                            &local,
-                            &free(Some(k)),
-                        ));
+                    *slot = std::array::from_fn(|k| {
+                        surfaces(&m.corners[k], fibres.corners[k], &local, &free(Some(k)))
+                    });
                 }
             }
             AnyShell::Many(plain) => {

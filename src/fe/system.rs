@@ -389,7 +389,9 @@ fn relief_without_motion(spc: Option<u32>) -> Finding {
         Severity::Warning,
         "inertia-relief-idle",
         "PARAM,INREL",
-        format!("PARAM,INREL,-2 is stated, and {held} leaves no rigid motion free: inertia balances no load, and the supports take all of it"),
+        format!(
+            "PARAM,INREL,-2 is stated, and {held} leaves no rigid motion free: inertia balances no load, and the supports take all of it"
+        ),
         "leave PARAM,INREL out if the structure is held, or select no SPC set if it is free",
     )
 }

@@ -130,3 +130,64 @@ impl Builder<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::model::{FaultKind, FaultWeight, Model, ModelFault};
+    use nastran::bdf::{MemoryLoader, read_deck};
+
+    fn faults(bulk: &str) -> Vec<ModelFault> {
+        let text =
+            format!("SOL 101\nCEND\nBEGIN BULK\nGRID,1\nGRID,2,,1.,0.,0.\n{bulk}\nENDDATA\n");
+        let deck = read_deck("deck.bdf", text.into_bytes(), &mut MemoryLoader::default());
+        assert!(deck.faults.is_empty(), "{:?}", deck.faults);
+        let faults = Model::from_deck(&deck).1.into_iter();
+        faults.filter(|f| f.kind != FaultKind::Unattached).collect()
+    }
+
+    #[test]
+    fn a_card_that_is_there_twice_is_refused_if_its_content_differs_and_else_noted() {
+        let table = |y| format!("TABLEM1,7\n,0.,1.,20.,{y},ENDT");
+        let [two, three] = ["2.", "3."].map(table);
+        let mat = "MAT1,1,1.,,0.\n";
+        for [first, same, other] in [
+            ["PARAM,WTMASS,.1", "PARAM,WTMASS,.1", "PARAM,WTMASS,.2"],
+            ["TEMPD,4,10.", "TEMPD,4,10.", "TEMPD,4,20."],
+            ["TEMP,4,2,20.", "TEMP,4,2,20.", "TEMP,4,2,30."],
+            ["SPCD,1,2,1,.1", "SPCD,1,2,12,.1", "SPCD,1,2,1,.2"],
+            [two.as_str(), two.as_str(), three.as_str()],
+            ["MATT1,1,7", "MATT1,1,7", "MATT1,1,8"],
+        ] {
+            let base = format!("{mat}{}\n", two.replace(",7", ",9"));
+            let base = format!(
+                "{base}{}",
+                base.replace("TABLEM1,9", "TABLEM1,8").replace(mat, "")
+            );
+            let with = |second: &str| faults(&format!("{base}{first}\n{second}"));
+            let differing = with(other);
+            assert!(
+                differing
+                    .iter()
+                    .any(|f| matches!(f.kind, FaultKind::Duplicate { .. })),
+                "{first}: {differing:?}"
+            );
+            let repeated = with(same);
+            assert!(
+                repeated
+                    .iter()
+                    .any(|f| matches!(f.kind, FaultKind::Repeated { .. }))
+                    && repeated.iter().all(|f| f.weight() == FaultWeight::Note),
+                "{first}: {repeated:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_second_load_combination_of_one_id_is_refused() {
+        let found = faults("FORCE,1,2,,1.,1.,0.,0.\nLOAD,5,1.,1.,1\nLOAD,5,1.,1.,1");
+        assert!(
+            found.len() == 1 && matches!(found[0].kind, FaultKind::Duplicate { .. }),
+            "{found:?}"
+        );
+    }
+}

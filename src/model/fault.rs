@@ -208,7 +208,10 @@ impl fmt::Display for FaultKind {
                 if *more > 0 {
                     write!(f, " (and {more} more grids)")?;
                 }
-                write!(f, " has no temperature in the set, and the set has no TEMPD")
+                write!(
+                    f,
+                    " has no temperature in the set, and the set has no TEMPD"
+                )
             }
             SharedId { other, first } => {
                 write!(f, "the id is also that of {other} on line {}", first.line)

@@ -121,6 +121,8 @@ fn defined_by(name: &str) -> Option<Defined> {
     };
     Some(match name {
         "GRIDB" | "GRIDF" | "EGRID" | "RINGAX" | "RINGFL" => Defined::Grid,
+        // A misspelt name: the reference to its id is not another fault.
+        n if n.starts_with("MAT") && effect_of_card(n).is_none() => Defined::Material,
         n if n.starts_with("CORD") || n == "GMCORD" => Defined::Frame,
         n if n.strip_prefix("MAT").is_some_and(is_material) => Defined::Material,
         n if n.starts_with("PLOAD") || NO_PROPERTIES.contains(&n) => return None,

@@ -21,7 +21,9 @@ const OPTIONS: [(&str, &[&str]); 4] = [
     ),
     (
         "FCTN",
-        &["SMECH", "PFLUID", "FFLUID", "FLUID", "PORO", "SPORO", "FRIGID"],
+        &[
+            "SMECH", "PFLUID", "FFLUID", "FLUID", "PORO", "SPORO", "FRIGID",
+        ],
     ),
 ];
 

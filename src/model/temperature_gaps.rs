@@ -14,7 +14,11 @@ pub(super) fn missing_temperatures(model: &Model, deck: &Deck) -> Vec<ModelFault
     let mut selected: BTreeSet<u32> = model.material_temperature.into_iter().collect();
     for s in deck.case_control.effective_subcases() {
         if !matches!(s.kind, SubcaseKind::Subcom | SubcaseKind::Symcom) {
-            selected.extend([s.temperature_load, s.temperature_initial].into_iter().flatten());
+            selected.extend(
+                [s.temperature_load, s.temperature_initial]
+                    .into_iter()
+                    .flatten(),
+            );
         }
     }
     let sets = model.temperatures.iter();
@@ -34,7 +38,10 @@ fn missing_of(model: &Model, set: &TemperatureSet) -> Option<ModelFault> {
     let mut missing = 0;
     for element in model.elements() {
         let heated = match element {
-            ElementRef::Shell(_) | ElementRef::Beam(_) | ElementRef::Rod(_) | ElementRef::Solid(_) => true,
+            ElementRef::Shell(_)
+            | ElementRef::Beam(_)
+            | ElementRef::Rod(_)
+            | ElementRef::Solid(_) => true,
             ElementRef::Bush(_)
             | ElementRef::Joint(_)
             | ElementRef::Spring(_)
@@ -66,4 +73,34 @@ fn missing_of(model: &Model, set: &TemperatureSet) -> Option<ModelFault> {
             more: missing - 1,
         },
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::{FaultKind, Model};
+    use nastran::bdf::{MemoryLoader, read_deck};
+
+    #[test]
+    fn a_grid_of_an_element_without_a_temperature_is_refused_by_name() {
+        let found = |temperatures: &str| {
+            let rod = "GRID,1\nGRID,2,,2.,0.,0.\nGRID,3\nCROD,7,1,1,2\nPROD,1,1,.01\nMAT1,1,1.+10,,0.,,1.-5";
+            let text =
+                format!("SOL 101\nCEND\nTEMP = 4\nBEGIN BULK\n{rod}\n{temperatures}\nENDDATA\n");
+            let deck = read_deck("deck.bdf", text.into_bytes(), &mut MemoryLoader::default());
+            let faults = Model::from_deck(&deck).1.into_iter();
+            let missing = faults.filter(|f| matches!(f.kind, FaultKind::NoTemperature { .. }));
+            missing.map(|f| f.kind.to_string()).collect::<Vec<String>>()
+        };
+        let [fault] = &found("TEMP,4,2,10.")[..] else {
+            panic!("one fault")
+        };
+        assert!(fault.contains("grid 1 of rod 7"), "{fault}");
+        for whole in [
+            "TEMP,4,2,10.,1,0.",
+            "TEMP,4,2,10.\nTEMPD,4,0.",
+            "TEMP,5,2,10.\nTEMPD,4,0.",
+        ] {
+            assert_eq!(found(whole), Vec::<String>::new(), "{whole}");
+        }
+    }
 }

@@ -193,6 +193,9 @@ fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
     let field = match (f.card.as_str(), f.field) {
         ("", _) => "deck".to_owned(),
         (card, None) => card.to_owned(),
+        (card, Some(field)) if matches!(f.what, nastran::bdf::Wrong::NoSuchField { .. }) => {
+            format!("{card} field {}", field.number)
+        }
         (card, Some(field)) => format!("{card} {}", field.name),
     };
     Fault::at(

@@ -3,6 +3,7 @@
 mod cases;
 mod combinations;
 mod command;
+mod deck_rules;
 mod first_hour;
 mod frame;
 mod gauges;

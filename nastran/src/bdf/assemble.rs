@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::continuation_name::{Claimed, asks, bare, claim, key};
+use super::continuation_name::{Claimed, asks, bare, claim, is_marked, key};
 use super::emit::emit;
 use super::fault::{Fault, Wrong};
 use super::fields::{excerpt, note_fault};
@@ -198,9 +198,11 @@ impl<'a, 'b> Assembler<'a, 'b> {
         let mut scratch = Vec::new();
         self.label = cut.fields(&mut scratch);
         let next = key(bare(self.label));
+        let asks = is_marked(self.label);
         self.part.orphans.push(Orphan {
             label,
             next,
+            asks,
             lines: vec![self.span(line)],
             used: false,
         });
@@ -214,6 +216,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         if let Some(orphan) = self.part.orphans.last_mut() {
             orphan.lines.push(span);
             orphan.next = key(bare(self.label));
+            orphan.asks = is_marked(self.label);
         }
     }
 

@@ -19,6 +19,11 @@ pub(super) fn bare(label: &[u8]) -> &[u8] {
     }
 }
 
+/// Whether a mark in column 73 says that the name behind it is of a continuation.
+pub(super) fn is_marked(label: &[u8]) -> bool {
+    matches!(label, [b'+' | b'*', ..]) && !bare(label).is_empty()
+}
+
 /// Returns the name in field 10 where column 73 holds another mark than `+` or `*`.
 fn behind_mark(label: &[u8]) -> &[u8] {
     match label {

@@ -43,6 +43,7 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
         let mut lines = card.lines.clone();
         let mut label = card.label.clone();
         let mut any = false;
+        let mut asks = true;
         while !ambiguous.contains(&label)
             && let Some(i) = by_label
                 .get_mut(&label)
@@ -51,8 +52,14 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
         {
             orphan.used = true;
             any = true;
+            asks = orphan.asks;
             lines.extend_from_slice(&orphan.lines);
             label.clone_from(&orphan.next);
+        }
+        if any && asks && !label.is_empty() && !ambiguous.contains(&label) {
+            let at = lines.last().map_or(Place::default(), |s| s.at);
+            let label = text_of(&label);
+            refuse(&mut rest, at, Wrong::NoContinuation { label });
         }
         chains.push(lines);
         found.push(any);

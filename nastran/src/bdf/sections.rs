@@ -8,8 +8,8 @@ use super::fields::note_fault;
 use super::include::{IncludeRequest, Loaded, Loader};
 use super::include_statement::include_name;
 use super::line::{Lines, text_of, without_comment};
+use super::missing_sections::{PARTS, is_bulk_entry, missing};
 use super::source::{Chunk, Note, Position, SectionBounds, Source};
-use super::vocabulary::{case_word, effect_of_card};
 use crate::place::{Place, SourceIx};
 
 /// Files included within files.
@@ -18,15 +18,6 @@ const MAX_DEPTH: usize = 32;
 const MAX_INCLUDES: usize = 10_000;
 /// Bytes of files that are included more than once, counted from the second time.
 const MAX_REPEATED: usize = 16 << 20;
-
-/// What BEGIN may begin.
-///
-/// # Reference
-/// MSC Nastran 2022.4 and Simcenter Nastran quick reference guides, BEGIN BULK.
-const PARTS: [&str; 10] = [
-    "BULK", "SUPER", "AUXMODEL", "AUXMODAL", "MASSID", "MODULE", "ARBMODEL", "TRMC", "UDS",
-    "FLXBDY",
-];
 
 /// The sections of a deck.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -124,34 +115,18 @@ impl Sections<'_> {
         );
     }
 
-    fn statement_fault(&mut self, card: &str, at: Place, found: String, why: &'static str) {
-        note_fault(
-            &mut self.faults,
-            Fault {
-                at,
-                card: card.to_owned(),
-                field: None,
-                what: Wrong::Statement { found, why },
-            },
-        );
-    }
-
     /// Refuses bulk data in case control: BEGIN BULK is missing. One fault, at the first entry; what is below is not read.
     fn refuse_cards_above_bulk(&mut self) {
         if self.bounds.bulk_line.is_some() || !self.parts.is_empty() || !self.chunks.is_empty() {
             return;
         }
-        let is_card = |s: &Statement| {
-            let name = text_of(&first_word(s.text.as_bytes()));
-            case_word(&name).is_none() && effect_of_card(&name).is_some()
-        };
-        let Some(first) = self.case.iter().position(is_card) else {
-            return;
-        };
-        for statement in self.case.split_off(first).into_iter().take(1) {
-            let found = statement.text.trim().to_owned();
+        if let Some(first) = self.case.iter().position(|s| is_bulk_entry(&s.text)) {
             let why = "BEGIN BULK, which ends case control, is missing above";
-            self.statement_fault("BEGIN BULK", statement.at, found, why);
+            let entry = self.case.split_off(first);
+            let fault = entry
+                .first()
+                .map(|s| missing("BEGIN BULK", s.at, &s.text, why));
+            self.faults.extend(fault);
         }
     }
 
@@ -284,13 +259,13 @@ impl Sections<'_> {
             line: number,
         };
         if self.section == Section::Executive {
-            let found = text.trim().to_owned();
-            self.statement_fault("CEND", at, found, "CEND, which ends executive control, is missing above");
+            let why = "CEND, which ends executive control, is missing above";
+            note_fault(&mut self.faults, missing("CEND", at, text, why));
         }
         let is_known = PARTS.contains(&what);
         if !is_known {
-            let found = text.trim().to_owned();
-            self.statement_fault("BEGIN", at, found, "no part of bulk data has this name; BEGIN BULK is needed");
+            let why = "no part of bulk data has this name, BEGIN BULK is needed";
+            note_fault(&mut self.faults, missing("BEGIN", at, text, why));
         }
         let number_is_zero = upper.rsplit('=').next().is_some_and(|n| n.trim() == "0");
         if what == "BULK" && !upper.contains('=') || number_is_zero || !is_known {

@@ -232,7 +232,9 @@ impl Target {
         let values = fibres.map(|[_, x, y, xy]| [x, y, xy]);
         match self.law {
             Law::Fibre => values,
-            Law::Curvature(z) => z.at(corner).map(|z| strain_from_curvature(values[0], values[1], z)),
+            Law::Curvature(z) => z
+                .at(corner)
+                .map(|z| strain_from_curvature(values[0], values[1], z)),
             Law::Stress([e, g, nu]) => values.map(|s| strain_from_stress(s, e, g, nu)),
         }
     }

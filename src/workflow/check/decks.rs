@@ -2,7 +2,7 @@
 
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::host::fault::FaultList;
-use crate::host::words::short;
+use crate::host::words::{counted, short};
 use crate::host::work::Work;
 use crate::model::{Model, UnsupportedCard};
 use crate::strain_chain::deck::{DeckModel, model_of_deck};
@@ -112,9 +112,7 @@ fn without_influence(
     for (name, n) in cards {
         let (reason, n) = match effect_of_card(name) {
             Some(Effect::None(reason)) => (reason, n - acting(name).min(*n)),
-            Some(Effect::ActsWith(_)) => {
-                ("acts on nothing in this deck", n - acting(name).min(*n))
-            }
+            Some(Effect::ActsWith(_)) => ("acts on nothing in this deck", n - acting(name).min(*n)),
             _ => continue,
         };
         if n > 0 {
@@ -185,11 +183,11 @@ impl DeckEntry {
             false => "more than numbers can be".to_owned(),
         };
         format!(
-            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
+            "deck `{}`: {}, {}, {}{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
             self.path,
-            self.grids,
-            self.elements,
-            self.subcases.len(),
+            counted(self.grids, "grid"),
+            counted(self.elements, "element"),
+            counted(self.subcases.len(), "subcase"),
             cards.join(", "),
             self.idle(),
             self.faults

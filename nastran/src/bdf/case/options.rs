@@ -73,15 +73,7 @@ const ANALYSES: [&str; 40] = [
 
 /// Values of RIGID.
 const RIGIDS: [&str; 9] = [
-    "LINEAR",
-    "LAGRANGE",
-    "LAGRAN",
-    "LAGR",
-    "LGELIM",
-    "LELIM",
-    "STATIC",
-    "PENALTY",
-    "AUTO",
+    "LINEAR", "LAGRANGE", "LAGRAN", "LAGR", "LGELIM", "LELIM", "STATIC", "PENALTY", "AUTO",
 ];
 
 /// Returns what is wrong with the value of a command, in upper case, that is one of a list.

@@ -242,12 +242,20 @@ fn an_exception_from_single_ids_is_refused() {
 
 #[test]
 fn statements_between_skip_on_and_skip_off_are_not_carried_out() {
-    for [on, off] in [["SKIP ON", "SKIP OFF"], ["SKIPON", "SKIPOFF"], ["SKIP=ON", "SKIP = OFF"]] {
+    for [on, off] in [
+        ["SKIP ON", "SKIP OFF"],
+        ["SKIPON", "SKIPOFF"],
+        ["SKIP=ON", "SKIP = OFF"],
+    ] {
         let text = format!(
             "SOL 101\nCEND\nLOAD = 1\n{on}\nLOAD = 2\nSUBCASE 7\nLOAD = 3\n{off}\nSPC = 4\nBEGIN BULK\nGRID,1\nENDDATA\n"
         );
         let case = clean(&text).case_control;
-        assert_eq!((case.global.load, case.global.spc), (Some(1), Some(4)), "{on}");
+        assert_eq!(
+            (case.global.load, case.global.spc),
+            (Some(1), Some(4)),
+            "{on}"
+        );
         assert!(case.subcases.is_empty(), "{on}");
     }
 }
@@ -255,7 +263,9 @@ fn statements_between_skip_on_and_skip_off_are_not_carried_out() {
 #[test]
 fn options_and_values_that_nastran_does_not_know_are_refused_with_their_line() {
     let read = |line: &str| {
-        bulk(&format!("SOL 101\nCEND\n{line}\nBEGIN BULK\nGRID,1\nENDDATA\n"))
+        bulk(&format!(
+            "SOL 101\nCEND\n{line}\nBEGIN BULK\nGRID,1\nENDDATA\n"
+        ))
     };
     for line in [
         "TEMP(INTI) = 4",
@@ -282,5 +292,30 @@ fn options_and_values_that_nastran_does_not_know_are_refused_with_their_line() {
         "RIGID = LAGR",
     ] {
         assert_eq!(shown(&read(line)), Vec::<String>::new(), "{line}");
+    }
+}
+
+#[test]
+fn a_missing_or_misspelt_statement_between_sections_is_one_fault() {
+    let bulk_data = "GRID,1\nCROD,1,1,1,1\nFORCE,1,1,,1.,0.,0.,1.\n";
+    for (sections, starts) in [
+        (
+            "SOL 101\nLOAD = 1\nBEGIN BULK\n",
+            "test.bdf:3: `CEND`: CEND",
+        ),
+        (
+            "SOL 101\nCEND\nLOAD = 1\n",
+            "test.bdf:4: `BEGIN BULK`: BEGIN BULK",
+        ),
+        (
+            "SOL 101\nCEND\nBEGIN BLUK\n",
+            "test.bdf:3: `BEGIN`: no part",
+        ),
+    ] {
+        let found = shown(&bulk(&format!("{sections}{bulk_data}ENDDATA\n")));
+        assert!(
+            found.len() == 1 && found[0].starts_with(starts),
+            "{sections}: {found:?}"
+        );
     }
 }

@@ -78,8 +78,7 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
         "{asked:?}"
     );
     assert!(
-        asked[1]
-            .starts_with("test.bdf:1: the card asks for a continuation that no line has: P4"),
+        asked[1].starts_with("test.bdf:1: the card asks for a continuation that no line has: P4"),
         "{asked:?}"
     );
     // nor does one below a card that asks for none, whatever is between
@@ -101,6 +100,19 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
 }
 
 #[test]
+fn the_last_of_several_continuations_is_missed_too() {
+    let head = "RBE2    9       1       123     2       3       4       5       6       +R1\n";
+    let rest = "+R1     7       8       9       10      11      12      13      14      +R2\n";
+    for between in ["", "GRID,99\n"] {
+        let found = shown(&super::bulk(&[head, between, rest].concat()));
+        assert!(
+            found.len() == 1 && found[0].contains("that no line has: R2"),
+            "{between}: {found:?}"
+        );
+    }
+}
+
+#[test]
 fn names_of_continuations_are_equal_in_both_cases() {
     let head = "PSHELL  4       1       .25     1               1                       ";
     for between in ["", "GRID,9\n"] {
@@ -118,7 +130,9 @@ fn a_name_that_two_cards_ask_for_is_refused_though_one_has_it_below() {
     let text = [&head(4), &head(5), rest, rest].concat();
     let found = shown(&super::bulk(&text));
     assert!(
-        found.iter().any(|f| f.contains("lines 1 and 2 both name it")),
+        found
+            .iter()
+            .any(|f| f.contains("lines 1 and 2 both name it")),
         "{found:?}"
     );
 }

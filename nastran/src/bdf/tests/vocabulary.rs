@@ -28,6 +28,7 @@ fn words_of_case_control_are_read_in_full_or_abbreviated() {
         ("LOADSET", "LOADSET"),
         ("ESE", "ESE"),
         ("STRESSES", "STRESS"),
+        ("LINES", "LINE"),
         ("SUPORT", "SUPORT1"),
     ] {
         assert_eq!(read(word), Some(full), "{word}");

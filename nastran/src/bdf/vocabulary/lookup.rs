@@ -11,7 +11,7 @@ pub fn effect_of_card(name: &str) -> Option<Effect> {
     cards().get(name).copied()
 }
 
-/// Reads a word of case control in upper case: in full, abbreviated to four letters or more, or an output request in the plural.
+/// Reads a word of case control in upper case: in full, abbreviated to four letters or more, or a word of output in the plural.
 ///
 /// `None` for a word that no dialect has.
 pub fn case_word(word: &str) -> Option<CaseWord> {
@@ -21,11 +21,11 @@ pub fn case_word(word: &str) -> Option<CaseWord> {
         let begin = begin.filter(|_| long_enough);
         begin.min_by_key(|e| preference(e.effect))
     };
-    // Requests are often written in the plural.
+    // Output requests and statements about output are often written in the plural.
     let singular = || {
         let stems = ["ES", "S"].into_iter().filter_map(|s| word.strip_suffix(s));
         let mut of_stem = stems.filter_map(word_in_full);
-        of_stem.find(|e| e.effect == Effect::Request)
+        of_stem.find(|e| matches!(e.effect, Effect::Request | Effect::None(_)))
     };
     let e = word_in_full(word).or_else(abbreviated).or_else(singular)?;
     Some(CaseWord {
