@@ -285,3 +285,20 @@ fn a_station_without_stress_output_has_the_points_of_end_a() {
         assert_eq!(points, [[20.0, 10.0], [20.0, 10.0], [21.0, 11.0]], "{so}");
     }
 }
+
+#[test]
+fn a_shell_scales_the_thicknesses_that_it_states() {
+    let deck = super::clean(
+        "CQUAD4,1,1,1,2,3,4\n,,,2.,,4.\nCQUAD4,2,1,1,2,3,4\n,,1,2.,2.,2.,2.\nCQUAD4,3,1,1,2,3,4\n",
+    );
+    let scaled: Vec<_> = deck
+        .cards
+        .shells
+        .iter()
+        .map(|s| s.card.with_thickness_times(0.5).map(|s| s.thickness))
+        .collect();
+    assert_eq!(
+        scaled,
+        [Some([Some(1.0), None, Some(2.0), None]), None, None]
+    );
+}

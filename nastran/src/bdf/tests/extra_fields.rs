@@ -41,6 +41,26 @@ fn a_value_beyond_the_last_field_is_a_fault_with_its_field() {
 }
 
 #[test]
+fn a_second_card_of_defaults_is_a_fault() {
+    for card in [
+        "GRDSET,,,,,,,3",
+        "BAROR,,,,,0.,1.,0.",
+        "BEAMOR,,,,,0.,1.,0.",
+    ] {
+        assert_eq!(
+            shown(&bulk(&format!("GRID,1\n{card}\n"))).len(),
+            0,
+            "{card}"
+        );
+        let found = shown(&bulk(&format!("GRID,1\n{card}\n{card}\n")));
+        assert!(
+            found.len() == 1 && found[0].contains("2 cards"),
+            "{found:?}"
+        );
+    }
+}
+
+#[test]
 fn blank_fields_beyond_the_last_are_none() {
     let deck = clean("FORCE,1,2,,1.,0.,1.,0.,,,,\nMPC,1,2,1,1.,3,1,-1.\n,,4,1,1.\n,,5,1,1.\n");
     assert_eq!(deck.cards.forces.len(), 1);
