@@ -184,7 +184,7 @@ fn a_continuation_goes_to_the_card_that_names_it_also_below_a_card_without_a_nam
             "*Q1                   0.              1.              0.                *Q1B\n",
             pbar,
             grids[1],
-            "*Q1B                                                -1.5              0.*Q1C\n",
+            "*Q1B                                                -1.5              0.\n",
             rest_of_pbar,
         ]
         .concat(),
