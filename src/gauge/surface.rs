@@ -1,7 +1,6 @@
 //! The point of the shells' surfaces, or of their skins, nearest to a given one.
 
 use super::side::{normal, opposite};
-use crate::fe::from_results::surface_z;
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Shell, ShellIx, Vec3};
 
@@ -38,9 +37,18 @@ pub fn centre(model: &Model, shell: &Shell) -> Option<Vec3> {
     Some(corners(model, shell)?.iter().take(n).sum::<Vec3>() / n as f64)
 }
 
-/// From the reference surface of a shell to its side: offset and fibre distance along the normal.
+/// From the reference surface of a shell to its side, at the centre: offset and fibre distance along the normal.
 pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
-    let z = surface_z(model, shell)[side.ix()];
+    height(shell, model.fibres(shell).centre[side.ix()])
+}
+
+/// [`to_side`] at the place of these weights of the corners.
+fn to_side_at(model: &Model, shell: &Shell, side: Surface, weights: [f64; 4]) -> f64 {
+    let z = model.fibres(shell).corners.map(|z| z[side.ix()]);
+    height(shell, z.iter().zip(weights).map(|(z, w)| z * w).sum())
+}
+
+fn height(shell: &Shell, z: f64) -> f64 {
     shell.zoffs + if z.is_finite() { z } else { 0.0 }
 }
 
@@ -98,7 +106,16 @@ fn nearness(model: &Model, ix: ShellIx, x: Vec3, stated: Option<Surface>) -> Opt
     let shell = model.shells.get(ix.us())?;
     let layer = |height: f64| foot_on(model, ix, x - z * height);
     let first = stated.unwrap_or(Surface::Top);
-    let height = [first, opposite(first)].map(|s| to_side(model, shell, s));
+    let sides = [first, opposite(first)];
+    let mut height = sides.map(|s| to_side(model, shell, s));
+    if shell.thickness[..shell.shape.n_corners()]
+        .windows(2)
+        .any(|t| t[0] != t[1])
+    {
+        // The skins of a tapered shell are as far from the reference surface as the thickness at the place says.
+        let local = |s: Surface, h: f64| Some(to_side_at(model, shell, s, layer(h)?.weights));
+        height = [local(sides[0], height[0])?, local(sides[1], height[1])?];
+    }
     let skins = [layer(height[0])?, layer(height[1])?];
     let middle = layer(0.5 * (height[0] + height[1]))?.distance;
     let tolerance = SAME_PLACE * (height[0] - height[1]).abs().max(x.norm());

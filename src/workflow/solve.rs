@@ -226,8 +226,9 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     Faults::check(read.faults.clone())?;
     refuse_repeated_subcases(&read)?;
     refuse(&read.model, &[]).map_err(|e| faults_of(&e, &read))?;
-    work.findings
-        .extend(suport_without_inrel(&read.model, read.deck.sol));
+    let suport = suport_without_inrel(&read.model, read.deck.sol);
+    let explained = suport.is_some();
+    work.findings.extend(suport);
     work.findings.extend(other_sequence(&read));
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
@@ -263,7 +264,9 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
             Relief::None => return None,
             _ => Support::free(&read.model),
         };
-        relief_finding(&read.model, support, SupportChoice::Deck)
+        // SUPORT without PARAM,INREL is already reported, with what is assumed.
+        let new = |f: &Finding| !explained || f.code != "inertia-relief-assumed";
+        relief_finding(&read.model, support, SupportChoice::Deck).filter(new)
     }));
     if cases.is_empty() {
         return Err(Faults::from(Fault::of(

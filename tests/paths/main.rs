@@ -3,6 +3,7 @@
 mod cases;
 mod combinations;
 mod command;
+mod deck_rules;
 mod first_hour;
 mod frame;
 mod gauges;
@@ -13,4 +14,5 @@ mod placement;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;
+mod thickness;
 mod wing;

@@ -161,7 +161,7 @@ fn a_grid_over_a_step_of_thickness_stays_on_the_same_skin() {
     // Fibres at 1 and 2.5: pure bending strains each by its distance; half of the grid is on each.
     let mut m = plate(2, 1, 0);
     let mut thick = m.shell_properties[0].clone();
-    (thick.id, thick.z) = (2, [-2.5, 2.5]);
+    (thick.id, thick.z) = (2, [Some(-2.5), Some(2.5)]);
     m.shell_properties.push(thick);
     m.shells[1].property = ShellPropertyIx(1);
     let mut case = field(&m, CornerRows::Absent, |_, z| [1e-6 * z, 0.0, 0.0]);

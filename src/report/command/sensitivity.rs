@@ -4,6 +4,7 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::report::page::Page;
 use crate::report::scene::scene_of_job;
@@ -32,9 +33,9 @@ impl Report for Outcome<Sensed> {
     fn words(&self) -> String {
         let s = &self.prepared.sensitivity;
         format!(
-            "S: {} gauges x {} loads, rank {}, condition number {:.4} in job units, {:.4} scaled\n",
-            s.gauges.len(),
-            s.loads.len(),
+            "S: {} x {}, rank {}, condition number {:.4} in job units, {:.4} scaled\n",
+            counted(s.gauges.len(), "gauge"),
+            counted(s.loads.len(), "load"),
             s.rank(),
             s.condition_number(),
             s.condition_number_scaled()

@@ -5,6 +5,7 @@ use crate::fe::Solution;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::host::words::counted;
 use crate::model::Model;
 use crate::report::page::Page;
 use crate::report::scene::scene_of_solution;
@@ -43,13 +44,12 @@ impl Report for Outcome<SolvedCases> {
     }
 
     fn words(&self) -> String {
-        let n = self.solution.cases.len();
         let mut text = format!(
-            "{n} load case{} on {} grids, {} unknowns; factor of {} entries\n",
-            if n == 1 { "" } else { "s" },
-            self.grids,
-            self.dofs,
-            self.factor_nonzeros
+            "{} on {}, {}; factor of {}\n",
+            counted(self.solution.cases.len(), "load case"),
+            counted(self.grids, "grid"),
+            counted(self.dofs, "unknown"),
+            counted(self.factor_nonzeros, "entry")
         );
         if let Some(support) = &self.support {
             text.push_str(&format!("the structure is {support}\n"));

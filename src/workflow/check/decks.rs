@@ -2,7 +2,7 @@
 
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::host::fault::FaultList;
-use crate::host::words::short;
+use crate::host::words::{counted, short};
 use crate::host::work::Work;
 use crate::model::{Model, UnsupportedCard};
 use crate::strain_chain::deck::{DeckModel, model_of_deck};
@@ -50,7 +50,10 @@ pub(super) fn look(
     given: &str,
     bytes: &[u8],
 ) -> (DeckEntry, FaultList) {
-    let read = model_of_deck(&mut work.inputs, base, given, bytes);
+    let mut read = model_of_deck(&mut work.inputs, base, given, bytes);
+    // The warning `card-not-solved` names these cards; results of Nastran may be given.
+    let not_carried = std::mem::take(&mut read.not_carried);
+    read.faults.retain(|f| !not_carried.contains(f));
     work.findings.extend(read.findings.iter().cloned());
     work.findings.extend(find_repeated_subcases(&read));
     work.findings.extend(check_shapes(&read.model));
@@ -99,18 +102,17 @@ fn without_influence(
     cards: &BTreeMap<String, usize>,
     model: &Model,
 ) -> BTreeMap<&'static str, usize> {
+    // `MDLPRM OFFDEF`: the name of the card comes first
+    let acting = |name: &str| {
+        let of_name = |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name);
+        let acting = model.unsupported_cards.iter().filter(of_name);
+        acting.map(|u| u.at).collect::<BTreeSet<_>>().len()
+    };
     let mut counted = BTreeMap::new();
     for (name, n) in cards {
         let (reason, n) = match effect_of_card(name) {
-            Some(Effect::None(reason)) => (reason, *n),
-            Some(Effect::ActsWith(_)) => {
-                // `MDLPRM OFFDEF`: the name of the card comes first
-                let of_name =
-                    |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name.as_str());
-                let acting = model.unsupported_cards.iter().filter(of_name);
-                let acting: BTreeSet<_> = acting.map(|u| u.at).collect();
-                ("acts on nothing in this deck", n - acting.len().min(*n))
-            }
+            Some(Effect::None(reason)) => (reason, n - acting(name).min(*n)),
+            Some(Effect::ActsWith(_)) => ("acts on nothing in this deck", n - acting(name).min(*n)),
             _ => continue,
         };
         if n > 0 {
@@ -181,11 +183,11 @@ impl DeckEntry {
             false => "more than numbers can be".to_owned(),
         };
         format!(
-            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
+            "deck `{}`: {}, {}, {}{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
             self.path,
-            self.grids,
-            self.elements,
-            self.subcases.len(),
+            counted(self.grids, "grid"),
+            counted(self.elements, "element"),
+            counted(self.subcases.len(), "subcase"),
             cards.join(", "),
             self.idle(),
             self.faults
