@@ -6,7 +6,7 @@ use super::error::GaugeError;
 use super::grid::{Seat, Site, laid_onto, rotated};
 use super::grid_average::POINTS;
 use super::spec::{CornerRows, GaugePlace, GaugeSpec};
-use super::surface::{Foot, centre, nearest_skin, to_side};
+use super::surface::{Foot, centre, from_skins, nearest_skin, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
@@ -86,8 +86,14 @@ pub(super) fn build_by(
         Some(f) if corners == CornerRows::Present => f.point,
         _ => middle,
     };
-    if let Some(f) = foot {
+    if let (Some(f), GaugePlace::Nearest(x)) = (foot, spec.place) {
         let size = reach(model, element, middle);
+        // The skin of a stated side may be the farther one.
+        let distance = match from_skins(model, shell, x) {
+            Some(skins) if side != f.side => skins[side.ix()],
+            _ => f.distance,
+        };
+        let f = Foot { distance, ..f };
         findings.push(found(spec, element.id, side, &f, corners, size));
     }
     let drawn = foot.map_or(middle, |f| f.point);

@@ -30,6 +30,7 @@ pub mod unread;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use resolve::{SAME_SIDE, SAME_SIDE_REMEDY};
 pub use types::*;
 
 use crate::host::context::Files;

@@ -10,6 +10,7 @@ mod misread;
 mod names;
 mod op2_mesh;
 mod placement;
+mod sides;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;

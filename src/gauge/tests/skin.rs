@@ -316,3 +316,17 @@ fn a_grid_on_a_bar_is_no_longer_than_the_straight_bars_along_it() {
         assert_eq!(got.is_ok(), fits, "{length}: {got:?}");
     }
 }
+
+#[test]
+fn only_shells_that_are_about_parallel_have_an_opposite_side() {
+    let mut web = plate(1, 1, 0);
+    for g in &mut web.grids {
+        g.x = Vec3::new(g.x.x, 5.0, g.x.y);
+    }
+    let m = with_plate(plate(1, 1, 0), web, Vec3::zeros());
+    let from = (ShellIx(0), Surface::Top);
+    assert_eq!(away_from(&m, from, ShellIx(1)), None);
+    assert_eq!(away_from(&m, from, ShellIx(0)), Some(Surface::Bottom));
+    let m = with_plate(plate(1, 1, 0), flipped(plate(1, 1, 0), &[0]), Vec3::z());
+    assert_eq!(away_from(&m, from, ShellIx(1)), Some(Surface::Top));
+}

@@ -124,7 +124,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     work.findings.extend(check_separability(&s.unconditioned()));
     judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
     let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
-    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &quality, &task.scales);
+    let as_glued = judge::as_glued(job, &quality, k);
+    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &as_glued, &task.scales);
     let in_job_units = load_sigma.iter().zip(units);
     let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
     let planned = check_planned(&s, &planned);
