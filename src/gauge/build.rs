@@ -1,7 +1,7 @@
 //! From a description to arms.
 
 use super::arms::Gauge;
-use super::beam::{BeamSeat, on_beam};
+use super::beam::{BeamSeat, on_beam, point_on_axis};
 use super::error::GaugeError;
 use super::grid::{Seat, Site, laid_onto, rotated};
 use super::grid_average::POINTS;
@@ -45,7 +45,9 @@ pub(super) fn build_by(
             point,
             station,
         };
-        return Ok((vec![on_beam(model, spec, seat)?], findings));
+        let gauge = on_beam(model, spec, seat)?;
+        findings.extend(point_on_axis(model, spec, seat));
+        return Ok((vec![gauge], findings));
     }
     let no_area = |element| GaugeError::NoArea {
         gauge: spec.name.clone(),

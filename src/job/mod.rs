@@ -13,6 +13,7 @@ mod parse;
 pub mod payload_loads;
 pub mod payload_signature;
 mod picked;
+mod property_names;
 pub mod quantity;
 mod raw;
 pub mod readings;

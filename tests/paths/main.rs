@@ -7,6 +7,7 @@ mod first_hour;
 mod frame;
 mod gauges;
 mod misread;
+mod named_properties;
 mod names;
 mod op2_mesh;
 mod placement;

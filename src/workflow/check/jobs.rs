@@ -178,6 +178,10 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
                 Err(faults) => found.faults.extend(faults.into_list()),
             }
             found.faults.extend(missing_ids(job, model));
+            match job.with_property_ids(&model.property_names) {
+                Ok(with_ids) => found.candidates = Some(with_ids.candidates),
+                Err(faults) => found.faults.extend(faults.into_list()),
+            }
         }
     }
     for named in other_files(job) {

@@ -41,6 +41,7 @@ pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;
     let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
+    let job = &job.with_property_ids(&fields.model().property_names)?;
     let answer = placed(&mut work, job, &fields)?;
     let answer = answer.with(fields, job);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
