@@ -38,9 +38,10 @@ pub(super) struct Suspects {
     pub shifts: Vec<Shift>,
 }
 
-/// The gauge whose gain or zero error stands out most, where chance doesn't make it so: an error where the interval of its size does not contain
-/// zero and it shifts a wanted load by more than the half width of its interval, else a warning, or a note where chance is not quite ruled out. Either way the intervals are widened
-/// by what it does.
+/// Returns the gauge whose gain or zero error stands out most, where chance doesn't make it so.
+///
+/// It is an error where the interval of its size does not contain zero and where it shifts a wanted load by more than the half width of its
+/// interval. Else it is a warning, or a note where chance is not quite ruled out. Either way the intervals are widened by what it does.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
