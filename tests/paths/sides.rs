@@ -253,3 +253,68 @@ fn a_recovery_point_at_a_position_is_refused() {
     let text = refused(&table);
     assert!(text.contains("g.csv:2: point"), "{text}");
 }
+
+#[test]
+fn a_column_of_sides_has_sides_of_the_shell_or_of_the_vehicle() {
+    let table = |column: &str, word: &str| {
+        Plate::plain().files("[gauges]\nfile = \"g.csv\"\n").with(
+            "g.csv",
+            format!("name,element,{column},dir_x,dir_y,dir_z\ng,7,{word},1,0,0\n"),
+        )
+    };
+    for (word, sign) in [("top", 1.0), ("Bottom", -1.0), ("", 1.0)] {
+        let (got, _) = read(&table("side", word));
+        assert!((got[0] - sign * BENT).abs() < ROUNDING, "{word}: {got:?}");
+    }
+    for word in ["upper", "lower", "Z1", "outside"] {
+        let text = refused(&table("side", word));
+        assert!(text.contains("g.csv:2: surface"), "{word}: {text}");
+    }
+    // Sides of the vehicle are named as not read, and no remedy makes something else of them.
+    for (column, word) in [("side", "left"), ("nx", "0.0"), ("kg", "1")] {
+        let (_, findings) = read(&table(column, word));
+        let found = findings
+            .iter()
+            .find(|f| f.code == "column-not-read")
+            .unwrap();
+        assert!(
+            !found.remedy.contains("rename"),
+            "{column}: {}",
+            found.remedy
+        );
+    }
+    let (_, findings) = read(&table("memberr", "A"));
+    let found = findings
+        .iter()
+        .find(|f| f.code == "column-not-read")
+        .unwrap();
+    assert!(
+        found.remedy.contains("`memberr` to `member`"),
+        "{}",
+        found.remedy
+    );
+}
+
+/// A cantilever of one bar pulled along its axis, with the recovery point C alone.
+#[test]
+fn a_bar_gauge_at_a_point_without_coordinates_is_named() {
+    let deck = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.\nPBAR,1,1,10.,100.,100.,100.\n\
+                ,1.,1.\nMAT1,1,200000.,,.25\nSPC1,1,123456,1\nFORCE,2,2,,1000.,1.,0.,0.\nENDDATA\n";
+    let of = |point: &str| {
+        let job = format!(
+            "units = \"mm-t-s\"\n[model]\ndeck = \"bar.bdf\"\nsupport = 1\n[[load]]\nname = \"P\"\nload_set = 2\n\
+             [[gauge]]\nname = \"g\"\nelement = 1\npoint = \"{point}\"\n"
+        );
+        read(
+            &InMemory::default()
+                .with("bar.bdf", deck)
+                .with("job.toml", job),
+        )
+    };
+    for (point, expected) in [("C", None), ("D", Some(Severity::Warning))] {
+        let (got, findings) = of(point);
+        // 100 MPa.
+        assert!((got[0] - 100.0 / 200_000.0).abs() < 1e-12, "{got:?}");
+        assert_eq!(severity(&findings, "bar-point-on-axis"), expected);
+    }
+}

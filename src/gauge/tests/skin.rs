@@ -164,6 +164,7 @@ fn a_grid_over_a_step_of_thickness_stays_on_the_same_skin() {
     (thick.id, thick.z) = (2, [-2.5, 2.5]);
     m.shell_properties.push(thick);
     m.shells[1].property = ShellPropertyIx(1);
+    m.shells[1].thickness = [5.0; 4];
     let mut case = field(&m, CornerRows::Absent, |_, z| [1e-6 * z, 0.0, 0.0]);
     case.shells.centre[1]
         .iter_mut()

@@ -97,7 +97,7 @@ impl Kind {
 }
 
 /// Value of a property.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(f64),
     Text(String),
@@ -370,11 +370,14 @@ fn object(
     for _ in 0..c.u32()? {
         let key = c.text()?;
         let value = c.value()?;
-        if object.samples > 0 && CLOCK.contains(&key.as_str()) {
+        let is_later = object.samples > 0 && CLOCK.contains(&key.as_str());
+        let before = object.restarts.iter().rev().find(|r| r.key == key);
+        let before = before.map(|r| &r.value).or(object.properties.get(&key));
+        if !is_later {
+            object.properties.insert(key, value);
+        } else if before != Some(&value) {
             let first = object.samples;
             object.restarts.push(Restart { first, key, value });
-        } else {
-            object.properties.insert(key, value);
         }
     }
     if !active.contains(&path) {
