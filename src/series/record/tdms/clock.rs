@@ -170,6 +170,11 @@ pub(super) fn check_clocks(
         });
         let mean = (last - first) / (c.samples - 1) as f64;
         let unit = if c.kind == Kind::Time { "s" } else { c.unit() };
+        let stated = if unit.is_empty() {
+            "(without a unit)"
+        } else {
+            unit
+        };
         let units: &[&str] = match unit {
             "" => &["s", "ms", "us", "ns"],
             _ => &[unit],
@@ -179,7 +184,7 @@ pub(super) fn check_clocks(
         };
         if mean > 0.0 && !units.iter().any(agrees) {
             return Err(broken(format!(
-                "channel `{}` has a time every {mean} {unit}, and `wf_increment` of the other channels is {} s",
+                "the times of channel `{}` are {mean} {stated} apart, and `wf_increment` of the other channels is {} s",
                 c.name, main.step_s
             )));
         }

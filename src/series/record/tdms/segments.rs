@@ -373,7 +373,7 @@ fn object(
         let is_later = object.samples > 0 && CLOCK.contains(&key.as_str());
         let before = object.restarts.iter().rev().find(|r| r.key == key);
         let before = before.map(|r| &r.value).or(object.properties.get(&key));
-        if !is_later {
+        if !is_later || before.is_none() {
             object.properties.insert(key, value);
         } else if before != Some(&value) {
             let first = object.samples;
