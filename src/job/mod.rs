@@ -13,6 +13,7 @@ mod parse;
 pub mod payload_loads;
 pub mod payload_signature;
 mod picked;
+mod property_names;
 pub mod quantity;
 mod raw;
 pub mod readings;
@@ -30,6 +31,7 @@ pub mod unread;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use resolve::{SAME_SIDE, SAME_SIDE_REMEDY};
 pub use types::*;
 
 use crate::host::context::Files;

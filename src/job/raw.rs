@@ -1,6 +1,6 @@
 //! The job as written: every key of every section, each value with its place in the text, nothing required here.
 
-use super::shapes::{Counts, Ids, NumberOrWord, Texts};
+use super::shapes::{Counts, Ids, NumberOrWord, PropertyIds, Texts};
 use super::spanned::Spanned;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -134,7 +134,7 @@ pub(super) struct RawGauges {
 #[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawCandidates {
-    pub properties: S<Ids>,
+    pub properties: S<PropertyIds>,
     pub elements: S<Ids>,
     pub surfaces: S<Vec<Spanned<String>>>,
     pub angle_step_deg: S<NumberOrWord>,
@@ -142,7 +142,7 @@ pub(super) struct RawCandidates {
     pub bridge: S<Texts>,
     pub rosette: S<String>,
     pub sets: S<Ids>,
-    pub exclude_properties: S<Ids>,
+    pub exclude_properties: S<PropertyIds>,
     pub exclude_elements: S<Ids>,
     pub wanted_elements: S<Ids>,
     pub file: S<String>,
@@ -222,7 +222,7 @@ pub(super) struct RawRunNoise {
 pub(super) struct RawBallast {
     pub masses: S<u32>,
     pub region: S<Vec<[f64; 2]>>,
-    pub properties: S<Ids>,
+    pub properties: S<PropertyIds>,
     pub max_mass: S<f64>,
     pub run: S<String>,
     pub gravity: S<f64>,
@@ -380,7 +380,7 @@ pub(super) struct RawTolerance {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawReconcile {
     pub path: S<String>,
-    pub zones: BTreeMap<String, Ids>,
+    pub zones: BTreeMap<String, PropertyIds>,
     pub places: BTreeMap<String, u32>,
     #[serde(rename = "thermal_microstrain_per_degC")]
     pub thermal: BTreeMap<Spanned<String>, f64>,

@@ -83,6 +83,7 @@ pub(crate) fn prepared(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
 /// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).
 fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let fields = read_fields(work, job, WantedAt::Anywhere)?;
+    let job = &job.with_property_ids(&fields.model().property_names)?;
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);

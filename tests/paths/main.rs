@@ -8,9 +8,11 @@ mod first_hour;
 mod frame;
 mod gauges;
 mod misread;
+mod named_properties;
 mod names;
 mod op2_mesh;
 mod placement;
+mod sides;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;

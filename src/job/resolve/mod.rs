@@ -13,9 +13,10 @@ mod vehicle;
 
 pub(super) use channel::check_names as check_named;
 pub(super) use gauge::{
-    POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from, role_from, rosette_from,
-    surface_from, with_pair,
+    ELEMENT_STATED, POINT_ALONE, POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from,
+    role_from, rosette_from, surface_from, with_pair,
 };
+pub use gauge::{SAME_SIDE, SAME_SIDE_REMEDY};
 
 use super::faults::Collector;
 use super::raw::{RawCandidates, RawJob};

@@ -23,7 +23,7 @@ mod sensitivity;
 mod study;
 mod vehicle;
 
-pub use super::shapes::Ids;
+pub use super::shapes::{Ids, PropertyIds};
 pub use ballast::Ballast;
 pub use calibration::CalibrationKeys;
 pub use candidates::{AngleStep, Candidates, Clearances};

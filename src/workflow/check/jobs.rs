@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::job_deck::against_units;
 use crate::strain_chain::solved::{relief_of_job, support_finding, support_of_job};
-use crate::strain_chain::{given_as_asked, off_their_elements};
+use crate::strain_chain::{given_as_asked, point_findings};
 use crate::workflow::{calibrate, identify, reconcile, recover, respond};
 use std::collections::HashSet;
 use std::path::Path;
@@ -168,7 +168,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
             work.findings.extend(against_units(job, model));
-            work.findings.extend(off_their_elements(model, job));
+            work.findings.extend(point_findings(model, job));
             match support_of_job(job, model) {
                 Ok(support) => {
                     work.findings.push(support_finding(&m.deck.given, support));
@@ -178,6 +178,10 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
                 Err(faults) => found.faults.extend(faults.into_list()),
             }
             found.faults.extend(missing_ids(job, model));
+            match job.with_property_ids(&model.property_names) {
+                Ok(with_ids) => found.candidates = Some(with_ids.candidates),
+                Err(faults) => found.faults.extend(faults.into_list()),
+            }
         }
     }
     for named in other_files(job) {
