@@ -1,4 +1,4 @@
-//! `[runs]`.
+//! `[runs]`, and recorded loads of `[compare]`, which are read as those of `[runs]`.
 
 use super::named_file::NamedFile;
 use crate::reconcile::strain::WheelForces;
@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 pub struct Runs {
     /// The file.
     pub file: NamedFile,
+    /// Section of the job that names it: `runs`, or `compare`.
+    pub section: &'static str,
     /// Load name or `payload_force`, `payload_mass`, `payload_x`, `payload_y` to the column's name.
     pub columns: BTreeMap<String, String>,
     /// Units of the file; the report units where not stated.
