@@ -82,7 +82,10 @@ pub(crate) fn read_recorded(
         header: header.collect(),
         rows: Vec::new(),
     };
-    let is_strain_file = job.measured.as_ref().is_some_and(|m| m.strain.given == *file);
+    let is_strain_file = job
+        .measured
+        .as_ref()
+        .is_some_and(|m| m.strain.given == *file);
     if !is_strain_file {
         let given = given_loads(inputs, job)?;
         note_unread_runs(inputs, job, (&table, record.columns()), &given);

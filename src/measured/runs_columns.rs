@@ -123,7 +123,10 @@ pub fn names_in_runs(job: &Job) -> Vec<String> {
     let loads = job.loads.iter().map(|l| l.name.clone());
     let sums = job.combinations.iter().map(|c| c.name.clone());
     let payload = PAYLOAD.iter().map(|p| p.0.to_owned());
-    let files = job.runs.iter().chain(job.compare.iter().map(|c| &c.recorded));
+    let files = job
+        .runs
+        .iter()
+        .chain(job.compare.iter().map(|c| &c.recorded));
     let mapped = files.flat_map(|r| r.columns.values().cloned());
     let mut out: Vec<String> = loads.chain(sums).chain(payload).chain(mapped).collect();
     let sd: Vec<String> = out.iter().map(|n| format!("{n}_sd")).collect();

@@ -116,7 +116,11 @@ impl Sampled<'_> {
     fn bins(&self, s: usize, width_s: f64, n: usize) -> Vec<f64> {
         let (mut sums, mut counts) = (vec![0.0; n], vec![0_u32; n]);
         let per_sample = 1.0 / (self.rate_hz * width_s);
-        for (i, v) in self.signals[s].iter().enumerate().filter(|v| v.1.is_finite()) {
+        for (i, v) in self.signals[s]
+            .iter()
+            .enumerate()
+            .filter(|v| v.1.is_finite())
+        {
             let bin = (i as f64 * per_sample + ON_SAMPLE) as usize;
             if let (Some(sum), Some(count)) = (sums.get_mut(bin), counts.get_mut(bin)) {
                 *sum += f64::from(*v);
@@ -422,7 +426,10 @@ mod tests {
             .unwrap();
             // The cubic errs by 3/128 (2 pi f / rate)^4 of a sine, 2e-5 of the fastest one here: 1e-5 s of its slope.
             assert!((found.seconds - shift).abs() < 2e-5, "{found:?} {shift}");
-            assert!(found.half_width_s < 1e-4 && found.correlation > 0.99, "{found:?}");
+            assert!(
+                found.half_width_s < 1e-4 && found.correlation > 0.99,
+                "{found:?}"
+            );
         }
     }
 
@@ -439,8 +446,15 @@ mod tests {
         };
         assert_eq!(of(&vec![vec![1.0; 3000]; 2]), Err(NoShift::Constant));
         let other: Vec<f32> = (0..3000).map(|i| ((i * i * 7919) % 1013) as f32).collect();
-        assert!(matches!(of(&[other.clone(), other]), Err(NoShift::Unlike(_))));
-        let sine: Vec<Vec<f32>> = vec![(0..3000).map(|i| (TAU * 0.02 * f64::from(i)).sin() as f32).collect()];
+        assert!(matches!(
+            of(&[other.clone(), other]),
+            Err(NoShift::Unlike(_))
+        ));
+        let sine: Vec<Vec<f32>> = vec![
+            (0..3000)
+                .map(|i| (TAU * 0.02 * f64::from(i)).sin() as f32)
+                .collect(),
+        ];
         let sampled = Sampled {
             start_s: 0.0,
             rate_hz: 100.0,

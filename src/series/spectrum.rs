@@ -80,7 +80,12 @@ impl Fourier {
     /// Returns `sum of a(i + lag) b(i)` for the signals of two spectra of one length: lags from 0 on, negative ones from the end.
     pub fn correlation(&mut self, a: &Spectrum, b: &Spectrum) -> Vec<f64> {
         let plan = inverse(a.n_padded);
-        let mut bins: Vec<Complex64> = a.bins.iter().zip(&b.bins).map(|(a, b)| a * b.conj()).collect();
+        let mut bins: Vec<Complex64> = a
+            .bins
+            .iter()
+            .zip(&b.bins)
+            .map(|(a, b)| a * b.conj())
+            .collect();
         for at in [0, a.n_padded / 2] {
             bins[at].im = 0.0;
         }

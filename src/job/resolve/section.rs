@@ -15,7 +15,12 @@ pub(super) fn sections(c: &mut Collector, raw: &[Spanned<RawSection>]) -> Vec<Re
         };
         if !names.insert(section.name.clone()) {
             let wrong = format!("two sections are called `{}`", section.name);
-            c.fault(item, "section.name", wrong, "give every section its own name");
+            c.fault(
+                item,
+                "section.name",
+                wrong,
+                "give every section its own name",
+            );
         }
         let times = |s: &RecordSection| match s.extent {
             SectionExtent::Times(times) => Some(times),
@@ -50,7 +55,8 @@ fn section(c: &mut Collector, item: &Spanned<RawSection>) -> Option<RecordSectio
         (None, Some(_), Some(at)) => {
             let (start, end) = (start?, end?);
             if end <= start {
-                let wrong = format!("the section is empty: it ends at {end} s and begins at {start} s");
+                let wrong =
+                    format!("the section is empty: it ends at {end} s and begins at {start} s");
                 c.fault(at, "section.end_s", wrong, "write an end after the start");
                 return None;
             }
@@ -64,7 +70,12 @@ fn section(c: &mut Collector, item: &Spanned<RawSection>) -> Option<RecordSectio
         }
         (None, _, _) => {
             let wrong = "the section has no samples";
-            c.fault(item, "section.start_s", wrong, format!("state {TIMES}, or `file`"));
+            c.fault(
+                item,
+                "section.start_s",
+                wrong,
+                format!("state {TIMES}, or `file`"),
+            );
             return None;
         }
     };

@@ -54,7 +54,12 @@ pub(super) fn damage(
         .into_par_iter()
         .map(|l| {
             let [min, max] = extremes(head, sums, l);
-            let d = Counting { head, samples, slope }.damage(l, max - min, 0..samples.n_samples());
+            let d = Counting {
+                head,
+                samples,
+                slope,
+            }
+            .damage(l, max - min, 0..samples.n_samples());
             LoadDamage {
                 name: head.names[l].clone(),
                 unit: head.units[l].name.clone(),

@@ -32,13 +32,13 @@ pub use answer::{
     RunFit, States,
 };
 pub(super) use combined::{Listed, listed};
+pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
-pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use sections::{DutyLoad, SectionLoad, Sections};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};

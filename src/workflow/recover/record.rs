@@ -133,13 +133,12 @@ pub(super) fn record(
             slope,
         };
         if let Some(recorded) = recorded {
+            let with = (&clock, recorded);
             beside.comparison = work.stage("compare", |w| {
-                compare::record(w, task.job, (counting, &gaps), (&clock, recorded))
+                compare::record(w, task.job, (counting, &gaps), with)
             })?;
         }
-        let of_parts = parts.iter();
-        let counted = of_parts.flat_map(|p| sections::count(counting, p.section, &p.range));
-        beside.sections = work.stage("sections", |_| counted.collect());
+        beside.sections = work.stage("sections", |_| sections::count_all(counting, &parts));
     }
     let damage = match head.files.contains(&LoadFile::Rainflow) {
         true => {
@@ -149,15 +148,24 @@ pub(super) fn record(
         }
         false => None,
     };
-    work.findings
-        .extend(files::findings(task.job, &head, &sums));
-    let gaps = check_gaps(&head.file, &sensitivity, &sums.missing);
-    // What is blank for the filter alone is said with it.
-    let by_filter = sums.missing.gaps == blank as u64;
-    let said = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
-    work.findings.extend(gaps.into_iter().filter(said));
+    about_files(work, task, &head, &sums, (&sensitivity, blank));
     let extras = (content, motion, damage);
     Ok((answer(sensitivity, head, sums, spans, extras), beside))
+}
+
+/// Adds the findings on files and on gaps; `blank` samples are blank for the filter of [dynamic] alone, which its own finding states.
+fn about_files(
+    work: &mut Work,
+    task: &Task,
+    head: &RecordHead,
+    sums: &Sums,
+    (sensitivity, blank): (&Sensitivity, usize),
+) {
+    work.findings.extend(files::findings(task.job, head, sums));
+    let gaps = check_gaps(&head.file, sensitivity, &sums.missing);
+    let by_filter = sums.missing.gaps == blank as u64;
+    let stated = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
+    work.findings.extend(gaps.into_iter().filter(stated));
 }
 
 /// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.

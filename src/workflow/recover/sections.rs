@@ -109,7 +109,11 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
                 short(clock.start_s),
                 short(end_s)
             );
-            fault("section.end_s", wrong, "correct the times, in s of the record's own clock");
+            fault(
+                "section.end_s",
+                wrong,
+                "correct the times, in s of the record's own clock",
+            );
         } else if range.is_empty() {
             let wrong = format!("no sample of the record is in section `{}`", section.name);
             fault("section.start_s", wrong, "correct its times");
@@ -119,6 +123,14 @@ pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Fa
     }
     Faults::check(faults)?;
     Ok(out)
+}
+
+/// Statistics and damage of every load in every section of the record.
+pub(super) fn count_all(counting: Counting, parts: &[Part]) -> Vec<SectionLoad> {
+    let counted = parts.iter();
+    counted
+        .flat_map(|p| count(counting, p.section, &p.range))
+        .collect()
 }
 
 /// Statistics and damage of every load in some samples of a record.

@@ -92,7 +92,9 @@ pub fn record(
         let column = head.names.iter().position(|n| *n == load.name).unwrap_or(0);
         let si = quantity_of(job, &load.name).map_or(1.0, |q| job.units.si(q));
         let factor = head.units[column].factor / si;
-        samples.iter_mut().for_each(|v| *v = (f64::from(*v) * factor) as f32);
+        samples
+            .iter_mut()
+            .for_each(|v| *v = (f64::from(*v) * factor) as f32);
         columns.push(column);
         noise.push(load.noise_si * factor);
     }
@@ -101,7 +103,10 @@ pub fn record(
     work.findings.extend(shift_found(&shift));
     let sigma = head.filter.sigma(&vec![0.0; head.n_loads()]);
     let both = Both {
-        quiet: columns.iter().map(|c| sigma[*c] * head.units[*c].factor).collect(),
+        quiet: columns
+            .iter()
+            .map(|c| sigma[*c] * head.units[*c].factor)
+            .collect(),
         start_s: start_s + shift.shift_s,
         counting,
         gaps,
@@ -125,7 +130,8 @@ pub fn record(
         };
         both.compare_damage(i, &range, &mut found);
         work.findings.extend(found.outside(deviations));
-        work.findings.extend(coarse(&both.recorded, &found.load, (curved, sigma)));
+        work.findings
+            .extend(coarse(&both.recorded, &found.load, (curved, sigma)));
         out.loads.push(found);
     }
     Ok(out)
@@ -201,7 +207,11 @@ impl Both<'_> {
         let sampled = self.sampled();
         let wider = head.filter.coverage_factor() / NORMAL_95;
         for (at, row) in piece.zip(values.chunks_exact(k)) {
-            let of_job: Vec<f64> = row.iter().zip(&head.units).map(|(v, u)| v / u.factor).collect();
+            let of_job: Vec<f64> = row
+                .iter()
+                .zip(&head.units)
+                .map(|(v, u)| v / u.factor)
+                .collect();
             let gap = self.gaps.binary_search_by_key(&at, |g| g.0).ok();
             let gain = match gap.and_then(|g| self.gaps.get(g)) {
                 Some((_, gain)) => gain.as_deref(),
@@ -299,7 +309,9 @@ fn recovered_columns(counting: Counting, columns: &[usize]) -> Vec<Vec<f32>> {
     let mut values = Vec::new();
     for from in (0..n).step_by(PIECE) {
         values.clear();
-        counting.samples.read(from, (from + PIECE).min(n), columns, &mut values);
+        counting
+            .samples
+            .read(from, (from + PIECE).min(n), columns, &mut values);
         for row in values.chunks_exact(columns.len().max(1)) {
             out.iter_mut().zip(row).for_each(|(c, v)| c.push(*v as f32));
         }
@@ -310,7 +322,9 @@ fn recovered_columns(counting: Counting, columns: &[usize]) -> Vec<Vec<f32>> {
 fn no_shift(job: &Job, compare: &Compare, file: &str, e: NoShift) -> Fault {
     let (wrong, remedy) = match e {
         NoShift::Constant => (
-            format!("no load changes both in the strain record and in `{file}`: their time shift can't be estimated"),
+            format!(
+                "no load changes both in the strain record and in `{file}`: their time shift can't be estimated"
+            ),
             "state it as a number of seconds: shift_s = 0.0",
         ),
         NoShift::Unlike(best) => (

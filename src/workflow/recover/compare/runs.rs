@@ -32,7 +32,10 @@ pub fn runs(
     };
     let row_of = |run: &str| rows.iter().find(|r| r.run == run);
     if job.compare.is_some() && !readings.iter().any(|r| row_of(&r.run).is_some()) {
-        let wrong = format!("`{}` has none of the runs of the strain file", file.file.given);
+        let wrong = format!(
+            "`{}` has none of the runs of the strain file",
+            file.file.given
+        );
         let remedy = "give the runs the same names in both files";
         return Err(Fault::at(&*job.file, file.line, "compare.file", wrong, remedy).into());
     }
@@ -51,7 +54,9 @@ pub fn runs(
         .collect();
     let mut out = Comparison::default();
     for (l, (load, unit)) in s.loads.iter().zip(units).enumerate() {
-        let si = job.quantity_of_load(&load.name).map_or(1.0, |q| job.units.si(q));
+        let si = job
+            .quantity_of_load(&load.name)
+            .map_or(1.0, |q| job.units.si(q));
         let noise = load.quantity.map_or(0.0, |q| noise_si(file, q)) / si * unit.factor;
         let mut sums = Differences::of_blocks(1);
         for (r, (reading, found)) in readings.iter().zip(&recovery.runs).enumerate() {
@@ -116,9 +121,10 @@ fn rows<'a>(
 /// Whether S was calibrated with this run: `[calibration] runs` names it or, where that names none, all of its loads are recorded and it is not
 /// held out.
 fn is_calibration_run(job: &Job, s: &Sensitivity, row: &RunRow) -> bool {
-    let held_out = job.measured.as_ref().is_some_and(
-        |m| matches!(&m.hold_out, HoldOut::Runs(list) if list.contains(&row.run)),
-    );
+    let held_out = job
+        .measured
+        .as_ref()
+        .is_some_and(|m| matches!(&m.hold_out, HoldOut::Runs(list) if list.contains(&row.run)));
     has_covariance(job)
         && match &job.calibration.runs {
             Some(list) => list.contains(&row.run),
@@ -158,7 +164,10 @@ fn own_share(task: &Task, s: &Sensitivity, r: &Readings, loads: &[f64]) -> Vec<f
         return vec![1.0; loads.len()];
     };
     let none = vec![0.0; known.len()];
-    let both = gain.sigma(&none, &plain).into_iter().zip(gain.sigma(&known, &plain));
+    let both = gain
+        .sigma(&none, &plain)
+        .into_iter()
+        .zip(gain.sigma(&known, &plain));
     both.map(|(own, all)| if all > 0.0 { own / all } else { 1.0 })
         .collect()
 }
