@@ -6,7 +6,7 @@ use super::runs_columns::{known_column, note_unread_runs};
 use super::runs_file::{RunRow, given_loads, read_runs};
 use crate::finding::{Finding, few};
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::files::Inputs;
+use crate::host::files::{FileBytes, Inputs};
 use crate::job::table::Table;
 use crate::job::{Compare, Job, Runs};
 use crate::recovery::clock;
@@ -64,15 +64,30 @@ pub(crate) fn read_recorded(
     names: &[String],
 ) -> Result<RecordedLoads, Faults> {
     let runs = &compare.recorded;
-    let file = &runs.file.given;
     let bytes = inputs.read_named(job, &runs.file)?;
     if !is_record(&bytes) {
         return read_runs(inputs, job, runs).map(RecordedLoads::Runs);
     }
+    let record = read_load_record(inputs, job, (runs, compare.time_unit_s), bytes, names)?;
+    Ok(RecordedLoads::Record(record))
+}
+
+/// Reads a record of loads from the bytes of its file; `time_unit_s` counts where the file states no unit of time.
+///
+/// # Errors
+/// A file that is no record, units that are none of the load or contradict the job, a file without any of the loads `names`.
+pub(crate) fn read_load_record(
+    inputs: &mut Inputs,
+    job: &Job,
+    (runs, time_unit_s): (&Runs, Option<f64>),
+    bytes: FileBytes,
+    names: &[String],
+) -> Result<LoadRecord, Faults> {
+    let file = &runs.file.given;
     let in_file = |name: &String| runs.columns.get(name).unwrap_or(name).clone();
     let options = Options {
         declared_hz: None,
-        time_unit_s: compare.time_unit_s,
+        time_unit_s,
         wanted: names.iter().map(in_file).collect(),
     };
     let record = open_record(Arc::new(bytes), &options).map_err(|e| record_fault(file, &e))?;
@@ -110,16 +125,21 @@ pub(crate) fn read_recorded(
             "no column is named after a load of the job; its columns are {}",
             few(&table.header)
         );
-        let remedy = "name the columns after the loads, or map them: [compare] columns = { \"LF.FZ\" = \"FZ_LF\" }";
+        let remedy = match runs.section {
+            "respond" => "name the columns after the loads",
+            _ => {
+                "name the columns after the loads, or map them: [compare] columns = { \"LF.FZ\" = \"FZ_LF\" }"
+            }
+        };
         return Err(Fault::of(&**file, "columns", wrong, remedy).into());
     }
-    Ok(RecordedLoads::Record(LoadRecord {
+    Ok(LoadRecord {
         samples: samples_of(&record, &picks).map_err(|e| record_fault(file, &e))?,
         findings: clock::irregular(file, &record.clock),
         clock: record.clock.clone(),
         file: file.clone(),
         loads,
-    }))
+    })
 }
 
 /// Returns what a load or a combination measures; `None` for a load set.

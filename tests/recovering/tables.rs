@@ -259,3 +259,76 @@ fn columns_of_a_table_of_loads_that_nothing_reads_are_named() {
     let list = found.findings.to_vec();
     assert!(unread(&list)[0].message.ends_with("`Q`"), "{list:?}");
 }
+
+/// The same loads as a table, as a binary record and in RPC III give the same stress; the 16 bits of RPC III are a step of 1/32,000 of the largest.
+#[test]
+fn loads_of_every_record_format_give_the_stress_of_their_table() {
+    let loads = [1.0, -12.5, 40.0, 25.0, 0.0];
+    let mut table = "time,P\n".to_owned();
+    let mut binary = Vec::new();
+    strainbridge::series::binary::write_header(
+        &mut binary,
+        &["P [kN]".to_owned()],
+        5,
+        0.0,
+        0.1,
+        1.0,
+    )
+    .unwrap();
+    for (i, v) in loads.iter().enumerate() {
+        let _ = writeln!(table, "{},{v}", i as f64 * 0.1);
+        binary.extend_from_slice(&((v / 1000.0) as f32).to_le_bytes());
+    }
+    let target = strainbridge::series::rpc::Target {
+        name: "P".to_owned(),
+        unit: "N".to_owned(),
+        min: -12.5,
+        max: 40.0,
+    };
+    let mut rpc = Vec::new();
+    let next = |from: usize, to: usize, out: &mut Vec<f64>| out.extend(&loads[from..to]);
+    strainbridge::series::rpc::write_rpc(&mut rpc, &[target], 0.1, 5, next).unwrap();
+    let answer = |name: &str, bytes: &[u8]| {
+        let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+        let job = format!(
+            "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+             [respond]\nloads = \"{name}\"\n"
+        );
+        let files = files.with("job.toml", job).with(name, bytes);
+        let job = Job::read("job.toml", &files).unwrap();
+        let found = respond(&job, &Context::new(&files)).unwrap();
+        (
+            found.states,
+            found.elements[0].max_von_mises,
+            found.elements[0].at.clone(),
+        )
+    };
+    let (states, stress, at) = answer("loads.csv", table.as_bytes());
+    assert_eq!((states, at.as_deref()), (5, Some("0.2")));
+    for (name, bytes, digits) in [
+        ("loads.bin", &binary, 1e-6),
+        ("loads.rsp", &rpc, 1.0 / 32_000.0),
+    ] {
+        let (n, found, at) = answer(name, bytes);
+        assert_eq!((n, at), (states, Some("0.2".to_owned())), "{name}");
+        assert!(
+            (found / stress - 1.0).abs() < digits,
+            "{name}: {found} {stress}"
+        );
+    }
+    // A record without the load is refused.
+    let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+    let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"Q\"\ngrid = 2\ncomponent = \"FY\"\n\
+               [respond]\nloads = \"loads.bin\"\n";
+    let files = files.with("job.toml", job).with("loads.bin", binary);
+    let job = Job::read("job.toml", &files).unwrap();
+    let faults = respond(&job, &Context::new(&files))
+        .map(|_| ())
+        .unwrap_err();
+    assert!(
+        faults
+            .to_string()
+            .contains("no column is named after a load"),
+        "{faults}"
+    );
+}

@@ -2,6 +2,7 @@
 
 mod gauges;
 mod outcome;
+mod record_states;
 mod states;
 
 pub use gauges::{Check, GaugeCheck};

@@ -1,5 +1,6 @@
 //! Load states: a table that `recover` wrote, or the job's static runs recovered here.
 
+use super::record_states;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
@@ -9,7 +10,7 @@ use crate::job::unread::unread_columns;
 use crate::job::{Job, JobLoad, NamedFile};
 use crate::recovery::beyond_expected;
 use crate::respond::{LoadState, Spread};
-use crate::series::record::{is_time, name_and_unit};
+use crate::series::record::{is_format, is_time, name_and_unit};
 use crate::strain_chain::{LoadUnits, Prepared, load_units};
 use crate::units::Quantity;
 use crate::workflow::recover::recovered_runs;
@@ -63,11 +64,17 @@ pub(super) fn from_table(
     job: &Job,
     named: &NamedFile,
 ) -> Result<Vec<LoadState>, Faults> {
+    let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
+    let bytes = work.inputs.read_named(job, named)?;
+    if is_format(&bytes) {
+        let (states, left_out) = record_states::read(work, job, named, bytes, &names)?;
+        return finish(work, job, (named, &names), states, left_out);
+    }
+    drop(bytes);
     let text = work
         .inputs
         .read_named_text(job, named)
         .map_err(Faults::from)?;
-    let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names);
     let mut faults = FaultList::new();
     let mut columns: Option<Columns> = None;
@@ -92,6 +99,21 @@ pub(super) fn from_table(
         work.inputs.note(&named.given, unread);
     }
     Faults::check(faults)?;
+    let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
+    finish(work, job, (named, &exact), states, blank)
+}
+
+/// Adds what is to be reported of the states of a file; `exact` are loads without an interval, `blank` counts rows that lack a load.
+///
+/// # Errors
+/// A file without a state.
+fn finish(
+    work: &mut Work,
+    job: &Job,
+    (named, exact): (&NamedFile, &[String]),
+    states: Vec<LoadState>,
+    blank: usize,
+) -> Result<Vec<LoadState>, Faults> {
     if states.is_empty() {
         return Err(Faults::from(Fault::of(
             &*named.given,
@@ -117,7 +139,6 @@ pub(super) fn from_table(
         let found = beyond_expected(&load.name, load.expected, values);
         work.findings.extend(found);
     }
-    let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
     work.findings.push(Finding::new(
         Severity::Info,
         "load-errors-independent",
@@ -125,7 +146,7 @@ pub(super) fn from_table(
         if exact.is_empty() {
             "a table of intervals holds no correlations between loads: their errors are taken as independent".to_owned()
         } else {
-            format!("{} have no interval in the table and count as exact", exact.join(", "))
+            format!("{} have no interval in the file and count as exact", exact.join(", "))
         },
         "let `respond` recover the runs itself ([measured], no [respond] loads) to keep correlations",
     ));
