@@ -324,6 +324,7 @@ pub(super) struct RawRespond {
     pub elements: S<Ids>,
     pub hottest: S<u32>,
     pub loads: S<String>,
+    pub slope: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -332,3 +332,33 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
         "{faults}"
     );
 }
+
+/// Damage of twice the loads is `2^m` times the damage, with intervals of the loads it has one, and runs make no cycles.
+#[test]
+fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
+    let answer = |key: &str, factor: f64| {
+        let mut table = format!("{key},P,P.low,P.high\n");
+        for (i, v) in [1.0, -12.5, 40.0, 25.0, 30.0, 0.0].iter().enumerate() {
+            let v = v * factor;
+            let _ = writeln!(table, "{i},{v},{},{}", v - 0.5, v + 0.5);
+        }
+        let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+        let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+                   [respond]\nloads = \"loads.csv\"\nslope = 4.0\n";
+        let files = files.with("job.toml", job).with("loads.csv", table);
+        let job = Job::read("job.toml", &files).unwrap();
+        respond(&job, &Context::new(&files)).map(|o| o.answer.fatigue)
+    };
+    let [once, twice] = [1.0, 2.0].map(|factor| answer("time", factor).unwrap());
+    assert!(!once.is_empty() && once.len() == twice.len());
+    for (a, b) in once.iter().zip(&twice) {
+        assert!((b.damage / a.damage - 16.0).abs() < 1e-9, "{a:?} {b:?}");
+        assert!(a.damage_low < a.damage && a.damage < a.damage_high, "{a:?}");
+        assert_eq!(a.angle_deg, b.angle_deg);
+    }
+    let said = answer("run", 1.0).map(|_| ()).unwrap_err().to_string();
+    assert!(
+        said.contains("respond.slope") && said.contains("make no cycles"),
+        "{said}"
+    );
+}

@@ -266,6 +266,7 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
         elements: None,
         hottest: DEFAULT_HOTTEST,
         loads: None,
+        slope: None,
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -275,8 +276,16 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
         .count(&raw.hottest, "respond.hottest")
         .unwrap_or(DEFAULT_HOTTEST);
     out.loads = c.named(&raw.loads, "respond.loads");
+    out.slope = slope_of(c, &raw.slope, "respond.slope");
     out.line = c.line(section);
     out
+}
+
+/// Power of a range in pseudo-damage.
+fn slope_of(c: &mut Collector, raw: &S<f64>, key: &str) -> Option<f64> {
+    c.number(raw, key, "a number from 1 to 20", |x| {
+        (1.0..=20.0).contains(&x)
+    })
 }
 
 pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> Recover {
@@ -287,11 +296,7 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> R
             .filter_map(|w| c.choose_at(w, "recover.files", &LoadFile::ALL))
             .collect()
     });
-    let slope = raw.and_then(|r| {
-        c.number(&r.slope, "recover.slope", "a number from 1 to 20", |x| {
-            (1.0..=20.0).contains(&x)
-        })
-    });
+    let slope = raw.and_then(|r| slope_of(c, &r.slope, "recover.slope"));
     Recover {
         files,
         slope: slope.unwrap_or(DEFAULT_SLOPE),

@@ -19,15 +19,17 @@ use std::collections::HashSet;
 /// Rows of the table whose fields are in memory at a time.
 const PART: usize = 10_000;
 
+/// Load states, and whether they follow each other in time.
+pub(super) struct States {
+    pub states: Vec<LoadState>,
+    pub is_history: bool,
+}
+
 /// The states of the job.
 ///
 /// # Errors
 /// Neither loads nor measured strain; tables that can't be read.
-pub(super) fn read(
-    work: &mut Work,
-    job: &Job,
-    prepared: &Prepared,
-) -> Result<Vec<LoadState>, Faults> {
+pub(super) fn read(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<States, Faults> {
     if let Some(named) = &job.respond.loads {
         return from_table(work, job, named);
     }
@@ -41,9 +43,8 @@ pub(super) fn read(
         )));
     };
     let (_, recovery) = recovered_runs(work, job, measured, prepared)?;
-    Ok(recovery
-        .runs
-        .into_iter()
+    let states = recovery.runs.into_iter();
+    let states = states
         .map(|r| {
             // The Birge factor and Student's t of the interval count as a wider sigma.
             let widen = (r.estimate.coverage_factor / NORMAL_95).powi(2);
@@ -55,20 +56,24 @@ pub(super) fn read(
                 ),
             }
         })
-        .collect())
+        .collect();
+    Ok(States {
+        states,
+        is_history: false,
+    })
 }
 
 /// Columns `<load>`, and where there `<load>.low`, `<load>.high`, in report units, as `recover` writes them.
-pub(super) fn from_table(
-    work: &mut Work,
-    job: &Job,
-    named: &NamedFile,
-) -> Result<Vec<LoadState>, Faults> {
+pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<States, Faults> {
     let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let bytes = work.inputs.read_named(job, named)?;
     if is_format(&bytes) {
         let (states, left_out) = record_states::read(work, job, named, bytes, &names)?;
-        return finish(work, job, (named, &names), states, left_out);
+        let states = finish(work, job, (named, &names), states, left_out)?;
+        return Ok(States {
+            states,
+            is_history: true,
+        });
     }
     drop(bytes);
     let text = work
@@ -99,8 +104,10 @@ pub(super) fn from_table(
         work.inputs.note(&named.given, unread);
     }
     Faults::check(faults)?;
+    let is_history = columns.as_ref().is_some_and(|c| c.kind == Key::Time);
     let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
-    finish(work, job, (named, &exact), states, blank)
+    let states = finish(work, job, (named, &exact), states, blank)?;
+    Ok(States { states, is_history })
 }
 
 /// Adds what is to be reported of the states of a file; `exact` are loads without an interval, `blank` counts rows that lack a load.
