@@ -305,12 +305,12 @@ fn what_can_not_be_compared_or_cut_is_refused_with_its_line() {
         (
             "[runs]\nfile = \"none.csv\"\n".to_owned(),
             "none.csv",
-            "not",
+            "no such file",
         ),
         (
             "[compare]\nfile = \"none.rsp\"\n".to_owned(),
             "none.rsp",
-            "not",
+            "no such file",
         ),
         (
             format!("{compare}shift_s = 1e6\n"),
@@ -432,7 +432,7 @@ fn tables_page_and_console_state_comparison_and_sections() {
         .args(["recover", &dir.join("job.toml").display().to_string()])
         .output()
         .unwrap();
-    let said = String::from_utf8_lossy(&out.stderr).into_owned();
+    let said = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
     assert_eq!(out.status.code(), Some(0), "{said}");
     assert!(
         said.contains("damage ratio") && said.contains("column-not-read"),
