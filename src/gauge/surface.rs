@@ -58,10 +58,13 @@ fn to_side_at(model: &Model, shell: &Shell, side: Surface, weights: [f64; 4]) ->
         [-0.5 * thickness, 0.5 * thickness][side.ix()]
     } else {
         let fibres = model.fibres(shell).corners;
-        fibres.iter().zip(corners).map(|(z, w)| z[side.ix()] * w).sum()
+        fibres
+            .iter()
+            .zip(corners)
+            .map(|(z, w)| z[side.ix()] * w)
+            .sum()
     };
     shell.zoffs + if z.is_finite() { z } else { 0.0 }
-}
 }
 
 /// Returns the distances of a point from the bottom and the top skin of a shell; `None` where it has no area.

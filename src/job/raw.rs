@@ -26,6 +26,8 @@ pub(super) struct RawJob {
     pub placement: S<RawPlacement>,
     pub measured: S<RawMeasured>,
     pub runs: S<RawRuns>,
+    pub compare: S<RawCompare>,
+    pub section: Vec<Spanned<RawSection>>,
     pub ballast: S<RawBallast>,
     pub payload: S<RawPayload>,
     pub dynamic: S<RawDynamic>,
@@ -219,6 +221,34 @@ pub(super) struct RawRunNoise {
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
+pub(super) struct RawCompare {
+    pub file: S<String>,
+    pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
+    pub units: Option<RawUnits>,
+    pub noise: Option<RawCompareNoise>,
+    pub shift_s: S<NumberOrWord>,
+    pub time_unit: S<String>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawCompareNoise {
+    pub force: S<f64>,
+    pub moment: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawSection {
+    pub name: S<String>,
+    pub start_s: S<f64>,
+    pub end_s: S<f64>,
+    pub file: S<String>,
+    pub repeats: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
 pub(super) struct RawBallast {
     pub masses: S<u32>,
     pub region: S<Vec<[f64; 2]>>,
@@ -257,6 +287,7 @@ pub(super) struct RawDynamic {
 pub(super) struct RawRecover {
     pub files: S<Vec<Spanned<String>>>,
     pub slope: S<f64>,
+    pub csv_every: S<u32>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -293,6 +324,7 @@ pub(super) struct RawRespond {
     pub elements: S<Ids>,
     pub hottest: S<u32>,
     pub loads: S<String>,
+    pub slope: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

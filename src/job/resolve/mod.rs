@@ -2,12 +2,14 @@
 
 mod calibration;
 mod channel;
+mod compare;
 mod dynamic;
 mod fleet;
 mod gauge;
 mod load;
 mod measured;
 mod placement;
+mod section;
 mod units;
 mod vehicle;
 
@@ -81,6 +83,8 @@ pub(super) fn resolve_job(
         ),
         measured,
         runs: measured::runs(&mut c, raw.runs.as_ref(), report_units),
+        compare: compare::compare(&mut c, raw.compare.as_ref(), report_units),
+        sections: section::sections(&mut c, &raw.section),
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
         fleet: fleet::fleet(&mut c, raw.fleet.as_ref()),

@@ -15,7 +15,7 @@ use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{Place, ResponseRow, von_mises_history};
 use crate::units::factor;
-use crate::workflow::respond::{Element, Responded, grids};
+use crate::workflow::respond::{Element, ElementFatigue, Responded, grids};
 use std::fmt::Write as _;
 
 /// Rows of a table on the page.
@@ -62,6 +62,10 @@ impl Report for Outcome<Responded> {
             }
             Ok(())
         })?;
+        if !self.fatigue.is_empty() {
+            out.declare("fatigue.csv", FATIGUE);
+            out.write("fatigue.csv", |w| fatigue_csv(w, &self.fatigue))?;
+        }
         out.write("histories.csv", |w| {
             histories(w, &f.rows, &f.order, &f.states, u)
         })?;
@@ -80,12 +84,16 @@ impl Report for Outcome<Responded> {
     }
 
     fn page(&self) -> Option<Page> {
-        let page = Page::new(
+        let mut page = Page::new(
             &self.job.title,
             "Stress from recovered loads",
             &self.findings,
             sections(self),
         );
+        if !self.fatigue.is_empty() {
+            let at = page.sections.len().min(1);
+            page.sections.insert(at, fatigue_section(&self.fatigue));
+        }
         Some(page)
     }
 
@@ -103,8 +111,61 @@ impl Report for Outcome<Responded> {
                 e.at.as_deref().unwrap_or("")
             );
         }
+        for f in self.fatigue.iter().take(MOST_WORDS) {
+            let _ = writeln!(
+                text,
+                "element {} {}: damage {} ({} to {})",
+                f.element,
+                f.surface,
+                number(f.damage),
+                number(f.damage_low),
+                number(f.damage_high)
+            );
+        }
         text
     }
+}
+
+const FATIGUE: [(&str, &str); 6] = [
+    ("element", ""),
+    ("surface", ""),
+    ("damage", "report stress to the power of the slope"),
+    ("damage_low", "report stress to the power of the slope"),
+    ("damage_high", "report stress to the power of the slope"),
+    ("angle_deg", "degree"),
+];
+
+fn fatigue_csv(w: &mut dyn std::io::Write, list: &[ElementFatigue]) -> std::io::Result<()> {
+    writeln!(w, "{}", FATIGUE.map(|c| c.0).join(","))?;
+    for f in list {
+        writeln!(
+            w,
+            "{},{},{},{},{},{}",
+            f.element, f.surface, f.damage, f.damage_low, f.damage_high, f.angle_deg
+        )?;
+    }
+    Ok(())
+}
+
+/// The table of fatigue on the page.
+fn fatigue_section(list: &[ElementFatigue]) -> Section {
+    let row = |f: &ElementFatigue| {
+        vec![
+            f.element.to_string(),
+            f.surface.clone(),
+            number(f.damage),
+            format!("{} to {}", number(f.damage_low), number(f.damage_high)),
+            number(f.angle_deg),
+        ]
+    };
+    let rows: Vec<Vec<String>> = list.iter().take(MOST_ROWS).map(row).collect();
+    let head = ["element", "side", "damage", "95 % interval", "plane, deg"];
+    table_section(
+        "Fatigue",
+        &head,
+        &rows,
+        "Pseudo-damage of the normal stress on the plane where it is largest; plane: its normal from the x axis of the element.",
+    )
 }
 
 /// The unit of a column of histories.csv: strains end in exx, eyy, gxy.

@@ -36,7 +36,13 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
     s.insert("file".into(), Value::String("sensitivity.csv".into()));
     s.insert("covariance".into(), Value::String("calibration.bin".into()));
     table.insert("sensitivity".into(), Value::Table(s));
-    table.remove("calibration");
+    // Which runs taught S stays known: `recover` does not compare these with their recorded loads.
+    if let Some(Value::Table(keys)) = table.remove("calibration")
+        && let Some(runs) = keys.get("runs").cloned()
+    {
+        let only = Table::from_iter([("runs".to_owned(), runs)]);
+        table.insert("calibration".into(), Value::Table(only));
+    }
     // How gauges are turned is in the rows of S now.
     if let Some(Value::Array(list)) = table.get_mut("correction") {
         for c in list.iter_mut().filter_map(Value::as_table_mut) {

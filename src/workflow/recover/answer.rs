@@ -1,8 +1,10 @@
 //! What `recover` answers.
 
+use super::compare::Comparison;
 use super::damage::LoadDamage;
 use super::dynamic::Motion;
 use super::history::History;
+use super::sections::{SectionLoad, Sections};
 use super::sink::RecordHead;
 use super::trace::Spans;
 use super::validation::ValidationGauge;
@@ -14,6 +16,14 @@ use crate::strain_chain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 use std::sync::Arc;
+
+/// What is compared and counted in addition to the loads.
+#[derive(Default)]
+pub(super) struct Beside {
+    pub validation: Vec<ValidationGauge>,
+    pub comparison: Comparison,
+    pub sections: Vec<SectionLoad>,
+}
 
 /// Loads from measured strain.
 #[derive(Serialize)]
@@ -27,6 +37,12 @@ pub struct Recovered {
     /// Gauges that no load was estimated from, each compared with its prediction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<ValidationGauge>,
+    /// Recovered against recorded loads, where some were recorded.
+    #[serde(flatten)]
+    pub comparison: Comparison,
+    /// Loads by section and over the duty cycle, where the job has sections.
+    #[serde(flatten)]
+    pub sections: Option<Sections>,
     /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it, and what may be left of it is weighed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
@@ -155,6 +171,8 @@ pub struct RecoveredRecord {
     pub duration_s: f64,
     /// Steps between samples over the duration.
     pub sample_rate_hz: Option<f64>,
+    /// Every how many samples `loads.csv` has a row.
+    pub csv_every: usize,
     /// Content of the loads against the first elastic mode, where that is known.
     #[serde(flatten)]
     pub content: Option<Content>,

@@ -1,9 +1,11 @@
 //! Static states.
 
-use super::answer::RecoveredRuns;
+use super::answer::{Beside, RecoveredRuns};
 use super::combined::{Listed, listed};
+use super::compare;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
+use super::sections;
 use super::task::Task;
 use super::validation::{self, ValidationGauge};
 use crate::finding::{Finding, Severity, few};
@@ -132,6 +134,8 @@ pub(super) struct Solved {
     pub readings: Vec<Readings>,
     pub recovery: Recovery,
     pub validation: Vec<ValidationGauge>,
+    /// Loads that the runs file states and that were not recovered.
+    pub known: KnownLoads,
 }
 
 /// Reads the strain of the runs and recovers their loads.
@@ -162,6 +166,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         readings,
         recovery,
         validation,
+        known,
     })
 }
 
@@ -201,25 +206,33 @@ pub(super) fn runs(
     work: &mut Work,
     task: &Task,
     table: &StrainTable,
-) -> Result<(RecoveredRuns, Vec<ValidationGauge>), Faults> {
+) -> Result<(RecoveredRuns, Beside), Faults> {
+    sections::without_record(task.job)?;
     let Solved {
         s,
         readings,
         mut recovery,
         validation,
+        known,
     } = solve(work, task, table)?;
     let Listed {
         names,
         units,
         sums: combinations,
     } = listed(task.job, &s)?;
+    let comparison = compare::runs(work, task, (&s, &readings), (&recovery, &units), &known)?;
     let k = s.loads.len();
     work.findings.extend(sums(task, &recovery, &units[..k]));
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }
     let runs = RecoveredRuns::of(&s, readings, recovery, names, units);
-    Ok((runs, validation))
+    let beside = Beside {
+        validation,
+        comparison,
+        sections: Vec::new(),
+    };
+    Ok((runs, beside))
 }
 
 /// Equilibrium: the sum of all forces by direction, where it is far from zero in a run.

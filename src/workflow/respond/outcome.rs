@@ -14,6 +14,9 @@ pub struct Responded {
     pub elements: Vec<Element>,
     /// Elements hotter than all that share a grid with them.
     pub hot_spots: Vec<Element>,
+    /// Pseudo-damage of these elements over the history of loads, where the job states a slope.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fatigue: Vec<ElementFatigue>,
     /// How many states of the loads there are.
     pub states: usize,
     /// Unit of the stresses.
@@ -51,6 +54,23 @@ pub struct Field {
     pub spots: Vec<usize>,
     /// States of the loads.
     pub states: Vec<LoadState>,
+}
+
+/// Pseudo-damage of an element, report unit of stress to the power of the slope.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ElementFatigue {
+    /// Element id.
+    pub element: u32,
+    /// Side, or recovery point.
+    pub surface: String,
+    /// Damage on the plane where it is largest.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+    /// Direction normal to that plane, from the x axis of the element.
+    pub angle_deg: f64,
 }
 
 /// The largest stress of an element.

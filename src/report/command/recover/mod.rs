@@ -3,6 +3,7 @@
 //! Loads of a record are written while they are recovered, by a [`RecordFolder`]; everything else is written of the outcome.
 
 mod columns;
+mod compared;
 mod folder;
 mod nastran;
 #[cfg(feature = "parquet")]
@@ -27,6 +28,7 @@ impl Report for Outcome<Recovered> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "loads.csv"];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        compared::write(out, self)?;
         match &self.states {
             States::Runs(runs) => runs::write(out, self, runs),
             States::Record(record) => record::write(out, self, record),
@@ -34,10 +36,12 @@ impl Report for Outcome<Recovered> {
     }
 
     fn page(&self) -> Option<Page> {
-        Some(match &self.states {
+        let mut page = match &self.states {
             States::Runs(runs) => runs::page(self, runs),
             States::Record(record) => record::page(self, record),
-        })
+        };
+        compared::add_sections(&mut page, self);
+        Some(page)
     }
 
     fn words(&self) -> String {
@@ -45,6 +49,7 @@ impl Report for Outcome<Recovered> {
             States::Runs(runs) => runs::words(runs),
             States::Record(record) => record::words(record),
         };
+        text.push_str(&compared::words(&self.comparison, self.sections.as_ref()));
         for g in &self.validation {
             let _ = match (g.rms_microstrain, g.expected_rms_microstrain) {
                 (Some(rms), Some(expected)) => writeln!(
