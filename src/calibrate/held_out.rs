@@ -1,5 +1,6 @@
 //! Runs left out one by one: their loads recovered by what the others taught, held against what is known.
 
+use super::common_zero::{less_zero, zero_of};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
@@ -88,10 +89,10 @@ pub(super) fn against(
         }
     }
     let dof = scatter.dof;
-    let s = sensitivity_of(task, &state.scales, &posterior, &scatter, 1.0);
+    let s = sensitivity_of(task, (&state.scales, &posterior, &scatter), 1.0, &state.lack);
     let readings = Readings {
         run: run.run.clone(),
-        strain: run.strain.clone(),
+        strain: less_zero(&run.strain, &zero_of(task, &posterior)),
         noise_factor: run.noise_factor,
     };
     let errors = ErrorModel {
@@ -99,7 +100,8 @@ pub(super) fn against(
         model_rel: 0.0,
     };
     let found = estimate(&s, &readings, errors);
-    let k = task.loads.len();
+    let k = s.loads.len();
+    let loads = &loads.first(k);
     if found.rank < k {
         return None;
     }
@@ -110,7 +112,7 @@ pub(super) fn against(
         found.estimate.covariance[at] + loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
-    let told = Told::of(loads, &wanted, &state.scales);
+    let told = Told::of(loads, &wanted, &state.scales[..k]);
     if told.combinations == 0 {
         return None;
     }

@@ -25,7 +25,7 @@ mod vehicle;
 
 pub use super::shapes::Ids;
 pub use ballast::Ballast;
-pub use calibration::CalibrationKeys;
+pub use calibration::{CalibrationKeys, Terms};
 pub use candidates::{AngleStep, Candidates, Clearances};
 pub use correction::StrainCorrection;
 pub use dynamic::Dynamic;

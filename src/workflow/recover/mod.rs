@@ -5,6 +5,7 @@
 
 mod answer;
 mod block;
+mod calibrated;
 mod combined;
 mod content;
 mod damage;

@@ -2,6 +2,7 @@
 
 use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::block::block;
+use super::calibrated;
 use super::combined::{Listed, listed};
 use super::damage::{LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
@@ -9,10 +10,12 @@ use super::dynamic::{Motion, rested};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
 use super::sink::{Block, RecordHead, RecordSink};
+use super::runs::identical;
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, Compared, ValidationGauge};
+use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
@@ -59,6 +62,7 @@ pub(super) fn record(
         dead,
     } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
     check_times(work, &record)?;
+    work.findings.extend(identical(&sensitivity, &readings));
     let rested = rested(work, task, &record, &sensitivity)?;
     let (judged, errors, at_rest, motion, blank) = match rested {
         Some(r) => {
@@ -104,6 +108,17 @@ pub(super) fn record(
     sink.begin(&head)?;
     let (sums, spans, compared) = stream(work, (&record, channels.as_ref()), &head, sink)?;
     sink.end(sums.missing.samples())?;
+    let ends: Vec<f64> = (sums.min.iter().zip(&sums.max))
+        .map(|(a, b)| a.abs().max(b.abs()))
+        .collect();
+    let halves: Vec<f64> = head.filter.sigma(&ends).iter().map(|s| NORMAL_95 * s).collect();
+    work.findings.extend(calibrated::of_record(
+        task.job,
+        &sensitivity,
+        &head.units,
+        (&head.file, sums.missing.samples()),
+        (&sums.min, &sums.max, &halves),
+    ));
     let validation = match &channels {
         Some(c) => c.found(&compared, head.filter.whole()),
         None => Vec::new(),
