@@ -48,3 +48,29 @@ pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
         .with_numbers(share, HELD)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Binomial tails of 0.95: of 20 runs 16 or fewer hold with 1.6 %, 15 or fewer with 0.26 % (tables).
+    #[test]
+    fn a_tally_far_below_its_promise_is_an_error_and_chance_is_not() {
+        let tally = |held, of| Coverage {
+            held,
+            of,
+            factor: 1.0,
+        };
+        assert!(held_too_few(&tally(16, 20)).is_none());
+        assert!(held_too_few(&tally(0, 0)).is_none());
+        let found = held_too_few(&tally(15, 20)).unwrap();
+        assert_eq!((found.severity, &*found.code), (Severity::Error, "calibration-coverage-low"));
+        assert!(held_too_few(&tally(283, 338)).is_some());
+    }
+
+    #[test]
+    fn a_tenth_of_the_runs_may_be_excluded() {
+        assert!(too_many(1, 10).is_none());
+        assert!(too_many(2, 19).is_some() && too_many(32, 370).is_none());
+    }
+}

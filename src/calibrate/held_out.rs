@@ -271,8 +271,23 @@ fn expected_ratio(dof: f64) -> f64 {
     }
 }
 
-/// Tally and factor. The factor is 1 where left-out runs are no farther off than expected, the loads each by itself and each sum;
-/// else the root of the largest ratio.
+/// Factor where scatter was learnt: few left-out runs that are far off need not be significantly so. The variance of intervals over that of the
+/// scatter is its posterior mean, of `dof` degrees of freedom with which the scatter is known and says 1, and of the left-out runs, whose largest mean
+/// square is `z2`: `(dof + runs z2) / (dof + runs)`, at least 1. The more runs, the less it adds to the test of [`judge`].
+///
+/// # Reference
+/// A. Gelman and others, Bayesian Data Analysis (3rd ed., 2013), section 2.6: a variance with a scaled inverse chi-square prior.
+fn few_runs(scores: &[(f64, f64)], runs: usize, dof: f64) -> f64 {
+    if !dof.is_finite() {
+        return 1.0;
+    }
+    let z2 = scores.iter().map(|s| s.0).fold(0.0, f64::max);
+    let runs = runs as f64;
+    ((dof + runs * z2) / (dof + runs)).max(1.0).sqrt()
+}
+
+/// Tally and factor. The factor is that of few runs, or where left-out runs are farther off than expected, the loads each by itself or a sum, the
+/// root of the largest ratio.
 pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
     let suspect = suspects(left_out);
     let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
@@ -291,7 +306,7 @@ pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
         .iter()
         .filter(|s| s.1 < limit)
         .map(|s| s.0.sqrt())
-        .fold(1.0, f64::max);
+        .fold(few_runs(&scores, kept().count(), dof), f64::max);
     let held = left_out
         .iter()
         .filter(|l| l.distance <= factor * factor * region(l.loads, dof))

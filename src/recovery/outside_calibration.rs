@@ -152,3 +152,54 @@ pub fn check_strain<'a>(
         .with_numbers(most, rules.strain_from),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(range: [f64; 2]) -> CalibratedLoad<'static> {
+        CalibratedLoad {
+            name: "LF.FZ",
+            range,
+            unit: (1e-3, "kN"),
+        }
+    }
+
+    fn check(range: [f64; 2], values: &[(f64, f64)]) -> Option<(Severity, f64, String)> {
+        let names: Vec<String> = (0..values.len()).map(|i| format!("R{i}")).collect();
+        let runs = values.iter().zip(&names);
+        let runs: Vec<Reached> = runs
+            .map(|(&(value, half), run)| Reached { run, value, half })
+            .collect();
+        let found = check_load(&load(range), &runs, runs.len(), &RangeRules::default())?;
+        Some((found.severity, found.measured?, found.message))
+    }
+
+    #[test]
+    fn loads_beyond_the_range_are_a_warning_and_an_error_from_half_as_much_again_on() {
+        // Zero is in the range, though no run had it: the gauges read zero there.
+        assert!(check([4e3, 12e3], &[(1e3, 10.0), (12.1e3, 10.0)]).is_none());
+        let (severity, ratio, message) = check([4e3, 12e3], &[(11e3, 10.0), (15e3, 10.0)]).unwrap();
+        assert_eq!((severity, ratio), (Severity::Warning, 1.25));
+        assert!(message.contains("reaches 15 kN in `R1`") && message.contains("4 to 12 kN"), "{message}");
+        assert_eq!(check([4e3, 12e3], &[(18e3, 10.0)]).unwrap().0, Severity::Error);
+        // The other way, as far as the load went the one way.
+        assert_eq!(check([0.0, 12e3], &[(-6e3, 10.0)]).unwrap().0, Severity::Error);
+        assert_eq!(check([-12e3, 12e3], &[(-13e3, 10.0)]).unwrap().0, Severity::Warning);
+        let many: Vec<(f64, f64)> = (0..20).map(|i| (13e3 + 10.0 * f64::from(i), 10.0)).collect();
+        assert!(check([0.0, 12e3], &many).unwrap().2.contains(" more"));
+    }
+
+    #[test]
+    fn noise_at_the_end_of_the_range_is_no_load_beyond_it() {
+        // 0.02 of 12 kN apart, 0.5 kN are 1.96 sd: of one value beyond 3.1 sd is reported, of ten thousand beyond 5.2.
+        assert!(check([0.0, 12e3], &[(12.9e3, 500.0)]).is_none());
+        assert!(check([0.0, 12e3], &[(13.1e3, 500.0)]).is_some());
+        let run = [Reached {
+            run: "record",
+            value: 13.1e3,
+            half: 500.0,
+        }];
+        assert!(check_load(&load([0.0, 12e3]), &run, 10_000, &RangeRules::default()).is_none());
+    }
+}
