@@ -2,6 +2,7 @@
 //! structs of [`types`]; [`gauges`], [`given_columns`] and [`table`] read the tables a job names; [`schema`] describes
 //! a job to editors.
 
+pub mod calibrated_range;
 pub mod correct;
 mod faults;
 mod gauge_table;

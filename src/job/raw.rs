@@ -91,6 +91,9 @@ pub(super) struct RawCalibration {
     pub model_uncertainty_rel: S<f64>,
     pub position_tolerance: S<f64>,
     pub angle_tolerance_deg: S<f64>,
+    pub scale_sd: S<f64>,
+    pub terms: S<String>,
+    pub check: S<Vec<Spanned<String>>>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -466,6 +469,9 @@ pub(super) struct RawSensitivity {
     pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
     pub signatures: Option<RawSignatures>,
     pub covariance: S<String>,
+    pub common_zero: S<String>,
+    pub range: BTreeMap<Spanned<String>, [f64; 2]>,
+    pub strain_range: BTreeMap<Spanned<String>, [f64; 2]>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

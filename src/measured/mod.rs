@@ -5,6 +5,7 @@
 //! the strain of the reference state, [`runs_file`] what else was recorded in each run, [`recorded_loads`] loads of another instrument.
 
 pub(crate) mod columns;
+pub(crate) mod common_zero;
 pub(crate) mod faults;
 pub mod gauge_columns;
 pub mod means;

@@ -118,6 +118,9 @@ pub const PAYLOAD: [(&str, Quantity); 4] = [
     ("payload_y", Quantity::Length),
 ];
 
+/// Column of the runs file that says which runs are recovered and compared, and not calibrated with.
+pub const CHECK: &str = "check";
+
 /// Returns the names that a column of the runs file may have for any command, those of a given S apart.
 pub fn names_in_runs(job: &Job) -> Vec<String> {
     let loads = job.loads.iter().map(|l| l.name.clone());
@@ -136,6 +139,7 @@ pub fn names_in_runs(job: &Job) -> Vec<String> {
     out.extend(job.calibration.repeats.iter().cloned());
     out.extend(job.calibration.depends_on.clone());
     out.push("run".to_owned());
+    out.push(CHECK.to_owned());
     out
 }
 
@@ -186,7 +190,9 @@ pub fn note_unread_runs(
     given: &[String],
 ) {
     let (names, read) = columns_claimed(job, (t, columns), given);
-    let lacking = |n: &&String| !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd");
+    let lacking = |n: &&String| {
+        !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd") && *n != CHECK
+    };
     let lacking: Vec<&str> = names.iter().filter(lacking).map(String::as_str).collect();
     note_unread(inputs, t, |c| read[c], &lacking);
 }

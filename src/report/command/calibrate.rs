@@ -9,8 +9,8 @@ use crate::report::csv_cell;
 use crate::report::page::Page;
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
 use crate::strain_chain::covariance_bytes;
-use crate::units::Quantity;
-use crate::workflow::calibrate::{Calibrated, calibrated_job};
+use crate::units::{MICROSTRAIN, Quantity};
+use crate::workflow::calibrate::{Calibrated, CheckLoad, calibrated_job};
 use std::fmt::Write as _;
 
 /// The gauges where the runs say that they sit, as a table that a job can name.
@@ -24,6 +24,7 @@ impl Report for Outcome<Calibrated> {
         "calibration.bin",
         "calibrated.toml",
         "left_out.csv",
+        "coefficients.csv",
     ];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -68,6 +69,44 @@ impl Report for Outcome<Calibrated> {
             }
             Ok(())
         })?;
+        let halves = s.half_widths();
+        out.declare(
+            "coefficients.csv",
+            [
+                ("gauge", ""),
+                ("load", ""),
+                ("value", ""),
+                ("half_width", ""),
+                ("unit", ""),
+            ],
+        );
+        out.write("coefficients.csv", |w| {
+            writeln!(w, "gauge,load,value,half_width,unit")?;
+            for (g, gauge) in s.gauges.iter().enumerate() {
+                for (l, load) in s.loads.iter().enumerate() {
+                    let [value, half] = [s.values[(g, l)], halves[(g, l)]].map(|v| v / MICROSTRAIN);
+                    let (gauge, name) = (csv_cell(gauge), csv_cell(&load.name));
+                    writeln!(w, "{gauge},{name},{value},{half},microstrain per job unit")?;
+                }
+            }
+            Ok(())
+        })?;
+        if !self.found.common_zero.is_empty() {
+            out.declare(
+                "common_zero.csv",
+                [("gauge", ""), ("common_zero", "microstrain")],
+            );
+            out.write("common_zero.csv", |w| {
+                writeln!(w, "gauge,common_zero")?;
+                for (gauge, zero) in s.gauges.iter().zip(&self.found.common_zero) {
+                    writeln!(w, "{},{}", csv_cell(gauge), zero / MICROSTRAIN)?;
+                }
+                Ok(())
+            })?;
+        }
+        if !self.calibration.checks.is_empty() {
+            write_checks(out, &self.calibration.checks)?;
+        }
         if !self.glued.is_empty() {
             let length = self.job.units.unit(Quantity::Length).name;
             let unit = |u: &'static str| if u == "L" { length } else { u };
@@ -109,6 +148,17 @@ impl Report for Outcome<Calibrated> {
             "left out one by one: {} of {} runs held, intervals times {:.2}",
             c.coverage.held, c.coverage.of, c.coverage.factor
         );
+        if c.terms == "intercept" {
+            let _ = writeln!(text, "with a common zero of each gauge: common_zero.csv");
+        }
+        if !c.checks.is_empty() {
+            let inside = c.checks.iter().filter(|l| l.inside).count();
+            let _ = writeln!(
+                text,
+                "check loads: {inside} of {} within their 95 % intervals (check_loads.csv)",
+                c.checks.len()
+            );
+        }
         if !self.glued.is_empty() {
             let _ = writeln!(
                 text,
@@ -134,4 +184,32 @@ impl Report for Outcome<Calibrated> {
         }
         text
     }
+}
+
+/// Check loads, a row each.
+fn write_checks(out: &mut Output, checks: &[CheckLoad]) -> Result<(), Faults> {
+    out.declare(
+        "check_loads.csv",
+        [
+            ("run", ""),
+            ("load", ""),
+            ("applied", ""),
+            ("recovered", ""),
+            ("low", ""),
+            ("high", ""),
+            ("unit", ""),
+            ("inside", ""),
+        ],
+    );
+    out.write("check_loads.csv", |w| {
+        writeln!(w, "run,load,applied,recovered,low,high,unit,inside")?;
+        for c in checks {
+            let names = [&c.run, &c.load, &c.unit].map(|n| csv_cell(n));
+            let [run, load, unit] = names;
+            let numbers = format!("{},{},{},{}", c.applied, c.recovered, c.low, c.high);
+            writeln!(w, "{run},{load},{numbers},{unit},{}", c.inside)?;
+        }
+        Ok(())
+    })?;
+    Ok(())
 }

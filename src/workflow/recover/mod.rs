@@ -5,6 +5,7 @@
 
 mod answer;
 mod block;
+mod calibrated;
 mod combined;
 mod compare;
 mod content;

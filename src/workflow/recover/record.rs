@@ -2,6 +2,7 @@
 
 use super::answer::{Beside, Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::block::block;
+use super::calibrated;
 use super::combined::{Listed, listed};
 use super::compare::{self, Gap};
 use super::damage::{Counting, LoadDamage, about_damage, damage};
@@ -9,12 +10,14 @@ use super::dead_parts::{Living, without_dead_parts};
 use super::dynamic::{Motion, rested};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
+use super::runs::identical;
 use super::sections;
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, Compared};
+use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
@@ -61,6 +64,7 @@ pub(super) fn record(
         dead,
     } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
     check_times(work, &record)?;
+    work.findings.extend(identical(&sensitivity, &readings));
     let clock = record.clock().clone();
     let recorded = compare::record_of_job(work, task, &names)?;
     let parts = sections::parts(task.job, &clock)?;
@@ -115,6 +119,22 @@ pub(super) fn record(
         gaps,
     } = stream(work, (&record, channels.as_ref()), &head, sink)?;
     sink.end(sums.missing.samples())?;
+    let ends: Vec<f64> = (sums.min.iter().zip(&sums.max))
+        .map(|(a, b)| a.abs().max(b.abs()))
+        .collect();
+    let halves: Vec<f64> = head
+        .filter
+        .sigma(&ends)
+        .iter()
+        .map(|s| NORMAL_95 * s)
+        .collect();
+    work.findings.extend(calibrated::of_record(
+        task.job,
+        &sensitivity,
+        &head.units,
+        (&head.file, sums.missing.samples()),
+        (&sums.min, &sums.max, &halves),
+    ));
     let validation = match &channels {
         Some(c) => c.found(&compared, head.filter.whole()),
         None => Vec::new(),

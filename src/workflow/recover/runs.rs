@@ -1,6 +1,7 @@
 //! Static states.
 
 use super::answer::{Beside, RecoveredRuns};
+use super::calibrated;
 use super::combined::{Listed, listed};
 use super::compare;
 use super::known_payload::{self, KnownLoads};
@@ -11,6 +12,7 @@ use super::validation::{self, ValidationGauge};
 use crate::finding::{Finding, Severity, few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
+use crate::input_faults::identical::identical_readings;
 use crate::input_faults::not_explained_by;
 use crate::job::LoadActs;
 use crate::job::correct::channel_of;
@@ -148,6 +150,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
         recover_with_alternatives(&s, &readings, task.errors, &mut others)
     });
+    work.findings.extend(identical(&s, &readings));
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
     let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
@@ -223,6 +226,8 @@ pub(super) fn runs(
     let comparison = compare::runs(work, task, (&s, &readings), (&recovery, &units), &known)?;
     let k = s.loads.len();
     work.findings.extend(sums(task, &recovery, &units[..k]));
+    let outside = calibrated::of_runs(task, (&s, &readings), &recovery, &units[..k]);
+    work.findings.extend(outside);
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }
@@ -287,4 +292,11 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
         )
         .with_numbers(largest, 0.1),
     ]
+}
+
+/// The finding on gauges with the same readings.
+pub(super) fn identical(s: &Sensitivity, readings: &[Readings]) -> Option<Finding> {
+    let of_gauge = |g: usize| readings.iter().map(|r| r.strain[g]).collect();
+    let columns: Vec<Vec<f64>> = (0..s.gauges.len()).map(of_gauge).collect();
+    identical_readings(&s.gauges, &columns)
 }
