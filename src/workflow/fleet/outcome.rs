@@ -9,9 +9,10 @@ use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
 use crate::finding::{Finding, Severity, few};
-use crate::host::outcome::Answer;
+use crate::host::outcome::{Answer, counted};
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::series::rainflow::{DamageInterval, Ratio};
+use crate::units::number;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -167,6 +168,20 @@ pub struct Fleet {
 
 impl Answer for Fleet {
     const COMMAND: &'static str = "fleet";
+    const RESULT: &'static str = "The loads and damage of the fleet";
+
+    fn verdict(&self) -> String {
+        let count = |status: &str| self.files.iter().filter(|f| f.status == status).count();
+        let hours: f64 = self.vehicles.iter().map(|v| v.hours).sum();
+        format!(
+            "{} of {} counted, {} failed: {} h of {}.",
+            count("done"),
+            counted(self.files.len(), "file"),
+            count("failed"),
+            number(hours),
+            counted(self.vehicles.len(), "vehicle")
+        )
+    }
 }
 
 impl VehicleAnswer {

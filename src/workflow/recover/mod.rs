@@ -5,6 +5,7 @@
 
 mod answer;
 mod block;
+mod by_load;
 mod combined;
 mod content;
 mod damage;
@@ -28,6 +29,7 @@ pub use answer::{
     Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
     RunFit, States,
 };
+pub use by_load::LoadSpan;
 pub(super) use combined::{Listed, listed};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
