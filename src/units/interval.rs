@@ -64,7 +64,7 @@ mod tests {
             (12.0, 0.0996, "12.00 ± 0.10"),
             // Four digits of a value are enough, and its half width never becomes zero.
             (123.456789, 0.0012, "123.5 ± 0.0012"),
-            (2.7e6, 1.2e4, "2.700e6 ± 1.200e4"),
+            (2.7e6, 1.2e4, "2.700e6 ± 12000"),
             (0.0, 0.5, "0.00 ± 0.50"),
             (f64::NAN, 1.0, "-"),
         ] {

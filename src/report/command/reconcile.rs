@@ -39,7 +39,7 @@ impl Report for Outcome<Reconciled> {
             Some(causes) => causes_table(causes),
             None => ConsoleTable::of_fields("", &fields(self)),
         };
-        Console::new(table, Some("result.json")).next(match &self.extended_model {
+        Console::new(table, Some("gap.csv")).next(match &self.extended_model {
             Some(extended) => format!(
                 "confirm the cause, then go on with the corrected job {}",
                 extended.name

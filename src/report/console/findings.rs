@@ -1,6 +1,6 @@
 //! Findings of a terminal: of those with one code the first, the worst last, in the lines that are left for them.
 
-use super::Texts;
+use super::content::Texts;
 use super::wrap::{cut, wrapped};
 use crate::finding::{Finding, Severity};
 use crate::host::outcome::counted;

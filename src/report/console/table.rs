@@ -1,7 +1,7 @@
 //! A table in aligned columns. Short rows stand side by side in blocks, so that many of them fit.
 
+use super::content::{Console, ConsoleTable};
 use super::wrap::{cut, wrapped};
-use super::{Console, ConsoleTable};
 
 /// Spaces between columns.
 const GAP: &str = "  ";

@@ -161,9 +161,6 @@ pub struct Fleet {
     pub mission: Option<MissionAnswer>,
     /// Files by path.
     pub files: Vec<FileAnswer>,
-    /// How many results were kept from an earlier run.
-    #[serde(skip)]
-    pub reused: usize,
 }
 
 impl Answer for Fleet {
@@ -310,7 +307,6 @@ impl Fleet {
         files: &[FileHead],
         status: &[Status],
         compared: Compared,
-        reused: usize,
     ) -> Self {
         let mut listed: Vec<FileAnswer> = files
             .iter()
@@ -339,7 +335,6 @@ impl Fleet {
             reference: compared.reference.map(|r| r.answer),
             mission: compared.mission.as_ref().and_then(MissionSums::answer),
             files: listed,
-            reused,
         }
     }
 
