@@ -74,7 +74,10 @@ impl Report for Outcome<Studied> {
             let most = halves.iter().copied().fold(f64::NAN, f64::max);
             let range = match self.study.len() {
                 1 => half_width(least),
-                _ => format!("{} to {}", half_width(least), number(most)),
+                _ => {
+                    let most = half_width(most);
+                    format!("{} to {}", half_width(least), most.trim_start_matches("± "))
+                }
             };
             vec![load.name.clone(), format!("{range} {}", load.unit)]
         };

@@ -51,7 +51,9 @@ impl Columns {
             let all = cells(c).chain(table.head.get(c));
             all.map(|t| t.chars().count()).max().unwrap_or(0)
         };
-        let is_number = |c: usize| c > 0 && cells(c).all(|t| is_number(t));
+        // Values of a list of fields have nothing in common.
+        let is_list = table.head.is_empty();
+        let is_number = |c: usize| c > 0 && !is_list && cells(c).all(|t| is_number(t));
         Self {
             widths: (0..n).map(width).collect(),
             is_number: (0..n).map(is_number).collect(),

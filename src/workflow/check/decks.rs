@@ -191,7 +191,11 @@ impl DeckEntry {
             true => String::new(),
             false => format!(" (PARAM,WTMASS,{} applied)", self.wtmass),
         };
-        let at = |scale: f64| self.cg.map(|v| short(v * scale)).join(", ");
+        /// Share of the largest coordinate below which another one is rounding.
+        const ROUNDING: f64 = 1e-12;
+        let largest = self.cg.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+        let plain = |v: f64| if v.abs() < ROUNDING * largest { 0.0 } else { v };
+        let at = |scale: f64| self.cg.map(|v| short(plain(v) * scale)).join(", ");
         match self.shown {
             None => format!(
                 "{}{wtmass}, centre of gravity {}, units of the deck",
