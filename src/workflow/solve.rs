@@ -8,6 +8,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::linalg::sparse::OrderingMethod;
@@ -21,7 +22,7 @@ use crate::strain_chain::solved::{
     cases_of_job, faults_of, is_combination, refuse_repeated_subcases, relief_of_job, solve_kept,
     static_case, support_of_job,
 };
-use crate::units::UnitSystem;
+use crate::units::{UnitSystem, number};
 use nastran::bdf::Request;
 use nastran::cards::ShellShape;
 use serde::Serialize;
@@ -87,6 +88,21 @@ pub struct MassAndCentre {
 
 impl Answer for SolvedCases {
     const COMMAND: &'static str = "solve";
+    const RESULT: &'static str = "The solution";
+
+    fn verdict(&self) -> String {
+        let first = self.elastic_modes_hz.first();
+        let first = first.map_or_else(String::new, |hz| {
+            format!(", first elastic mode {} Hz", number(*hz))
+        });
+        let support = self.support.as_ref();
+        let support = support.map_or_else(String::new, |s| format!("; the structure is {s}"));
+        format!(
+            "{} solved on {}{first}{support}.",
+            counted(self.solution.cases.len(), "load case"),
+            counted(self.grids, "grid")
+        )
+    }
 }
 
 /// What is to be solved.

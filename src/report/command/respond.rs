@@ -3,25 +3,22 @@
 use super::columns::declare_written;
 use super::respond_files::{arrays, histories};
 use super::{Report, write_page};
-use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::model::{Model, Vec3};
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{GaugePoints, agreement};
 use crate::report::page::{Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{Place, ResponseRow, von_mises_history};
-use crate::units::factor;
+use crate::units::{factor, plus_minus};
 use crate::workflow::respond::{Element, ElementFatigue, Responded, grids};
-use std::fmt::Write as _;
 
 /// Rows of a table on the page.
 const MOST_ROWS: usize = 60;
-/// Elements that are named on a terminal.
-const MOST_WORDS: usize = 5;
 /// Points a drawing takes.
 const MOST_POINTS: usize = 2000;
 
@@ -97,32 +94,22 @@ impl Report for Outcome<Responded> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let mut text = String::new();
-        for e in self.elements.iter().take(MOST_WORDS) {
-            let _ = writeln!(
-                text,
-                "element {} {}: {:.2} +- {:.2} {} (95 %) at {}",
-                e.element,
-                e.surface,
-                e.max_von_mises,
-                NORMAL_95 * e.sigma,
-                self.stress_unit,
-                e.at.as_deref().unwrap_or("")
-            );
-        }
-        for f in self.fatigue.iter().take(MOST_WORDS) {
-            let _ = writeln!(
-                text,
-                "element {} {}: damage {} ({} to {})",
-                f.element,
-                f.surface,
-                number(f.damage),
-                number(f.damage_low),
-                number(f.damage_high)
-            );
-        }
-        text
+    fn console(&self) -> Console {
+        let row = |e: &Element| {
+            vec![
+                e.element.to_string(),
+                e.surface.clone(),
+                plus_minus(e.max_von_mises, e.half_width()),
+                e.at.clone().unwrap_or_default(),
+            ]
+        };
+        let unit = self.stress_unit;
+        let table = ConsoleTable::new(
+            format!("Largest von Mises stress, {unit} (± half width of the 95 % interval)"),
+            &["element", "surface", "stress", "at"],
+            self.elements.iter().map(row).collect(),
+        );
+        Console::new(table, Some("elements.csv")).next("open envelope.vtu in ParaView")
     }
 }
 
@@ -241,7 +228,7 @@ fn shown(list: &[Element]) -> Vec<Vec<String>> {
                 e.element.to_string(),
                 e.surface.clone(),
                 number(e.max_von_mises),
-                format!("± {}", number(NORMAL_95 * e.sigma)),
+                format!("± {}", number(e.half_width())),
                 e.at.clone().unwrap_or_default(),
             ]
         })
@@ -249,7 +236,7 @@ fn shown(list: &[Element]) -> Vec<Vec<String>> {
 }
 
 fn note(e: &Element, unit: &str) -> String {
-    let [value, half] = [e.max_von_mises, NORMAL_95 * e.sigma].map(number);
+    let [value, half] = [e.max_von_mises, e.half_width()].map(number);
     let at = e.at.as_deref().unwrap_or("");
     format!("{} {value} ± {half} {unit} in {at}", e.surface)
 }

@@ -4,6 +4,7 @@ use crate::calibrate::Calibration;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Gauge, GaugeSpec};
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::linalg::Matrix;
 use crate::model::Vec3;
@@ -38,6 +39,23 @@ pub struct Calibrated {
 
 impl Answer for Calibrated {
     const COMMAND: &'static str = "calibrate";
+    const RESULT: &'static str = "The calibrated sensitivities";
+
+    fn verdict(&self) -> String {
+        let c = &self.calibration;
+        let prior = match c.prior {
+            "model" => "and the model",
+            _ => "without a model",
+        };
+        format!(
+            "Sensitivities of {} to {} from {} {prior}; the 95 % intervals contain {} of {} runs left out one by one.",
+            counted(self.sensitivity.gauges.len(), "gauge"),
+            counted(self.sensitivity.loads.len(), "load"),
+            counted(c.runs, "run"),
+            c.coverage.held,
+            c.coverage.of
+        )
+    }
 }
 
 /// `calibration` of `result.json`.

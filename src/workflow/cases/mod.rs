@@ -10,6 +10,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::{Component, Job, JobLoad, LoadActs};
 use crate::model::{Grid, Model};
@@ -65,6 +66,15 @@ pub struct UnitLoadDeck {
 
 impl Answer for UnitLoadDeck {
     const COMMAND: &'static str = "cases";
+    const RESULT: &'static str = "The deck of unit loads";
+
+    fn verdict(&self) -> String {
+        format!(
+            "{} written for Nastran; the structure is {}.",
+            counted(self.subcases.len(), "unit-load subcase"),
+            self.support
+        )
+    }
 }
 
 /// A deck as read, and the files of its edited form.

@@ -34,12 +34,20 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     files(work, &job, found, into);
     let of_job = found.results.iter_mut().skip(results);
     of_job.for_each(|r| r.is_of_job = true);
+    let its_decks = found.decks.iter_mut().skip(decks);
+    its_decks.for_each(|d| d.state_units(&job));
     let mut faults = std::mem::take(&mut found.faults);
     let s = job.sensitivity.as_ref().and_then(|_| {
         let read = given_as_asked(work, &job);
         kept(read, &mut faults)
     });
     let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
+    let command = match (&job.measured, &job.vehicle) {
+        (Some(_), _) => "recover",
+        (None, Some(_)) => "identify",
+        (None, None) => "place",
+    };
+    found.next = Some(format!("run `strainbridge {command} {given}`"));
     found.jobs.push(format!(
         "job `{given}`: {} loads, {} gauges, units {}",
         s.as_ref().map_or(job.loads.len(), |s| s.loads.len()),

@@ -9,11 +9,12 @@ use super::sink::RecordHead;
 use super::trace::Spans;
 use super::validation::ValidationGauge;
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
-use crate::units::MICROSTRAIN;
+use crate::units::{MICROSTRAIN, half_width};
 use serde::Serialize;
 use std::sync::Arc;
 
@@ -56,6 +57,30 @@ pub struct Recovered {
 
 impl Answer for Recovered {
     const COMMAND: &'static str = "recover";
+    const RESULT: &'static str = "The recovered loads";
+
+    fn verdict(&self) -> String {
+        let spans = self.spans();
+        let measured = match &self.states {
+            States::Runs(runs) => counted(runs.runs.len(), "run"),
+            States::Record(record) => counted(record.samples as usize, "sample"),
+        };
+        let known = spans.iter().filter(|s| s.share().is_finite());
+        let least_certain = known.max_by(|a, b| a.share().total_cmp(&b.share()));
+        let least_certain = least_certain.map_or_else(String::new, |s| {
+            format!(
+                ", least certain {} {} {}",
+                s.name,
+                half_width(s.half),
+                s.unit
+            )
+        });
+        format!(
+            "{} from {measured}{least_certain}; residual {}.",
+            counted(spans.len(), "load"),
+            self.states.residual()
+        )
+    }
 }
 
 impl Recovered {
@@ -128,6 +153,13 @@ pub struct RecoveredLoad {
     pub high: f64,
     /// Report unit.
     pub unit: String,
+}
+
+impl RecoveredLoad {
+    /// Half width of the 95 % interval.
+    pub fn half_width(&self) -> f64 {
+        (self.high - self.low) / 2.0
+    }
 }
 
 /// A gauge over all runs, or over a record.

@@ -5,6 +5,7 @@
 
 mod answer;
 mod block;
+mod by_load;
 mod calibrated;
 mod combined;
 mod compare;
@@ -32,6 +33,7 @@ pub use answer::{
     Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
     RunFit, States,
 };
+pub use by_load::LoadSpan;
 pub(super) use combined::{Listed, listed};
 pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use damage::LoadDamage;

@@ -1,10 +1,13 @@
 //! What `respond` answers.
 
 use super::gauges::{Check, GaugeCheck};
+use crate::estimate::NORMAL_95;
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::respond::{LoadState, Peak, ResponseRow};
 use crate::strain_chain::Prepared;
+use crate::units::plus_minus;
 use serde::Serialize;
 
 /// Stress from loads.
@@ -40,6 +43,24 @@ pub struct Responded {
 
 impl Answer for Responded {
     const COMMAND: &'static str = "respond";
+    const RESULT: &'static str = "The stresses";
+
+    fn verdict(&self) -> String {
+        let states = counted(self.states, "load state");
+        let Some(e) = self.elements.first() else {
+            return format!("No element has a stress in {states}.");
+        };
+        let at =
+            e.at.as_ref()
+                .map_or_else(String::new, |at| format!(" at {at}"));
+        format!(
+            "Largest von Mises stress {} {}, element {} {}{at}, of {states}.",
+            plus_minus(e.max_von_mises, e.half_width()),
+            self.stress_unit,
+            e.element,
+            e.surface
+        )
+    }
 }
 
 /// Response of every element to every state, model units.
@@ -90,4 +111,11 @@ pub struct Element {
     pub low: f64,
     /// Upper end.
     pub high: f64,
+}
+
+impl Element {
+    /// Half width of the 95 % interval.
+    pub fn half_width(&self) -> f64 {
+        NORMAL_95 * self.sigma
+    }
 }

@@ -7,7 +7,6 @@ use crate::report::figure::{CrossPlot, cross};
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::units::fixed;
 use crate::workflow::recover::{Comparison, LoadComparison, Recovered, Sections};
-use std::fmt::Write as _;
 use std::io::Write;
 
 /// Unit of a column that is in the unit of its row.
@@ -117,68 +116,17 @@ fn ratio(l: &LoadComparison) -> String {
     }
 }
 
-/// A line a load.
-pub(super) fn words(comparison: &Comparison, sections: Option<&Sections>) -> String {
-    let mut text = String::new();
-    if let Some(shift) = &comparison.shift {
-        let half = shift.half_width_s.map_or_else(
-            || " (as stated)".to_owned(),
-            |half| format!(" +- {}", fixed(half, 5)),
-        );
-        let _ = writeln!(
-            text,
-            "recorded loads of {}: time shift {}{half} s",
-            shift.file,
-            fixed(shift.shift_s, 5)
-        );
-    }
-    let rows = comparison.loads.iter().map(|l| {
-        let unit = &l.unit;
-        [
-            l.load.clone(),
-            l.n.to_string(),
-            format!("{} {unit}", number(l.bias)),
-            format!("{} {unit}", number(l.rms)),
+/// Cells of a load beside its recovered value on a terminal: bias, rms, share within the interval, damage ratio.
+pub(super) fn cells(comparison: &Comparison, load: &str) -> [String; 4] {
+    match comparison.loads.iter().find(|l| l.load == load) {
+        Some(l) => [
+            number(l.bias),
+            number(l.rms),
             percent(l.share_within),
             ratio(l),
-        ]
-    });
-    let head = ["load", "n", "bias", "rms", "within 95 %", "damage ratio"].map(str::to_owned);
-    let rows: Vec<[String; 6]> = std::iter::once(head).chain(rows).collect();
-    if rows.len() > 1 {
-        text.push_str("recovered less recorded loads:\n");
-        text.push_str(&aligned(&rows));
+        ],
+        None => ["-"; 4].map(str::to_owned),
     }
-    let rows = sections.iter().flat_map(|s| &s.duty_cycle).map(|d| {
-        [
-            d.load.clone(),
-            format!("{} s", number(d.seconds)),
-            number(d.damage),
-            format!("{} to {}", number(d.damage_low), number(d.damage_high)),
-        ]
-    });
-    let head = ["load", "duty cycle", "damage", "95 % interval"].map(str::to_owned);
-    let rows: Vec<[String; 4]> = std::iter::once(head).chain(rows).collect();
-    if rows.len() > 1 {
-        text.push_str(&aligned(&rows));
-    }
-    text
-}
-
-/// Rows in columns of even width.
-fn aligned<const N: usize>(rows: &[[String; N]]) -> String {
-    let width = |c: usize| rows.iter().map(|r| r[c].chars().count()).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..N).map(width).collect();
-    let mut text = String::new();
-    for row in rows {
-        let cells = row
-            .iter()
-            .zip(&widths)
-            .map(|(cell, w)| format!("{cell:<w$}"));
-        let line = cells.collect::<Vec<_>>().join("  ");
-        let _ = writeln!(text, "  {}", line.trim_end());
-    }
-    text
 }
 
 /// Adds the comparison and the sections to the page, after its first section.

@@ -4,6 +4,7 @@
 
 mod columns;
 mod compared;
+mod console;
 mod folder;
 mod nastran;
 #[cfg(feature = "parquet")]
@@ -20,9 +21,9 @@ use super::Report;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::report::page::{Page, number};
+use crate::report::console::Console;
+use crate::report::page::Page;
 use crate::workflow::recover::{Recovered, States};
-use std::fmt::Write;
 
 impl Report for Outcome<Recovered> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "loads.csv"];
@@ -44,24 +45,7 @@ impl Report for Outcome<Recovered> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let mut text = match &self.states {
-            States::Runs(runs) => runs::words(runs),
-            States::Record(record) => record::words(record),
-        };
-        text.push_str(&compared::words(&self.comparison, self.sections.as_ref()));
-        for g in &self.validation {
-            let _ = match (g.rms_microstrain, g.expected_rms_microstrain) {
-                (Some(rms), Some(expected)) => writeln!(
-                    text,
-                    "validation gauge {}: differs from its prediction by {} microstrain rms, expected {}",
-                    g.name,
-                    number(rms),
-                    number(expected)
-                ),
-                _ => writeln!(text, "validation gauge {}: nothing to compare", g.name),
-            };
-        }
-        text
+    fn console(&self) -> Console {
+        console::console(self)
     }
 }
