@@ -1,10 +1,12 @@
-"""A fleet on Spark: every task takes some paths, does them with the Python package, and yields a row a file.
+"""A fleet on Spark: every task takes some paths, processes them with the Python package, and yields a row for each file.
 
     spark-submit examples/spark_fleet.py JOB.toml OUT FILE...
 
-The package is installed where the executors run (`pip install .`). Job, records and OUT must be reachable under the same paths by every executor.
-What a task did is kept in OUT/days, so a task that Spark repeats costs nothing; the driver merges at the end. Prints how many files are done,
-failed and second copies.
+The package is installed where the executors run (`pip install` of the wheel). Job, records and OUT must be reachable under the same paths by every
+executor. The results of a task are kept in OUT/days, so a task that Spark repeats costs nothing. The driver merges at the end, with the digests
+that the tasks return: it reads no record. Prints how many files are done, failed and second copies.
+
+On Databricks, import `fleet_on_spark` in a notebook and give it the session `spark`.
 """
 
 import collections
@@ -13,21 +15,39 @@ import sys
 import pyarrow as pa
 from pyspark.sql import SparkSession
 
+import strainbridge as sb
 from strainbridge import fleet
+
+COLUMNS = ("path", "status", "message", "sha256")
+
+
+def fleet_on_spark(spark, job: str, out: str, files: list[str]):
+    """The outcome of `fleet.run`, with the files processed by the executors."""
+
+    def task(batches):
+        for batch in batches:
+            paths = batch.column("path").to_pylist()
+            try:
+                done = fleet.part(job, paths, out, 1, mark)
+            except sb.Faults as faults:
+                # Returned, not raised: Spark would repeat the task, and the input would still be wrong.
+                done = [{"path": paths[0], "status": "fault", "message": str(faults), "sha256": ""}]
+            columns = {k: [f[k] for f in done] for k in COLUMNS}
+            yield pa.RecordBatch.from_pydict(columns, schema=pa.schema([(k, pa.string()) for k in columns]))
+
+    with fleet.mark(out) as mark:
+        paths = spark.createDataFrame([(f,) for f in files], "path string")
+        tasks = max(1, len(files) // fleet.FILES_A_TASK)
+        rows = paths.repartition(tasks).mapInArrow(task, ", ".join(f"{k} string" for k in COLUMNS)).collect()
+    wrong = sorted({r.message for r in rows if r.status == "fault"})
+    if wrong:
+        raise fleet.FleetError("\n".join(wrong))
+    return fleet.run(job, files, out, digests={r.path: r.sha256 for r in rows if r.sha256})
 
 
 def main(job: str, out: str, files: list[str]) -> None:
-    def task(batches):
-        for batch in batches:
-            done = fleet.part(job, batch.column("path").to_pylist(), out, threads=1)
-            columns = {k: [f[k] for f in done] for k in ("path", "status", "message")}
-            yield pa.RecordBatch.from_pydict(columns, schema=pa.schema([(k, pa.string()) for k in columns]))
-
     spark = SparkSession.builder.appName("strainbridge fleet").getOrCreate()
-    paths = spark.createDataFrame([(f,) for f in files], "path string")
-    tasks = max(1, len(files) // fleet.FILES_A_TASK)
-    rows = paths.repartition(tasks).mapInArrow(task, "path string, status string, message string").collect()
-    result = fleet.run(job, [r.path for r in rows], out)
+    result = fleet_on_spark(spark, job, out, files)
     print(dict(collections.Counter(f["status"] for f in result["files"])))
     spark.stop()
 

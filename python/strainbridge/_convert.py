@@ -51,12 +51,23 @@ def count(name: str, value: Any) -> int:
         ValueError: 0 or less.
     """
     try:
-        number = operator.index(value)
+        number = operator.index(_no_truth(value))
     except TypeError:
         raise TypeError(f"{name} is {value!r}; a whole number is needed") from None
     if number < 1:
         raise ValueError(f"{name} is {number}; 1 or more is needed")
     return number
+
+
+def _no_truth(value: Any) -> Any:
+    """The value itself.
+
+    Raises:
+        TypeError: it is a truth value, which Python counts as a number.
+    """
+    if isinstance(value, (bool, np.bool_)):
+        raise TypeError("a truth value")
+    return value
 
 
 def number(name: str, value: Any) -> float:
@@ -80,7 +91,7 @@ def threads(value: Any) -> int | None:
     if value is None:
         return None
     try:
-        number = operator.index(value)
+        number = operator.index(_no_truth(value))
     except TypeError:
         raise TypeError(f"threads is {value!r}; a whole number is needed") from None
     if number == -1:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Iterable, Optional, Tuple
 
+from ._words import in_python
+
 Parts = Tuple[str, Optional[int], str, str, str]
 
 
@@ -34,7 +36,7 @@ class Faults(ValueError):
     faults: tuple[Fault, ...]
 
     def __init__(self, faults: Iterable[Parts]) -> None:
-        listed: list[Parts] = list(faults)
+        listed: list[Parts] = [(f, line, in_python(key, f), in_python(wrong, f), in_python(remedy, f)) for f, line, key, wrong, remedy in faults]
         super().__init__(listed)
         self.faults = tuple(Fault(*f) for f in listed)
 

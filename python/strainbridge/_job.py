@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 import os
-from difflib import get_close_matches
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, Iterable, Iterator, Mapping, MutableSequence
+from typing import TYPE_CHECKING, Any, Mapping
 
 from . import _strainbridge as _engine
 from ._data import csv_bytes, is_table
 from ._foreign import deck_bytes, is_deck, is_results, op2_bytes
+from ._keys import Keys
+from ._section import Items, Section
 from ._toml import plain, text_of
 
 #: Name under which a job that was made of a dictionary stands in its folder; nothing is written there.
@@ -36,148 +37,7 @@ def in_folder(folder: str | os.PathLike[str], name: str) -> str:
     return name if base in ("", ".") else os.path.join(base, name)
 
 
-def _keys_of(schema: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """The keys that a section can have; None where any name is a key, as in a table of columns."""
-    if "items" in schema:
-        schema = schema["items"]
-    keys: Mapping[str, Any] | None = schema.get("properties")
-    return keys
-
-
-class Section:
-    """A section of a job: its keys are attributes and items, and can be set. ``del`` takes a key out; a key that is absent is None. A name that no
-    section of this kind has raises ``AttributeError``, with the closest name that it has. A key that names a table takes the table itself: a
-    DataFrame, or whatever else has ``__arrow_c_stream__``."""
-
-    __slots__ = ("_job", "_table", "_where", "_schema", "_absent")
-
-    def __init__(self, job: Job, table: dict[str, Any], where: str, schema: Mapping[str, Any], absent: bool = False) -> None:
-        object.__setattr__(self, "_job", job)
-        object.__setattr__(self, "_table", table)
-        object.__setattr__(self, "_where", where)
-        object.__setattr__(self, "_schema", schema)
-        # Whether the job does not have it until a key is set.
-        object.__setattr__(self, "_absent", absent)
-
-    def _known(self, name: str) -> Mapping[str, Any]:
-        """The schema of a key.
-
-        Raises:
-            AttributeError: no section of this kind has the key.
-        """
-        keys = _keys_of(self._schema)
-        if keys is None:
-            return {}
-        if name not in keys:
-            close = get_close_matches(name, keys, n=1)
-            hint = f"; did you mean `{close[0]}`?" if close else f", but {', '.join(keys)}"
-            raise AttributeError(f"`{self._where}` has no key `{name}`{hint}")
-        found: Mapping[str, Any] = keys[name]
-        return found
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        schema = self._known(name)
-        if name not in self._table and _keys_of(self._schema) is None:
-            raise AttributeError(f"`{self._where}` has no key `{name}`")
-        return self._job._view(self._table.get(name), f"{self._where}.{name}", schema)
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        self._known(name)
-        if is_table(value):
-            value = self._job._hold(f"{self._where}_{name}".replace(".", "_"), value)
-        self._table[name] = plain(value)
-        self._job._change(self)
-
-    def __delattr__(self, name: str) -> None:
-        self._known(name)
-        if name not in self._table:
-            raise AttributeError(f"`{self._where}.{name}` is not set")
-        del self._table[name]
-        self._job._change(self)
-
-    def __getitem__(self, name: str) -> Any:
-        if name not in self._table:
-            raise KeyError(name)
-        return getattr(self, name)
-
-    def __setitem__(self, name: str, value: Any) -> None:
-        setattr(self, name, value)
-
-    def __delitem__(self, name: str) -> None:
-        delattr(self, name)
-
-    def get(self, name: str, default: Any = None) -> Any:
-        """The value of a key, or `default` where it is not set."""
-        return self[name] if name in self._table else default
-
-    def keys(self) -> list[str]:
-        """The keys that are set."""
-        return list(self._table)
-
-    def __contains__(self, name: str) -> bool:
-        return name in self._table
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._table)
-
-    def __len__(self) -> int:
-        return len(self._table)
-
-    def __eq__(self, other: object) -> bool:
-        return bool(self._table == (other._table if isinstance(other, Section) else other))
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *(_keys_of(self._schema) or self._table)]
-
-    def __repr__(self) -> str:
-        return repr(self._table)
-
-
-class Items(MutableSequence[Any]):
-    """A list of a job, changed in place: ``job.load.append({...})``."""
-
-    __slots__ = ("_job", "_list", "_where", "_schema")
-
-    def __init__(self, job: Job, values: list[Any], where: str, schema: Mapping[str, Any]) -> None:
-        self._job, self._list, self._where, self._schema = job, values, where, schema
-
-    def __getitem__(self, at: Any) -> Any:
-        if isinstance(at, slice):
-            return [self[i] for i in range(*at.indices(len(self._list)))]
-        return self._job._view(self._list[at], self._where, self._schema)
-
-    def __setitem__(self, at: Any, value: Any) -> None:
-        self._list[at] = plain(value)
-        self._job._change()
-
-    def __delitem__(self, at: Any) -> None:
-        del self._list[at]
-        self._job._change()
-
-    def insert(self, index: int, value: Any) -> None:
-        """Puts a value before the one at `index`."""
-        self._list.insert(index, plain(value))
-        self._job._change()
-
-    def __len__(self) -> int:
-        return len(self._list)
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Items):
-            return self._list == other._list
-        return isinstance(other, Iterable) and self._list == plain(list(other))
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        return repr(self._list)
-
-
-class Job:
+class Job(Keys):
     """A job, as the file that the command takes: ``Job.read(path)`` or ``Job.from_dict({...})``.
 
     Keys and sections are attributes, as in the file, and can be changed in place: ``job.placement.gauges = 12``. A change is checked when the
@@ -284,29 +144,32 @@ class Job:
         object.__setattr__(self, "_text", text_of({k: v for k, v in self._keys().items() if v != []}))
         object.__setattr__(self, "_native", None)
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_") or name not in _schema():
-            raise AttributeError(f"a job has no `{name}`")
-        table = self._keys()
-        schema = _schema()[name]
-        if name in table:
-            return self._view(table[name], name, schema)
-        if _is_section(name):
-            return Section(self, {}, name, schema, absent=True)
-        # An empty list that is part of the job once it has something in it.
-        return Items(self, table.setdefault(name, []), name, schema) if "items" in schema else None
+    # A type checker sees the keys of `_keys.py` alone, and reports others.
+    if not TYPE_CHECKING:
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        if name not in _schema():
-            raise AttributeError(f"a job has no `{name}`")
-        if value is None:
-            self._keys().pop(name, None)
-        else:
-            self._keys()[name] = plain(value)
-        self._change()
+        def __getattr__(self, name: str) -> Any:
+            if name.startswith("_") or name not in _schema():
+                raise AttributeError(f"a job has no `{name}`")
+            table = self._keys()
+            schema = _schema()[name]
+            if name in table:
+                return self._view(table[name], name, schema)
+            if _is_section(name):
+                return Section(self, {}, name, schema, absent=True)
+            # An empty list that is part of the job once it has something in it.
+            return Items(self, table.setdefault(name, []), name, schema) if "items" in schema else None
 
-    def __delattr__(self, name: str) -> None:
-        setattr(self, name, None)
+        def __setattr__(self, name: str, value: Any) -> None:
+            if name not in _schema():
+                raise AttributeError(f"a job has no `{name}`")
+            if value is None:
+                self._keys().pop(name, None)
+            else:
+                self._keys()[name] = plain(value)
+            self._change()
+
+        def __delattr__(self, name: str) -> None:
+            setattr(self, name, None)
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *_schema()]

@@ -162,7 +162,8 @@ def read_vtu(path: Path) -> Mesh:
             at = begin + int(offset)
             size = int.from_bytes(data[at : at + 8], "little")
             values = np.frombuffer(data, _DTYPES[kind], offset=at + 8, count=size // np.dtype(_DTYPES[kind]).itemsize)
-            out[html.unescape(label)] = values if columns == "1" else values.reshape(-1, int(columns))
+            # A copy: an array over bytes could not be changed.
+            out[html.unescape(label)] = values.reshape(-1, int(columns)).copy() if columns != "1" else values.copy()
         return out
 
     cells = section("Cells")

@@ -153,6 +153,16 @@ class Outcome(Record):
             # `result.json` counts the gauges; in Python the list has a length.
             self._seen["gauges"], self._seen["loads"] = found[1], found[2]
 
+    @classmethod
+    def of_folder(cls, answer: Mapping[str, Any], folder: str | Path) -> Outcome:
+        """The outcome of a command that has written its files into a folder, and whose ``result.json`` is `answer`."""
+        where = Path(folder)
+        listed = [line.split("\t")[1] for line in (where / _LISTED).read_text(encoding="utf-8").splitlines() if "\t" in line]
+        files = {name: (where / name).read_bytes() for name in [*listed, _LISTED] if (where / name).is_file()}
+        text = json.dumps(answer)
+        page = files.get("report.html", b"").decode()
+        return cls(_Stored(text, "", [], page, None, None, files, text))
+
     @property
     def findings(self) -> Sequence[Finding]:
         """What is to be known of the answer, the worst first."""

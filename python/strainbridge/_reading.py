@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from dataclasses import dataclass
 from pathlib import Path as _Path
 from typing import Any, Iterable, Literal, Mapping, Sequence
@@ -155,17 +156,22 @@ class Results:
 
     @classmethod
     def read(cls, path: Path | Any, deck: Path | Any | None = None) -> Results:
-        """The results in a file, or an `OP2` of pyNastran. Strain in the basic frame needs the mesh: the deck (or a `BDF` of pyNastran), or a
-        file that holds it.
+        """The results in a file, or an `OP2` of pyNastran. Strain in the basic frame needs the mesh, and strain from stress, plies or curvature
+        needs materials and thicknesses: the deck (or a `BDF` of pyNastran), or a file that holds it. Of an `OP2`, the static subcases are taken:
+        displacements, strain and stress of shells, plies, bars, beams, rods and solids. An `OP2Geom` holds its own deck.
 
         Raises:
             Faults: the file can't be read, or has another format.
+            ValueError: the `OP2` holds none of these.
         """
         files = {}
+        if is_results(path):
+            if deck is None and is_deck(path):
+                # Read with its geometry: the results hold the deck.
+                deck = path
+            files["pynastran.op2"], path = op2_bytes(path), "pynastran.op2"
         if is_deck(deck):
             files["pynastran.bdf"], deck = deck_bytes(deck), "pynastran.bdf"
-        if is_results(path):
-            files["pynastran.op2"], path = op2_bytes(path), "pynastran.op2"
         return cls(path, deck, files)
 
     @property
@@ -207,6 +213,9 @@ class Results:
                 raise
             # No mesh in the file: its own rows will do.
             rows = self._own_strain(subcase)
+        if not len(rows["element"]):
+            raise self._no_strain(subcase)
+        self._warn_of_others(subcase, rows["element"])
         keep = rows["top"] == (surface == "top")
         if not corners:
             keep &= rows["grid"] == 0
@@ -221,8 +230,7 @@ class Results:
                 if "gxy" in rows:
                     found.append(rows)
         if not found:
-            remedy = "ask for STRAIN(FIBER) of shells in it, or name the deck: Results.read(path, deck=...)"
-            raise Faults([(self.path, None, "subcase", f"no strain of shells in subcase {subcase}", remedy)])
+            raise self._no_strain(subcase)
         column = {name: np.concatenate([rows[name] for rows in found]) for name in ("entity", "at", "layer", *_LOCAL)}
         order = np.lexsort((column["layer"], np.arange(len(column["entity"])) // 2, column["entity"]))
         column = {name: values[order] for name, values in column.items()}
@@ -233,8 +241,38 @@ class Results:
             "local": 1e6 * np.column_stack([column[name] for name in _LOCAL]),
         }
 
+    def _warn_of_others(self, subcase: int, found: NDArray[Any]) -> None:
+        """Warns of shells that have stress in a subcase without strain, and of which no strain is known."""
+        of = [(i, t) for i, t in enumerate(self.tables) if t.analysis == "statics" and t.subcase == subcase and _is_shell(t)]
+        if any(t.quantity == "strain" for _, t in of):
+            return
+        stressed = [self.table(i)["entity"] for i, t in of if t.quantity == "stress"]
+        others = np.setdiff1d(np.concatenate(stressed), found) if stressed else np.empty(0)
+        if len(others):
+            said = f"{self.path}: {len(others)} shells have stress in subcase {subcase} and no strain, such as {others[0]}: "
+            why = "they are laminates, or the deck does not have them. Ask for STRAIN(FIBER) of shells in Nastran"
+            warnings.warn(said + why, UserWarning, stacklevel=3)
+
+    def _no_strain(self, subcase: int) -> Faults:
+        """The fault for a subcase without strain of shells: other subcases that have it, or what else there is."""
+        shells = [t for t in self.tables if t.analysis == "statics" and _is_shell(t)]
+        here = {t.quantity for t in shells if t.subcase == subcase}
+        others = sorted({t.subcase for t in shells} - {subcase})
+        if here and self.deck is None:
+            # Stress, plies or curvature: thickness and material are in the deck.
+            remedy = f"name the deck, Results.read(path, deck=...): strain is computed from {', '.join(sorted(here))}"
+        elif others:
+            remedy = f"take one of the subcases {', '.join(map(str, others))}, or ask for STRAIN(FIBER) of shells in it"
+        else:
+            remedy = "ask for STRAIN(FIBER) of shells in Nastran"
+        return Faults([(self.path, None, "subcase", f"no strain of shells in subcase {subcase}", remedy)])
+
     def __repr__(self) -> str:
         return f"Results({self.path!r}: {len(self.tables)} tables)"
+
+
+def _is_shell(table: Record) -> bool:
+    return str(table.element_type).startswith(("CQUAD", "CTRIA"))
 
 
 def write_op2(path: Path, tables: Iterable[tuple[Mapping[str, Any], Mapping[str, ArrayLike]]]) -> None:

@@ -4,12 +4,13 @@
     result = sb.fleet.run("job.toml", ["data/T1_2026-05-01.parquet", ...], out="fleet")
     result = sb.fleet.run("job.toml", files, out="/shared/fleet", client=dask.distributed.Client("tcp://scheduler:8786"))
 
-A task does some files. It keeps a small result a file in the folder `out`, by the digest of file, job and version, so a task that is
-repeated, or a run that is begun again, does what is new alone; at the end what the folder holds is merged. The same files give the same bytes
-of `fleet.csv` whoever did them. `out`, `job` and `files` must be reachable under the same paths by every worker.
+A task processes some files. It keeps a small result for each file in the folder `out`, by the digest of file, job and version. A task that is
+repeated, or a run that begins again, therefore processes new files only; at the end everything in the folder is merged. The same files give the
+same bytes of `fleet.csv`, whoever processed them. `out`, `job` and `files` must be reachable under the same paths by every worker. A file may be
+a URL of an object store (``s3://bucket/T1_2026-05-01.parquet``): the worker that reads it copies it by fsspec.
 
 Where the environment variable STRAINBRIDGE names a command, or the engine of the package is missing (this file alone will do), that command
-does the work.
+does the work. This file alone returns dictionaries, with the keys of `result.json`.
 """
 
 from __future__ import annotations
@@ -17,16 +18,20 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import socket
 import subprocess
 import tempfile
+import uuid
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Iterable, Mapping, Sequence, cast
+from typing import TYPE_CHECKING, Any, Iterable, Iterator, Mapping, Sequence, cast
 
 if TYPE_CHECKING:
     from ._outcome import Outcome as Answer
 
 try:
+    from . import _objects
     from . import _strainbridge as _engine
     from ._convert import threads as _threads
     from ._faults import Faults
@@ -35,17 +40,21 @@ try:
     from ._progress import shown
 except ImportError:  # the file alone
     _engine = None  # type: ignore[assignment]
+    _objects = None  # type: ignore[assignment]
 
     def _threads(value: Any) -> int | None:
         return None if value in (None, -1) else int(value)
 
-__all__ = ["FILES_A_TASK", "FleetError", "merge", "part", "program", "run"]
+__all__ = ["FILES_A_TASK", "FleetError", "mark", "merge", "part", "program", "run"]
 
 #: Files of one task of a cluster: enough that starting a task costs little, few enough that a lost task loses little.
 FILES_A_TASK = 8
 
 #: A job, or the path of one.
 AnyJob = Any
+
+#: A fault: file, line, field, what is wrong, what to do.
+_Parts = tuple[str, "int | None", str, str, str]
 
 
 class FleetError(RuntimeError):
@@ -60,19 +69,66 @@ def program() -> str:
     return found
 
 
-def part(job: AnyJob, files: Sequence[str], out: str, threads: int | None = None) -> list[dict[str, str]]:
-    """Does some files and returns path, status, message and SHA-256 of each: a pure function of its arguments but for the results kept in `out`."""
+@contextmanager
+def mark(out: str | Path) -> Iterator[str]:
+    """Puts a file into `out` for the time of a run, and yields its name. :func:`part` with this name raises an error on a worker whose `out` is
+    another folder."""
+    folder = Path(out)
+    folder.mkdir(parents=True, exist_ok=True)
+    name = f".run-{uuid.uuid4().hex}"
+    file = folder / name
+    file.write_text(f"{socket.gethostname()}\n", encoding="utf-8")
+    try:
+        yield name
+    finally:
+        file.unlink(missing_ok=True)
+
+
+def part(
+    job: AnyJob,
+    files: Sequence[str],
+    out: str,
+    threads: int | None = None,
+    mark: str | None = None,
+) -> list[dict[str, str]]:
+    """Processes some files and returns path, status, message and SHA-256 of each: a function of its arguments, except for the results kept in `out`.
+
+    Args:
+        job: a job with ``[fleet]``, or the path of one.
+        files: paths as this process finds them, or URLs of an object store.
+        out: the folder of the results, which all tasks share.
+        threads: how many; all cores where None.
+        mark: name of the file that :func:`mark` has put into `out`.
+
+    Raises:
+        Faults: bad input; files or a folder that this process does not find. With the command instead of the engine: FleetError.
+    """
     files = [str(f) for f in files]
     if not files:
         return []
-    # What counts is kept under `out/days`, which all tasks share; the answer of a part is not.
-    task = _Task(job, files, out, threads)
-    if _in_process():
-        answer: Mapping[str, Any] = task.by_engine()
-    else:
-        with tempfile.TemporaryDirectory() as own:
-            answer = task.by_command(own)
-    return [{k: f[k] for k in ("path", "status", "message", "sha256")} for f in answer["files"]]
+    here = f"worker {socket.gethostname()}, working folder {os.getcwd()}"
+    if mark is not None and not os.path.exists(os.path.join(out, mark)):
+        remedy = f"mount the folder of the caller under the same path on every worker ({here})"
+        raise _bad([(str(out), None, "out", "the worker does not find the folder of the caller", remedy)])
+    missing = [f for f in files if not _is_object(f) and not os.path.exists(f)]
+    if missing:
+        remedy = f"give a path that every worker finds ({here})"
+        raise _bad([(f, None, "files", "the worker does not find the file", remedy) for f in missing])
+    urls = [f for f in files if _is_object(f)]
+    known = _objects.known_digests(urls, out) if urls else {}
+    with _copies([u for u in urls if u not in known], out) as states:
+        names = _local_names(files, out)
+        # What counts is kept under `out/days`, which all tasks share; the answer of a part is not.
+        task = _Task(job, list(names), out, threads, digests={_local_name(u, out): d for u, d in known.items()})
+        if _in_process():
+            answer: Mapping[str, Any] = task.by_engine()
+        else:
+            with tempfile.TemporaryDirectory() as own:
+                answer = task.by_command(own)
+        done = [{**{k: f[k] or "" for k in ("status", "message", "sha256")}, "path": names[f["path"]]} for f in answer["files"]]
+        if states:
+            _objects.keep_states(states, {f["path"]: f["sha256"] for f in done if f["status"] != "failed"}, out)
+    return done
 
 
 def merge(job: AnyJob, out: str | Path) -> Answer:
@@ -90,47 +146,136 @@ def run(
     progress: Any = None,
     digests: Mapping[str, str] | None = None,
 ) -> Answer:
-    """Does all files, writes what the command writes into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
+    """Processes all files, writes what the command writes into `out`, and returns the outcome: ``vehicles``, ``files``, as in `result.json`.
 
     Args:
         job: a job with ``[fleet]``, or the path of one.
-        files: records, relative to the working folder; a text or path is one file.
+        files: records, relative to the working folder, or URLs of an object store that fsspec reads; a text or path is one file.
         out: where the results of single files are kept, and those of the fleet written.
-        client: a `dask.distributed.Client`, whose workers do the files in tasks of eight; None: they are done here.
+        client: a `dask.distributed.Client`, whose workers process the files in tasks of eight; None: they are processed here. A task of a lost
+            worker is repeated; bad input is not.
         threads: how many here, all cores where None; on a worker 1 where None.
         shard: ``"3/64"``: the third of 64 parts of the files alone, for a scheduler of your own. The outcome of the part goes to a folder of its
             own within `out`; :func:`merge` makes the fleet of all parts.
-        progress: as of every command; True: a bar of tqdm. Of the files done here.
+        progress: as of every command; True: a bar of tqdm. Of the files processed here.
         digests: SHA-256 of files, by path as in `files`, for a driver that does not read them again.
 
     Raises:
-        Faults: bad input; a file that is missing. A record that cannot be read is a failed file and a finding.
+        Faults: bad input; a file that is missing; a worker that does not find a file or `out`. The results of other files are kept. A record
+            that cannot be read is a failed file and a finding.
+        FleetError: the workers were lost; the same from the command in place of Faults.
     """
     job = str(job) if isinstance(job, os.PathLike) else job
     out = str(out)
     listed = sorted({str(f) for f in ([files] if isinstance(files, (str, os.PathLike)) else files)})
     digests = dict(digests or {})
-    missing = [f for f in listed if f not in digests and not os.path.exists(f)]
+    missing = [f for f in listed if f not in digests and not _is_object(f) and not os.path.exists(f)]
     if missing and client is None:
         raise _missing(missing)
     threads = _threads(threads)
+    names = {_local_name(f, out): f for f in listed}
+    done: list[dict[str, str]] = []
+    if client is not None and shard is None:
+        done = _by_workers(job, [f for f in listed if f not in digests], out, client, threads or 1)
+    else:
+        urls = [names[n] for n in _share(sorted(names), shard) if _is_object(names[n]) and names[n] not in digests]
+        done = [f for few in _tasks(urls) for f in part(job, few, out, threads)]
+    digests.update({f["path"]: f["sha256"] for f in done if f["sha256"]})
+    to = out
     if shard is not None:
         number, _, of = shard.partition("/")
-        return _saved(_Task(job, listed, out, threads, shard, progress), os.path.join(out, f"shard-{number}-of-{of}"))
-    if client is not None:
-        tasks = [listed[i : i + FILES_A_TASK] for i in range(0, len(listed), FILES_A_TASK)]
+        to = os.path.join(out, f"shard-{number}-of-{of}")
+    task = _Task(job, list(names), out, threads, shard, progress, {_local_name(f, out): d for f, d in digests.items()})
+    # Nothing is kept of a failed record: it is read again for its message.
+    failed = [f["path"] for f in done if f["status"] == "failed" and _is_object(f["path"])]
+    with _copies(failed, out):
+        return _saved(task, to)
+
+
+def _tasks(files: Sequence[str]) -> list[list[str]]:
+    return [list(files[i : i + FILES_A_TASK]) for i in range(0, len(files), FILES_A_TASK)]
+
+
+def _share(files: Sequence[str], shard: str | None) -> Sequence[str]:
+    """The files of a shard, as the engine divides them; none if the shard is not valid, which the engine reports."""
+    number, _, of = (shard or "1/1").partition("/")
+    valid = number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)
+    return files[int(number) - 1 :: int(of)] if valid else []
+
+
+def _by_workers(job: AnyJob, files: Sequence[str], out: str, client: Any, threads: int) -> list[dict[str, str]]:
+    """Has the workers process the files, and returns what :func:`part` returns of all of them.
+
+    Raises:
+        Faults: what the workers found wrong, once all of them have ended.
+        FleetError: files that no worker processed, because workers were lost.
+    """
+    tasks = _tasks(files)
+    with mark(out) as name:
         n = len(tasks)
-        futures = client.map(part, [job] * n, tasks, [out] * n, [threads or 1] * n, pure=False, retries=3)
-        # What a task that failed for good leaves undone is done here, or raises here. Files that workers did are not read again.
-        done = [f for some in client.gather(futures, errors="skip") for f in some]
-        digests.update({f["path"]: f["sha256"] for f in done if f["sha256"]})
-    return _saved(_Task(job, listed, out, threads, progress=progress, digests=digests), out)
+        # The scheduler repeats the task of a lost worker; an exception would be the same on every worker.
+        futures = client.map(_answer, [job] * n, tasks, [out] * n, [threads] * n, [name] * n, pure=False, retries=0)
+        answers = client.gather(futures, errors="skip")
+    faults = list(dict.fromkeys(f for _, some in answers for f in some))
+    if any(not f[0] for f in faults):
+        raise FleetError("\n".join(f[3] for f in faults))
+    if faults:
+        raise _bad(faults)
+    done = [f for some, _ in answers for f in some]
+    processed = {f["path"] for f in done}
+    lost = [f for f in files if f not in processed]
+    if lost:
+        more = "" if len(lost) == 1 else f" and {len(lost) - 1} more"
+        failed = next((str(e) for e in (_error_of(f) for f in futures) if e is not None), "no reason is known")
+        raise FleetError(f"no worker processed {lost[0]}{more}: {failed}. Results of the other files are kept: call `run` again")
+    return done
+
+
+def _error_of(future: Any) -> BaseException | None:
+    return future.exception() if getattr(future, "status", None) == "error" else None
+
+
+def _answer(job: AnyJob, files: Sequence[str], out: str, threads: int, mark: str) -> tuple[list[dict[str, str]], list[_Parts]]:
+    """What :func:`part` returns, and what is wrong with the input: as a value, which no scheduler repeats."""
+    try:
+        return part(job, files, out, threads, mark), []
+    except FleetError as e:
+        return [], [("", None, "", str(e), "")]
+    except ValueError as e:
+        if _engine is None or not isinstance(e, Faults):
+            raise
+        return [], [(f.file, f.line, f.field, f.wrong, f.remedy) for f in e.faults]
+
+
+def _bad(faults: Sequence[_Parts]) -> Exception:
+    """The exception for bad input."""
+    if _engine is not None:
+        return Faults(faults)
+    return FleetError("\n".join(": ".join(t for t in (f[0], f[2], f[3], f[4]) if t) for f in faults))
 
 
 def _missing(files: Sequence[str]) -> Exception:
     """The error for files that do not exist."""
-    faults = [(f, None, "files", "the file does not exist", "give a path relative to the working folder") for f in files]
-    return Faults(faults) if _engine is not None else FleetError("\n".join(f"{f[0]}: {f[3]}: {f[4]}" for f in faults))
+    return _bad([(f, None, "files", "the file does not exist", "give a path relative to the working folder") for f in files])
+
+
+def _is_object(file: str) -> bool:
+    return _objects is not None and _objects.is_object(file)
+
+
+def _copies(urls: Sequence[str], out: str) -> AbstractContextManager[dict[str, str]]:
+    """Copies of objects in `out` for the time of a block; yields their states."""
+    return _objects.copies(urls, out) if urls else nullcontext({})
+
+
+def _local_name(file: str, out: str) -> str:
+    """The path of a file for the engine: that of the copy if it is in an object store."""
+    return _objects.local_name(file, out) if _is_object(file) else file
+
+
+def _local_names(files: Sequence[str], out: str) -> dict[str, str]:
+    """Files by their path for the engine."""
+    return {_local_name(f, out): f for f in files}
 
 
 def _in_process() -> bool:
@@ -187,7 +332,11 @@ class _Task:
 def _saved(task: _Task, out: str) -> Answer:
     """The answer, its files written into `out`."""
     if not _in_process():
-        return cast("Answer", task.by_command(out))
+        answer = task.by_command(out)
+        if _engine is None:
+            # This file alone: a dictionary with the keys of result.json.
+            return cast("Answer", answer)
+        return Outcome.of_folder(answer, out)
     outcome = task.by_engine()
     outcome.save(out)
     return outcome

@@ -71,12 +71,13 @@ class Dying:
     def map(self, function, *arguments, **more):
         mark = self.mark
 
-        def task(job, files, out, threads):
-            done = function(job, files[: len(files) // 2], out, threads)
+        def task(job, files, out, *more):
+            first = function(job, files[: len(files) // 2], out, *more)
             try:
                 os.close(os.open(mark, os.O_CREAT | os.O_EXCL))
             except FileExistsError:
-                return done + function(job, files[len(files) // 2 :], out, threads)
+                second = function(job, files[len(files) // 2 :], out, *more)
+                return tuple(a + b for a, b in zip(first, second))
             os._exit(9)
 
         return self.client.map(task, *arguments, **more)
@@ -92,6 +93,161 @@ def test_a_worker_that_dies_half_way_costs_nothing(sixty, cluster):
     assert mark.exists()
     assert (folder / "killed" / "fleet.csv").read_bytes() == here
     assert {f.status for f in result.files} == {"done"}
+
+
+class Counting(Dying):
+    """A client that notes every start of a task, and kills its worker if asked."""
+
+    def __init__(self, client, notes, kill=False):
+        self.client, self.notes, self.kill = client, str(notes), kill
+
+    def map(self, function, *arguments, **more):
+        notes, kill = self.notes, self.kill
+
+        def task(*given):
+            with open(notes, "a") as file:
+                file.write("started\n")
+            if kill:
+                os._exit(9)
+            return function(*given)
+
+        return self.client.map(task, *arguments, **more)
+
+    def starts(self):
+        return len(Path(self.notes).read_text().splitlines())
+
+
+def test_bad_input_is_tried_once(sixty, cluster, tmp_path):
+    folder, files, _ = sixty
+    text = (folder / "job.toml").read_text()
+    (folder / "wrong.toml").write_text(text.replace("{day}", "{tag}"))
+    client = Counting(cluster, tmp_path / "starts")
+    with pytest.raises(sb.Faults, match="file_name") as raised:
+        sb.fleet.run(folder / "wrong.toml", files, tmp_path / "out", client=client)
+    # Sixty files are eight tasks. All of them find the same fault, which is reported once.
+    assert client.starts() == 8
+    assert len(raised.value.faults) == 1
+
+
+def test_a_task_that_kills_every_worker_is_an_error(sixty, cluster, tmp_path):
+    folder, files, _ = sixty
+    client = Counting(cluster, tmp_path / "starts", kill=True)
+    with pytest.raises(sb.fleet.FleetError, match="no worker processed"):
+        sb.fleet.run(folder / "job.toml", files[:1], tmp_path / "out", client=client)
+    # A lost worker's task is repeated, but not for ever.
+    assert 1 < client.starts() < 10
+    assert not (tmp_path / "out" / "fleet.csv").exists()
+    cluster.wait_for_workers(2, timeout=60)
+
+
+def test_workers_that_do_not_find_the_files_are_an_error(sixty, cluster, tmp_path, monkeypatch):
+    folder, files, _ = sixty
+    monkeypatch.chdir(folder)
+    names = [Path(f).name for f in files[:20]]
+    before = cluster.run(os.getcwd)
+    cluster.run(os.chdir, "/")
+    try:
+        with pytest.raises(sb.Faults, match="the worker does not find the file") as raised:
+            sb.fleet.run(folder / "job.toml", names, tmp_path / "out", client=cluster)
+        assert {f.file for f in raised.value.faults} == set(names)
+        assert not (tmp_path / "out" / "fleet.csv").exists()
+        # The folder of the results is not that of the caller.
+        with pytest.raises(sb.Faults, match="does not find the folder of the caller"):
+            sb.fleet.run(folder / "job.toml", files[:20], os.path.relpath(tmp_path / "other"), client=cluster)
+        assert not (tmp_path / "other" / "fleet.csv").exists()
+        cluster.run(os.chdir, str(folder))
+        done = sb.fleet.run(folder / "job.toml", names, tmp_path / "out", client=cluster)
+        assert {f.status for f in done.files} == {"done"}
+    finally:
+        for worker, place in before.items():
+            cluster.run(os.chdir, place, workers=[worker])
+
+
+def test_a_file_that_is_lost_stops_no_other(sixty, cluster, tmp_path):
+    folder, files, here = sixty
+    for file in [*files, folder / "S.csv", folder / "job.toml"]:
+        shutil.copy(file, tmp_path)
+    names = [str(tmp_path / Path(f).name) for f in files]
+    os.rename(names[7], tmp_path / "away")
+    with pytest.raises(sb.Faults) as raised:
+        sb.fleet.run(tmp_path / "job.toml", names, tmp_path / "out", client=cluster)
+    assert [f.file for f in raised.value.faults] == [names[7]]
+    os.rename(tmp_path / "away", names[7])
+    client = Counting(cluster, tmp_path / "starts")
+    sb.fleet.run(tmp_path / "job.toml", names, tmp_path / "out", client=client)
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
+
+
+@pytest.fixture
+def store(sixty):
+    """The records in an object store of fsspec, in memory."""
+    fsspec = needed("fsspec")
+    system = fsspec.filesystem("memory")
+    for file in sixty[1]:
+        system.pipe(f"/bucket/records/{Path(file).name}", Path(file).read_bytes())
+    yield system, [f"memory://bucket/records/{Path(f).name}" for f in sixty[1]]
+    system.rm("/bucket", recursive=True)
+
+
+def test_an_object_store_gives_the_same_bytes_and_is_read_once(sixty, store, tmp_path, monkeypatch):
+    folder, _, here = sixty
+    system, urls = store
+    job = folder / "job.toml"
+    result = sb.fleet.run(job, urls, tmp_path / "out")
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
+    assert {f.status for f in result.files} == {"done"}
+    # No copy remains.
+    assert not (tmp_path / "out" / "records").exists()
+
+    copied = []
+    get_file = type(system).get_file
+    monkeypatch.setattr(type(system), "get_file", lambda self, path, *more, **kw: copied.append(path) or get_file(self, path, *more, **kw))
+    again = sb.fleet.run(job, urls, tmp_path / "out")
+    assert copied == [] and "60" in again.words and "kept" in again.words
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
+    # An object of other bytes is read, alone.
+    record(tmp_path / "new.csv", np.random.default_rng(9))
+    system.pipe("/bucket/records/T1_05.csv", (tmp_path / "new.csv").read_bytes())
+    sb.fleet.run(job, urls, tmp_path / "out")
+    assert copied == ["/bucket/records/T1_05.csv"]
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() != here
+
+
+def test_shards_of_an_object_store_copy_their_part(sixty, store, tmp_path, monkeypatch):
+    folder, _, here = sixty
+    system, urls = store
+    copied = []
+    get_file = type(system).get_file
+    monkeypatch.setattr(type(system), "get_file", lambda self, path, *more, **kw: copied.append(path) or get_file(self, path, *more, **kw))
+    for n in (2, 1):
+        sb.fleet.run(folder / "job.toml", urls, tmp_path / "out", shard=f"{n}/2")
+    assert len(copied) == len(set(copied)) == 60
+    sb.fleet.merge(folder / "job.toml", tmp_path / "out")
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
+
+
+def test_wrong_objects_are_reported(sixty, store, tmp_path):
+    folder, _, _ = sixty
+    system, urls = store
+    with pytest.raises(sb.Faults, match="the object does not exist") as raised:
+        sb.fleet.run(folder / "job.toml", [urls[0], "memory://bucket/records/T9_01.csv"], tmp_path / "out")
+    assert [f.file for f in raised.value.faults] == ["memory://bucket/records/T9_01.csv"]
+    with pytest.raises(sb.Faults, match="names no object"):
+        sb.fleet.run(folder / "job.toml", ["memory://bucket/../T9_01.csv"], tmp_path / "out")
+    system.pipe("/bucket/records/T0_03.csv", b"time,G0\n0.0,1.0\n0.0,")
+    result = sb.fleet.run(folder / "job.toml", urls[:4], tmp_path / "out")
+    assert [f.status for f in result.files] == ["done", "done", "failed", "done"]
+    assert not any("no such file" in f.message for f in result.files)
+    assert not (tmp_path / "out" / "records").exists()
+
+
+def test_workers_read_an_object_store(sixty, cluster, tmp_path):
+    needed("fsspec")
+    folder, files, here = sixty
+    urls = [f"file://{f}" for f in files]
+    sb.fleet.run(folder / "job.toml", urls, tmp_path / "out", client=cluster)
+    assert (tmp_path / "out" / "fleet.csv").read_bytes() == here
+    assert not (tmp_path / "out" / "records").exists()
 
 
 class Leaving:

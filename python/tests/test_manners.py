@@ -1,6 +1,9 @@
 """Bugs, threads, forks, Ctrl-C."""
 
 import os
+import pickle
+import re
+import runpy
 import signal
 import subprocess
 import sys
@@ -217,3 +220,77 @@ def test_stubs_and_types_fit_the_package(tmp_path):
         text=True,
     )
     assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_a_misspelt_key_is_found_by_a_type_checker(tmp_path):
+    needed("mypy")
+    page = (ROOT / "docs" / "python" / "place.md").read_text(encoding="utf-8")
+    code = "\n".join(re.findall(r"^```python\n(.*?)^```$", page, re.MULTILINE | re.DOTALL))
+    wrong = code.replace("job.placement.spacing", "job.placement.spacin") + '\njob.load[0].nam = "LF"\njob.plcement.gauges = 3\nsb.place(job, thread=2)\n'
+    for name, text in (("right.py", code), ("wrong.py", wrong)):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+    scripts = [ROOT / "examples" / "cluster" / "shard.py", ROOT / "examples" / "cluster" / "dask_ssh.py"]
+    call = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--allow-untyped-calls", "--cache-dir", str(tmp_path / "cache")]
+    done = subprocess.run([*call, "right.py", "wrong.py", *map(str, scripts)], cwd=tmp_path, capture_output=True, text=True)
+    errors = [line for line in done.stdout.splitlines() if ": error:" in line]
+    assert all(e.startswith("wrong.py:") for e in errors), done.stdout
+    for key in ("spacin", "nam", "plcement", "thread"):
+        assert sum(f'"{key}"' in e for e in errors) == 1, done.stdout
+    assert len(errors) == 4
+
+
+def test_the_typed_keys_are_made_from_the_schema():
+    made = runpy.run_path(str(ROOT / "python" / "keys.py"))["text"]()
+    kept = (ROOT / "python" / "strainbridge" / "_keys.py").read_text(encoding="utf-8")
+    assert made == kept, "python -P python/keys.py > python/strainbridge/_keys.py"
+
+
+def test_faults_use_words_of_python(matrix_folder):
+    from strainbridge._words import in_python
+
+    assert in_python("state it: [measured] time_unit = \"ms\"") == 'state it: job.measured.time_unit = "ms"'
+    assert in_python("write a [[correction]] with sign = -1") == "write a job.correction with sign = -1"
+    assert in_python("the header, such as `time [ms]` or `G1 [um/m]`") == "the header, such as `time [ms]` or `G1 [um/m]`"
+    assert in_python("choose another folder with `--out`, or move the file away") == "choose another folder, or move the file away"
+    S = np.random.default_rng(1).normal(size=(50, 3))
+    with pytest.raises(sb.Faults) as many:
+        sb.place_rows(S, 60)
+    with pytest.raises(sb.Faults) as few:
+        sb.place_rows(S, 2)
+    (matrix_folder / "taken").mkdir()
+    (matrix_folder / "taken" / "loads.csv").write_text("mine\n")
+    with pytest.raises(sb.Faults) as taken:
+        sb.recover("job.toml").save("taken")
+    with pytest.raises(sb.Faults) as nothing:
+        sb.fleet.merge("job.toml", matrix_folder / "taken")
+    for raised in (many, few, taken, nothing):
+        for words in ("--", "[", "candidates"):
+            assert words not in str(raised.value)
+        assert pickle.loads(pickle.dumps(raised.value)).faults == raised.value.faults
+
+
+def test_truths_are_no_counts_and_check_needs_a_file():
+    for call in (lambda: sb.place_rows(S, True), lambda: sb.relax(S, True), lambda: sb.place_rows(S, 6, threads=True)):
+        with pytest.raises(TypeError, match="True"):
+            call()
+    with pytest.raises(sb.Faults, match="no file is given"):
+        sb.check()
+
+
+def test_arrays_of_a_mesh_may_be_changed(strip_folder):
+    for mesh in (sb.Deck.read("strip.bdf").mesh(), sb.place("job.toml").mesh()):
+        arrays = [mesh.points, mesh.cells, mesh.celltypes, *mesh.point_data.values(), *mesh.cell_data.values()]
+        assert arrays and all(a.flags.writeable for a in arrays)
+        mesh.points[:] *= 2.0
+
+
+def test_a_fleet_by_the_command_is_an_outcome(matrix_folder, command, monkeypatch):
+    here = sb.fleet.run("job.toml", ["T1_1.csv", "T2_1.csv"], "here")
+    found = os.environ.get("STRAINBRIDGE_COMMAND") or str(ROOT / "target" / "debug" / "strainbridge")
+    monkeypatch.setenv("STRAINBRIDGE", found)
+    there = sb.fleet.run("job.toml", ["T1_1.csv", "T2_1.csv"], "there")
+    assert isinstance(there, sb.Outcome)
+    assert [v.name for v in there.vehicles] == [v.name for v in here.vehicles] == ["T1", "T2"]
+    assert there.to_arrow("fleet").num_rows == here.to_arrow("fleet").num_rows == 4
+    monkeypatch.delenv("STRAINBRIDGE")
+    assert (matrix_folder / "here" / "fleet.csv").read_bytes() == (matrix_folder / "there" / "fleet.csv").read_bytes()

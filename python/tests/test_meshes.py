@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 import pytest
-from conftest import STRIP_JOB, needed
+from conftest import ROOT, STRIP_JOB, needed
 
 import strainbridge as sb
 
@@ -180,6 +180,77 @@ def test_objects_of_pynastran_are_taken(strip_folder):
     mine, plain = sb.place(job), sb.place(of_files)
     assert [(g.element, g.surface) for g in mine.gauges] == [(g.element, g.surface) for g in plain.gauges]
     assert mine.log_det == pytest.approx(plain.log_det, rel=1e-6)
+
+
+def test_stress_of_a_pynastran_object_becomes_strain(strip_folder):
+    reader = needed("pyNastran.bdf.bdf").BDF(debug=False)
+    reader.read_bdf("strip.bdf")
+    n = 10
+    at = {"entity": np.repeat(np.arange(1, n + 1), 2), "at": np.zeros(2 * n), "layer": np.tile([1, 2], n)}
+    stress = dict.fromkeys(("fiber", "oxx", "oyy", "txy", "angle", "omax", "omin", "vm"), np.zeros(2 * n))
+    sx, sy, txy = np.random.default_rng(6).normal(0.0, 100.0, (3, 2 * n)).astype(np.float32).astype(float)
+    stress |= {"fiber": np.tile([-1.0, 1.0], n), "oxx": sx, "oyy": sy, "txy": txy}
+    sb.write_op2("stress.op2", [({"quantity": "stress", "element_type": "CQUAD4", "subcase": 3}, {**at, **stress})])
+    op2 = needed("pyNastran.op2.op2").OP2(debug=False)
+    op2.read_op2("stress.op2")
+    # Hooke's law in plane stress: E 210000, nu 0.3.
+    expected = 1e6 * np.column_stack([sx - 0.3 * sy, sy - 0.3 * sx, 2.6 * txy])[1::2] / 210000.0
+    for results in ("stress.op2", op2):
+        strain = sb.Results.read(results, deck=reader).strain(3)
+        assert strain.element.tolist() == list(range(1, n + 1))
+        np.testing.assert_allclose(strain.values, expected, rtol=1e-6, atol=1e-9)
+    with pytest.raises(sb.Faults, match="deck"):
+        sb.Results.read(op2).strain(3)
+    with pytest.raises(sb.Faults, match="static subcase 4"):
+        sb.Results.read(op2, deck=reader).strain(4)
+    job = {**STRIP_JOB, "model": {"deck": reader, "results": [op2]}, "load": [{**STRIP_JOB["load"][0], "subcase": 3}], "placement": {"gauges": 2}}
+    assert len(sb.place(job).gauges) == 2
+
+
+#: Decks of Nastran: stress of quadrilaterals alone; plies; strain and curvature of every element; bars with stations; beams.
+REFERENCE = ("msc_plate", "msc_plate_pcomp_2cases", "nx_static_elements", "nx_shell_curvature", "msc_bar_strain", "msc_svanberg_beam")
+
+
+@pytest.mark.parametrize("name", REFERENCE)
+def test_objects_of_pynastran_give_what_their_files_give(name):
+    folder = ROOT.parent / "shared" / "nastran" / name
+    if not folder.is_dir():
+        pytest.skip("no reference material")
+    file = next(folder.glob("*.op2"))
+    op2 = needed("pyNastran.op2.op2").OP2(debug=False)
+    op2.read_op2(str(file))
+    ours, theirs = sb.Results.read(file), sb.Results.read(op2)
+    kinds = ("CQUAD", "CTRIA", "CBAR", "CBEAM", "CROD", "CTUBE", "CONROD", "CTETRA", "CHEXA", "CPENTA")
+    compared = 0
+
+    def key(table):
+        return table.quantity, table.subcase, table.element_type
+
+    by_key = {key(t): i for i, t in enumerate(theirs.tables)}
+    for i, table in enumerate(ours.tables):
+        wanted = table.quantity == "displacement" or (
+            table.quantity in ("stress", "strain", "ply_stress", "ply_strain") and str(table.element_type).startswith(kinds)
+        )
+        if not wanted or table.analysis != "statics":
+            continue
+        a, b = ours.table(i), theirs.table(by_key[key(table)])
+        assert a.keys() == b.keys()
+        for column in a:
+            np.testing.assert_array_equal(a[column], b[column], err_msg=f"{key(table)} {column}")
+        compared += 1
+    assert compared > 1
+    if any(str(t.element_type).startswith(("CQUAD", "CTRIA")) for t in ours.tables):
+        deck = next(folder.glob("*.bdf"), None) or next(folder.glob("*.dat"))
+        bdf = needed("pyNastran.bdf.bdf").BDF(debug=False)
+        bdf.read_bdf(str(deck), xref=False)
+        a, b = sb.Results.read(file, deck=deck).strain(1), sb.Results.read(op2, deck=bdf).strain(1)
+        assert len(a.element)
+        np.testing.assert_array_equal(a.element, b.element)
+        np.testing.assert_allclose(b.values, a.values, rtol=1e-9)
+    else:
+        for results in (ours, theirs):
+            with pytest.raises(sb.Faults, match="no strain of shells"):
+                results.strain(1)
 
 
 def test_cards_are_changed_and_written(strip_folder):

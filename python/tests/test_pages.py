@@ -1,12 +1,16 @@
 """The page of names is that of the docstrings; the notebooks run."""
 
 import json
+import os
+import re
 import runpy
+import shutil
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
 from conftest import ROOT, needed
 
+TASKS = sorted((ROOT / "docs" / "python").glob("*.md"))
 NOTEBOOKS = sorted((ROOT / "examples" / "notebooks").glob("*.ipynb"))
 
 
@@ -43,10 +47,34 @@ def test_notebooks_run_and_have_pictures(tmp_path):
             assert images >= 1 and pages >= 1, path
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/reference/python.md"])
-def test_names_of_the_pages_exist(name):
-    import re
+def boxes(page: str, kind: str):
+    """Line of the first line, and text, of the boxes of a kind."""
+    for box in re.finditer(rf"^```{kind}\n(.*?)^```$", page, re.MULTILINE | re.DOTALL):
+        yield page[: box.start(1)].count("\n"), box.group(1)
 
+
+def test_a_page_of_every_task_is_there():
+    assert {p.stem for p in TASKS} >= {"place", "recover", "reconcile", "calibrate", "payload", "fleet"}
+
+
+@pytest.mark.parametrize("path", TASKS, ids=lambda p: p.stem)
+def test_the_code_of_a_page_runs_in_order_on_the_examples(path, tmp_path, monkeypatch):
+    for name in ("pandas", "pyarrow"):
+        needed(name)
+    folder = shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    monkeypatch.chdir(folder)
+    names = {"__name__": path.stem}
+    page = path.read_text(encoding="utf-8")
+    count = 0
+    for line, code in boxes(page, "python"):
+        # Lines of an error are those of the page.
+        exec(compile("\n" * line + code, os.fspath(path), "exec"), names)
+        count += 1
+    assert count >= 3 and "assert" in page
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/reference/python.md", *(f"docs/python/{p.name}" for p in TASKS)])
+def test_names_of_the_pages_exist(name):
     import strainbridge as sb
 
     used = set(re.findall(r"\bsb\.(\w+)", (ROOT / name).read_text(encoding="utf-8")))

@@ -3,7 +3,7 @@
 use super::root;
 
 /// Pages that follow the rules; a page that is rewritten joins the list.
-const PAGES: [&str; 32] = [
+const PAGES: [&str; 38] = [
     "CHANGELOG.md",
     "CONTRIBUTING.md",
     "README.md",
@@ -20,6 +20,12 @@ const PAGES: [&str; 32] = [
     "docs/glossary.md",
     "docs/glue-and-wire.md",
     "docs/how-many-gauges.md",
+    "docs/python/calibrate.md",
+    "docs/python/fleet.md",
+    "docs/python/payload.md",
+    "docs/python/place.md",
+    "docs/python/reconcile.md",
+    "docs/python/recover.md",
     "docs/reference/accelerations.md",
     "docs/reference/benchmarks.md",
     "docs/reference/calibration.md",

@@ -1,0 +1,526 @@
+"""Keys of a job by section, for editors and type checkers. Made by `python python/keys.py`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ._section import Items, Section
+
+if TYPE_CHECKING:
+    from ._section import _Key
+
+
+class BallastKeys(Section):
+    """Keys of ``ballast``."""
+
+    gravity: _Key[Any]
+    """Acceleration of gravity [m/s2]; default: 9.80665."""
+    masses: _Key[Any]
+    """Number of masses; default: 1."""
+    max_mass: _Key[Any]
+    """Largest single mass [job unit of mass]; default: none."""
+    properties: _Key[Any]
+    """Properties whose grids may carry the masses; default: all shells; bars if there are no shells."""
+    region: _Key[Any]
+    """Region in which the masses may sit, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
+    run: _Key[Any]
+    """Run whose reactions count; default: the first."""
+
+
+class CalibrationKeys(Section):
+    """Keys of ``calibration``."""
+
+    angle_tolerance_deg: _Key[Any]
+    """How far gauges may be turned from their drawing, one standard deviation: stated, their angle is found from the runs [deg]; default: 0."""
+    depends_on: _Key[Any]
+    """Column of the runs file, such as speed: whether loads come out larger with it is tested; default: none."""
+    model_uncertainty_rel: _Key[Any]
+    """How far the model's S may be off, one standard deviation, entry by entry and common to a gauge, a fraction; default: 0.1."""
+    position_tolerance: _Key[Any]
+    """How far gauges may sit from their drawing along and across their axis, one standard deviation: stated, their place is found from the runs
+    [job length]; default: 0."""
+    repeats: _Key[Any]
+    """Columns of the runs file: runs alike in these are repeats, and what they have in common counts once; default: runs of equal loads."""
+    runs: _Key[Any]
+    """Runs that teach; default: every run of [measured] whose loads [runs] gives."""
+
+
+class CandidatesKeys(Section):
+    """Keys of ``candidates``."""
+
+    angle_step_deg: _Key[Any]
+    """Step of angles from the element x axis, or 'continuous' [degree]; default: 15."""
+    boxes: _Key[Any]
+    """Boxes in which gauges may sit, [[x0, x1], [y0, y1], [z0, z1]] each [job unit of length]; default: anywhere."""
+    bridge: _Key[Any]
+    """Wirings to choose from; default: quarter."""
+    clear_of: _Key[Any]
+    """Least distances from what disturbs strain or the technician; default: none."""
+    elements: _Key[Any]
+    """Element ids, such as '1 THRU 5000'; default: all."""
+    exclude_boxes: _Key[Any]
+    """Boxes in which none may sit [job unit of length]; default: none."""
+    exclude_elements: _Key[Any]
+    """Elements left out; default: none."""
+    exclude_properties: _Key[Any]
+    """Properties left out; default: none."""
+    file: _Key[Any]
+    """TOML file with a section [candidates] whose lists of properties and elements (properties, elements, exclude_properties, exclude_elements,
+    wanted_elements) are added to those of the job; default: none."""
+    grid_length: _Key[Any]
+    """Grid length of the gauges to be placed; written to gauges.csv. The layout and its sigmas are computed with the strain at the middle of
+    each gauge, its spread over the grid counts as scatter; S and the strain by load of the chosen gauges are averaged over the grid. A place
+    where the grid does not fit is replaced [job unit of length]; default: 0."""
+    properties: _Key[Any]
+    """Property ids; default: all."""
+    rosette: _Key[Any]
+    """Rosettes too; default: none."""
+    sets: _Key[Any]
+    """SETs of the deck's case control that name the elements; default: not limited so."""
+    surfaces: _Key[Any]
+    """Sides of shells; default: both."""
+    wanted_elements: _Key[Any]
+    """Elements of which each gets a gauge; among single gauges of one wiring, without costs or a budget; default: none."""
+
+
+class CombinationKeys(Section):
+    """Keys of ``combination``."""
+
+    name: _Key[Any]
+    """Name of the combination in tables and reports of `recover`, `calibrate`, `place` and `fleet`; required."""
+    terms: _Key[Any]
+    """Factor by load, such as { 'LF.FZ' = 1, 'RF.FZ' = 1 }; required."""
+
+
+class CorrectionKeys(Section):
+    """Keys of ``correction``."""
+
+    angle_deg: _Key[Any]
+    """Angle from the nominal to the installed direction, right-handed about the element normal [degree]; default: 0."""
+    exchanged_with: _Key[Any]
+    """The gauge whose column it has, and the other way round; default: none."""
+    gain: _Key[Any]
+    """Reading over strain: 0.7 reads 0.7 of the strain; default: 1."""
+    gauge: _Key[Any]
+    """The gauge, by name; a rosette means its three legs, `R1.a` one leg; required."""
+    ignore: _Key[Any]
+    """Leave the channel out; default: false."""
+    offset_microstrain: _Key[Any]
+    """Reading of the channel without strain; subtracted [microstrain]; default: 0."""
+    sign: _Key[Any]
+    """-1: the channel reads with the wrong sign; default: 1."""
+
+
+class DynamicKeys(Section):
+    """Keys of ``dynamic``."""
+
+    damping: _Key[Any]
+    """Damping of the modes, share of critical; required."""
+    damping_uncertainty_rel: _Key[Any]
+    """One standard deviation of the damping, share of it; default: 0.5."""
+    frequency_uncertainty_rel: _Key[Any]
+    """One standard deviation of the modes' frequencies, share of each; default: 0.02."""
+    up_to_hz: _Key[Any]
+    """Loads are recovered up to here; above, from half more on nothing is let through [Hz]; required."""
+
+
+class FleetKeys(Section):
+    """Keys of ``fleet``."""
+
+    file_name: _Key[Any]
+    """Form of their file names: text with {vehicle} and {day}, and {any} for what doesn't matter; required."""
+    knee_range: _Key[Any]
+    """Load range below which the S-N line is flatter [report unit of each load]; default: no knee."""
+    mission: _Key[Any]
+    """A kind of days of a mission: damage of the mission is extrapolated from the kinds and their shares."""
+    mission_hours: _Key[Any]
+    """Hours of the mission [h]; default: 1."""
+    reference: _Key[Any]
+    """Day whose damage an hour is 1; default: none."""
+    slope_below_knee: _Key[Any]
+    """Power below the knee; default: cycles below do no harm."""
+    target: _Key[Any]
+    """Damage that is aimed at, by load, such as { 'A.FZ' = 1.2e12 } [report unit to the power of the slope]; default: none."""
+
+
+class GaugeKeys(Section):
+    """Keys of ``gauge``."""
+
+    angle_deg: _Key[Any]
+    """Angle from that direction, right-handed about the element normal [degree]; default: 0."""
+    bridge: _Key[Any]
+    """Wiring of the arms; default: quarter."""
+    bridge_factor: _Key[Any]
+    """The sum of signed arm strains is divided by this; default: 1."""
+    cid: _Key[Any]
+    """Coordinate system of position and direction; a cylindrical or spherical one has its axes at the gauge; default: 0, basic."""
+    direction: _Key[Any]
+    """Direction, laid onto the surface; default: x axis of the element."""
+    element: _Key[Any]
+    """Shell or bar it sits on."""
+    element2: _Key[Any]
+    """Element of the other pair of a bridge; default: the element of the gauge."""
+    grid_length: _Key[Any]
+    """Length over which strain is averaged, at most that of the part [job unit of length]; default: 0: at the point."""
+    name: _Key[Any]
+    """Column of the gauge in the strain file; names differ by more than case and spaces; required."""
+    point: _Key[Any]
+    """Recovery point of a bar or beam; required on bars."""
+    position: _Key[Any]
+    """Point instead of an element: the shell with the nearest skin is taken, and reported [job unit of length]."""
+    role: _Key[Any]
+    """estimate: loads are estimated from it. validation, or reserve: never used for loads, `recover` compares it with its prediction; default:
+    estimate."""
+    rosette: _Key[Any]
+    """Three legs instead of one grid; columns `<name>.a`, `.b`, `.c`; default: none."""
+    station: _Key[Any]
+    """Place along a bar or beam, share of its length from end A; only together with `point`. Results must contain the station where PLOAD1 acts
+    on the bar or its section changes; default: 0."""
+    surface: _Key[Any]
+    """Side of a shell: top is Z2, bottom is Z1; default: top; the nearest skin for a position."""
+    surface2: _Key[Any]
+    """Side of the other pair of a bridge; default: the opposite."""
+    transverse_sensitivity: _Key[Any]
+    """Transverse sensitivity Kt, a fraction; default: 0."""
+
+
+class GaugesKeys(Section):
+    """Keys of ``gauges``."""
+
+    file: _Key[Any]
+    """CSV with the keys of [[gauge]] as columns (dir_x, dir_y, dir_z; x, y, z), as `place` writes it; required."""
+
+
+class LoadKeys(Section):
+    """Keys of ``load``."""
+
+    applied: _Key[Any]
+    """The load in its subcase, signed [job unit of force or moment]; default: 1."""
+    cid: _Key[Any]
+    """Coordinate system of the component; default: 0, basic."""
+    component: _Key[Any]
+    """Force or moment component, basic frame or that of cid; required with grid."""
+    expected: _Key[Any]
+    """Standard deviation of the load: scales placement, conditions nuisance loads [job unit of force or moment]; default: none."""
+    grid: _Key[Any]
+    """Grid where the load acts."""
+    load_set: _Key[Any]
+    """Load set of the deck, instead of a grid."""
+    name: _Key[Any]
+    """Name of the load in tables and reports; required."""
+    result: _Key[Any]
+    """Results file of the load, if there are several; default: the one that holds the subcase."""
+    role: _Key[Any]
+    """wanted, or nuisance: present but not asked for; default: wanted."""
+    subcase: _Key[Any]
+    """Subcase in the results; default: its number in the job."""
+    weight: _Key[Any]
+    """How much its variance counts in criterion A; default: 1."""
+
+
+class MeasuredKeys(Section):
+    """Keys of ``measured``."""
+
+    hold_out: _Key[Any]
+    """Runs, or a second file, never used for fitting; default: none."""
+    model_uncertainty_rel: _Key[Any]
+    """Error of the predicted strain, one standard deviation, a fraction; default: 0."""
+    noise_microstrain: _Key[Any]
+    """Noise of a reading, one standard deviation [microstrain]; default: 1."""
+    reference: _Key[Any]
+    """none: loads are changes; gravity, or a subcase of the results, without results of the deck: its strain is added and loads are totals;
+    default: none."""
+    strain: _Key[Any]
+    """CSV, Parquet, Feather, RPC III, MDF4 or binary record, XLSX of runs; one column for each gauge; one row for each sample (`time`) or run
+    (`run`) [microstrain, or the unit after the gauge's name or in a row below the names]; required."""
+    time_unit: _Key[Any]
+    """Unit of the column `time`, where the file states none; default: s, or what the size of the times shows (serial days, time since 1970)."""
+    zero: _Key[Any]
+    """Record or runs whose mean is subtracted [microstrain]; default: none."""
+    zero_runs: _Key[Any]
+    """Runs of the strain file at which no load acts, instead of `zero`: the zero is followed through them, straight from one to the next; runs
+    held out in a file of their own have some of these of their own; default: none."""
+
+
+class ModelKeys(Section):
+    """Keys of ``model``."""
+
+    deck: _Key[Any]
+    """Nastran deck, or an OP2 that holds the mesh; path from the job; required."""
+    mesh_error: _Key[Any]
+    """Whether the built-in solver solves a mesh half as wide as well (four times the grids, some five times the time): S is then what the
+    strain tends to as the mesh gets finer, and `recover` and `place` weigh what is left of the mesh's error; default: false."""
+    results: _Key[Any]
+    """OP2, HDF5 or punch files with strain of the unit loads; default: the built-in solver computes them."""
+    support: _Key[Any]
+    """What holds the structure: 'deck' (the SPC set that case control selects, if any, else free), 'free' (inertia relief), or the id of an SPC
+    set. Springs to ground (CELAS, CBUSH) hold what they resist in each case, and inertia balances loads along the other rigid motions alone;
+    default: deck."""
+
+
+class PayloadKeys(Section):
+    """Keys of ``payload``."""
+
+    gravity: _Key[Any]
+    """Acceleration of gravity [m/s2]; default: 9.80665."""
+    grid: _Key[Any]
+    """Grid where the payload acts; required with a model."""
+    nominal_x: _Key[Any]
+    """Place along x that the signatures were computed for [job unit of length]; default: the coordinate of the grid."""
+    nominal_y: _Key[Any]
+    """Place along y that the signatures were computed for [job unit of length]; default: the coordinate of the grid."""
+    position: _Key[Any]
+    """Whether its place is known; default: known."""
+    region: _Key[Any]
+    """Where it may be, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
+    unloaded: _Key[Any]
+    """Run without payload: its wheel forces, and its strain if there is no zero file, are subtracted; default: none."""
+    use: _Key[Any]
+    """Measurements that weigh the payload; default: both where present."""
+    weight_in_model: _Key[Any]
+    """Whether the model already carries its weight; default: true."""
+
+
+class PlacementKeys(Section):
+    """Keys of ``placement``."""
+
+    angle_tolerance_deg: _Key[Any]
+    """How well gauges are aligned, one standard deviation [degree]; default: 0."""
+    budget: _Key[Any]
+    """Largest cost of a layout [channels, or money]; default: gauges."""
+    costs: _Key[Any]
+    """Cost by wiring (quarter, half-bending, full-bending, shear, rosette) [channels, or money]; default: 1; a rosette 3."""
+    criterion: _Key[Any]
+    """What is best: all loads (D), the wanted ones (Ds), mean variance (A), mean error of predicted strain (I), sizes known (Bayesian-D), least
+    condition number; default: Ds with nuisance loads, else D."""
+    curve: _Key[Any]
+    """Numbers of gauges for which sigma, bound and condition are reported; default: none."""
+    gauge_factor_rel: _Key[Any]
+    """Tolerance of the gauge factor, one standard deviation, a fraction; default: 0."""
+    gauges: _Key[Any]
+    """Number of gauges; default: twice the number of loads."""
+    keep: _Key[Any]
+    """Installed gauges that stay: 'all', or their names; `gauges` counts those to be added; default: none."""
+    loss: _Key[Any]
+    """judge: report sigma after the loss of any one gauge. optimise: choose the layout that is best after the worst loss of one gauge; default:
+    judge."""
+    model_uncertainty_rel: _Key[Any]
+    """Error of the predicted strain, one standard deviation, a fraction; default: the value of [measured], else 0."""
+    noise_by_bridge: _Key[Any]
+    """Noise by wiring, such as { full-bending = 0.5 } [microstrain]; default: noise_microstrain."""
+    noise_microstrain: _Key[Any]
+    """Noise of a gauge, one standard deviation [microstrain]; default: the value of [measured], else 1."""
+    position_tolerance: _Key[Any]
+    """How well gauges are put in place along each direction, one standard deviation [job unit of length]; default: 0."""
+    references: _Key[Any]
+    """Named grids from which the gluing sheet measures; default: grids where loads act."""
+    reserve: _Key[Any]
+    """Gauges kept from recovery, for validation; default: 0."""
+    seed: _Key[Any]
+    """Seed of everything random; default: 1."""
+    spacing: _Key[Any]
+    """Least distance between gauges [job unit of length]; default: 0."""
+    symmetric: _Key[Any]
+    """Axis normal to a plane through 0 at which gauges come in mirrored pairs; default: none."""
+
+
+class ReconcileKeys(Section):
+    """Keys of ``reconcile``."""
+
+    causes: _Key[Any]
+    """Causes measured together with the readings: name, and column of the runs file; default: none."""
+    effect: _Key[Any]
+    """A hypothesis of the user, tested like the effects of the library."""
+    effects: _Key[Any]
+    """Effect ids that are looked for, or 'all'; default: all."""
+    joints: _Key[Any]
+    """Bushes whose stiffness may be wrong; default: all, where they are few."""
+    path: _Key[Any]
+    """Strain of runs, or accelerations; required."""
+    places: _Key[Any]
+    """Grids where a mass may sit, by name; default: none."""
+    temperature_set: _Key[Any]
+    """Temperature set of the deck whose pattern thermal_gradient has; default: none."""
+    thermal_microstrain_per_degC: _Key[Any]
+    """Apparent strain by wiring, such as { quarter = 1.4 } [microstrain per degC]; default: 0."""
+    tolerance: _Key[Any]
+    """How well gauges were glued, one standard deviation; default: none."""
+    zones: _Key[Any]
+    """Properties whose stiffness may be wrong together, such as { L4 = [14] }; default: each property with gauges."""
+
+
+class RecoverKeys(Section):
+    """Keys of ``recover``."""
+
+    files: _Key[Any]
+    """Which of them; default: all, but for long histories."""
+    slope: _Key[Any]
+    """Power of the load range in pseudo-damage; default: 5."""
+
+
+class ReportUnitsKeys(Section):
+    """Keys of ``report_units``."""
+
+    force: _Key[Any]
+    """Unit of forces in reports; default: the unit of `units`."""
+    length: _Key[Any]
+    """Unit of lengths in reports; default: the unit of `units`."""
+    mass: _Key[Any]
+    """Unit of masses in reports; default: the unit of `units`."""
+    moment: _Key[Any]
+    """Unit of moments in reports; default: the unit of `units`."""
+    stress: _Key[Any]
+    """Unit of stress in reports; default: the unit of `units`."""
+
+
+class RespondKeys(Section):
+    """Keys of ``respond``."""
+
+    elements: _Key[Any]
+    """Elements to report, such as '1 THRU 500'; default: the hottest."""
+    hottest: _Key[Any]
+    """How many of the hottest; default: 20."""
+    loads: _Key[Any]
+    """Table or record of loads [report units]; default: recovered from [measured]."""
+
+
+class RunsKeys(Section):
+    """Keys of ``runs``."""
+
+    columns: _Key[Any]
+    """Column of a load or payload quantity, where the file names it otherwise; default: the name of the load or channel."""
+    file: _Key[Any]
+    """CSV with `run`, a column a load, payload_force, payload_mass, payload_x, payload_y; required."""
+    ground: _Key[Any]
+    """Usual change of a computed wheel force by ground that is not flat, one standard deviation; reconcile estimates it for every run [the
+    file's unit of force]; default: none."""
+    noise: _Key[Any]
+    """Noise of the file's numbers, one standard deviation; where columns state another unit than report_units, set runs.units [the file's
+    units]; default: 1 %, with a finding."""
+    units: _Key[Any]
+    """Units of the file; a column that states another one (`LF.FZ [N]`) is a fault; default: the units of the columns, else report_units."""
+    wheel_forces: _Key[Any]
+    """Where wheel forces come from: measured, or computed for flat ground (then they prove nothing); default: measured."""
+
+
+class SensitivityKeys(Section):
+    """Keys of ``sensitivity``."""
+
+    columns: _Key[Any]
+    """Column of a load, where the file names it otherwise; default: the name of the load or channel."""
+    covariance: _Key[Any]
+    """How far that S may be off: calibration.bin, as `calibrate` writes it; default: exact."""
+    file: _Key[Any]
+    """CSV: a row a gauge (column gauge), a column a load [microstrain per load]; required."""
+    per: _Key[Any]
+    """Units of the loads that S counts by; default: job units, not report_units."""
+    signatures: _Key[Any]
+    """Signatures of effects of size one, computed elsewhere; default: none."""
+
+
+class StudyKeys(Section):
+    """Keys of ``study``."""
+
+    errors: _Key[Any]
+    """Errors of readings and gluing; required."""
+    gauges: _Key[Any]
+    """Numbers of gauges; default: all of the job."""
+    layouts: _Key[Any]
+    """given: the first n gauges of the job; random; D, Ds: the best; default: given, random, D."""
+    seed: _Key[Any]
+    """Seed of everything random; default: 1."""
+    trials: _Key[Any]
+    """Repetitions; default: 1000."""
+
+
+class VehicleKeys(Section):
+    """Keys of ``vehicle``."""
+
+    band_hz: _Key[Any]
+    """Band in which model and measurement are compared [Hz]; default: 0.7 to 20."""
+    bounds: _Key[Any]
+    """Limits [low, high] of parameters, `inf` where a side is unlimited; masses, rates, damping and friction stay above 0 anyway [units of the
+    job]; default: none."""
+    columns: _Key[Any]
+    """Column of a channel, where the file names it otherwise; default: the name of the load or channel."""
+    corrections: _Key[Any]
+    """Faults of channels that are known, by channel; default: none."""
+    data: _Key[Any]
+    """CSV, RPC III, Parquet, Feather or MDF4 record: accelerations and wheel forces, in the units of the job where the file states none;
+    required."""
+    hold_out: _Key[Any]
+    """Record of another stretch of road, never used for fitting; default: none."""
+    known: _Key[Any]
+    """Known parameters, such as { m_b = 3200.0 } [units of the job]; default: none."""
+    leaf: _Key[Any]
+    """Leaf springs by link (s), whose force is divided between hanger and shackle; default: none."""
+    mass_change: _Key[Any]
+    """A mass that changes during the record; default: none."""
+    model: _Key[Any]
+    """Which vehicle; required."""
+    noise: _Key[Any]
+    """Noise of channels, one standard deviation; default: estimated from the record."""
+    places: _Key[Any]
+    """Places [x, y] of wheels (lf), springs (spring_lf) and body accelerometers (body_lf) [job unit of length]; default: the places of the
+    model's preset."""
+    sample_rate: _Key[Any]
+    """Sample rate [Hz]; default: from the column time."""
+    terms: _Key[Any]
+    """Terms of the analyst's model, such as k_s, c_s; default: none."""
+    tolerance: _Key[Any]
+    """Declared tolerances of the measuring chain, one standard deviation; default: 0."""
+
+
+class Keys:
+    """Sections and keys of a job."""
+
+    ballast: _Key[BallastKeys]
+    """Lumped masses that bring the model's reactions to the measured ones."""
+    calibration: _Key[CalibrationKeys]
+    """How `calibrate` learns S from runs of known load."""
+    candidates: _Key[CandidatesKeys]
+    """Where `place` may put gauges; default: all shells."""
+    combination: _Key[Items[CombinationKeys]]
+    """A sum of loads, recovered with its own 95 % interval."""
+    correction: _Key[Items[CorrectionKeys]]
+    """Known fault of a channel, corrected in every reading and record of the job."""
+    dynamic: _Key[DynamicKeys]
+    """Records with content near the elastic modes of the structure: `recover` takes its vibration out of them, with the modes of the model;
+    default: readings are taken as at rest."""
+    fleet: _Key[FleetKeys]
+    """Records of many vehicles and days."""
+    gauge: _Key[Items[GaugeKeys]]
+    """An installed gauge."""
+    gauges: _Key[GaugesKeys]
+    """Installed gauges in a table."""
+    load: _Key[Items[LoadKeys]]
+    """A load to be recovered: a column of S."""
+    measured: _Key[MeasuredKeys]
+    """Measured strain."""
+    model: _Key[ModelKeys]
+    """The finite element model."""
+    payload: _Key[PayloadKeys]
+    """Payload mass and position."""
+    placement: _Key[PlacementKeys]
+    """Goal and limits of the search of `place`."""
+    reconcile: _Key[ReconcileKeys]
+    """Where simulation and measurement disagree."""
+    recover: _Key[RecoverKeys]
+    """Files that `recover` writes in addition to loads.csv."""
+    report_units: _Key[ReportUnitsKeys]
+    """Units of reports, such as { force = 'kN', moment = 'kN m' }; default: the units of `units`."""
+    respond: _Key[RespondKeys]
+    """Strain and stress anywhere from recovered loads."""
+    runs: _Key[RunsKeys]
+    """Other measurements of each run: wheel forces, payload."""
+    sensitivity: _Key[SensitivityKeys]
+    """S computed elsewhere, instead of [model]; together with [model] only where `covariance` states a calibrated S."""
+    study: _Key[StudyKeys]
+    """Recovery repeated under stated errors; true loads are those of the first complete run, else each trial draws them, normal with standard
+    deviation `expected`."""
+    title: _Key[Any]
+    """Title of reports; default: the job's file name."""
+    units: _Key[Any]
+    """Unit system of the deck, never guessed; required with a model."""
+    vehicle: _Key[VehicleKeys]
+    """A vehicle identified from accelerations."""

@@ -1,0 +1,122 @@
+"""Records in object stores, by fsspec: a copy of a record lies in the folder of the results while it is read."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, Iterator, Mapping, Sequence
+
+from ._faults import Faults
+
+#: Folders within the folder of the results: copies while they are read, and the state of each object whose result is kept.
+_COPIES, _STATES = "records", "objects"
+
+
+def is_object(file: str) -> bool:
+    """Whether a path is a URL, such as ``s3://bucket/T1_2026-05-01.parquet``."""
+    scheme, separator, _ = file.partition("://")
+    return bool(separator) and scheme.replace("+", "").replace("-", "").isalnum()
+
+
+def local_name(url: str, out: str) -> str:
+    """The path of the copy of an object. It is the same for every worker, and so is the path in the results.
+
+    Raises:
+        Faults: the URL leads out of the folder.
+    """
+    scheme, _, rest = url.partition("://")
+    parts = [p for p in rest.replace("\\", "/").split("/") if p]
+    if not parts or ".." in parts:
+        raise Faults([(url, None, "files", "the URL names no object", "give scheme, bucket and key: s3://bucket/T1_2026-05-01.parquet")])
+    return os.path.join(out, _COPIES, scheme, *parts)
+
+
+def _opened(url: str) -> tuple[Any, str]:
+    """The file system of a URL and the path there."""
+    try:
+        import fsspec  # type: ignore[import-untyped, import-not-found, unused-ignore]
+    except ImportError as e:
+        raise ImportError("records in an object store need fsspec: pip install fsspec, and the package of the store (s3fs, gcsfs, adlfs)") from e
+    system, path = fsspec.core.url_to_fs(url)
+    return system, path
+
+
+def _state_file(url: str, out: str) -> Path:
+    return Path(out, _STATES, f"{hashlib.sha256(url.encode()).hexdigest()}.json")
+
+
+def known_digests(urls: Sequence[str], out: str) -> dict[str, str]:
+    """SHA-256 of objects that were read before and have not changed since, by URL."""
+    found = {}
+    for url in urls:
+        state = _state_file(url, out)
+        if not state.exists():
+            continue
+        kept = json.loads(state.read_text(encoding="utf-8"))
+        system, path = _opened(url)
+        try:
+            same = kept["state"] == str(system.ukey(path))
+        except FileNotFoundError:
+            same = False
+        if same:
+            found[url] = str(kept["sha256"])
+    return found
+
+
+@contextmanager
+def copies(urls: Sequence[str], out: str) -> Iterator[dict[str, str]]:
+    """Copies objects into `out` and removes the copies afterwards. Yields the state of each object before it was copied, by URL.
+
+    Raises:
+        Faults: every object that does not exist.
+    """
+    states: dict[str, str] = {}
+    made: list[Path] = []
+    faults = []
+    try:
+        for url in urls:
+            system, path = _opened(url)
+            to = Path(local_name(url, out))
+            to.parent.mkdir(parents=True, exist_ok=True)
+            part = to.with_name(f"{to.name}.{os.getpid()}.part")
+            try:
+                states[url] = str(system.ukey(path))
+                system.get_file(path, os.fspath(part))
+            except FileNotFoundError:
+                part.unlink(missing_ok=True)
+                faults.append((url, None, "files", "the object does not exist, or this worker has no access to it", "check bucket, key and credentials"))
+                continue
+            os.replace(part, to)
+            made.append(to)
+        if faults:
+            raise Faults(faults)
+        yield states
+    finally:
+        for copy in made:
+            copy.unlink(missing_ok=True)
+            _remove_empty(copy.parent, Path(out))
+
+
+def keep_states(states: Mapping[str, str], digests: Mapping[str, str], out: str) -> None:
+    """Keeps the state of objects with their SHA-256, so that a later run copies only what has changed."""
+    for url, state in states.items():
+        if not digests.get(url):
+            continue
+        to = _state_file(url, out)
+        to.parent.mkdir(parents=True, exist_ok=True)
+        part = to.with_name(f"{to.name}.{os.getpid()}.part")
+        part.write_text(json.dumps({"url": url, "state": state, "sha256": digests[url]}), encoding="utf-8")
+        os.replace(part, to)
+
+
+def _remove_empty(folder: Path, top: Path) -> None:
+    """Removes a folder and the folders above it, up to `top`, that are empty."""
+    while folder != top and top in folder.parents:
+        try:
+            folder.rmdir()
+        except OSError:
+            return
+        folder = folder.parent
