@@ -469,16 +469,22 @@ fn init_writes_a_job_for_a_purpose_whose_only_faults_are_files_to_be_named() {
 
 #[test]
 fn clean_without_a_terminal_removes_nothing_but_with_yes() {
+    for command in [&["clean"][..], &["cache", "clean"]] {
+        cleans_with_yes_alone(command);
+    }
+}
+
+fn cleans_with_yes_alone(command: &[&str]) {
     let dir = folder("clean_asks");
     let kept = dir.join("0123.solution");
     std::fs::write(&kept, [0_u8; 1000]).unwrap();
     let path = dir.to_str().unwrap();
-    let refused = strainbridge(&["clean", path]);
+    let refused = strainbridge(&[command, &[path]].concat());
     let err = text(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2), "{err}");
     assert!(err.contains(path) && err.contains("--yes"), "{err}");
     assert!(kept.is_file());
-    let done = strainbridge(&["clean", path, "--yes"]);
+    let done = strainbridge(&[command, &[path, "--yes"]].concat());
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert!(!kept.exists());
 }

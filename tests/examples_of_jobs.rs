@@ -1,5 +1,8 @@
 //! The jobs in `examples/`: each runs, and comes to what its data were made of (`examples/make_data.py`).
 
+mod console;
+
+use console::{assert_fits, assert_states_summary};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -20,6 +23,8 @@ fn run(command: &str, folder: &str, files: &[&str]) -> Value {
         .unwrap();
     let error = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(0), "{command} {files:?}\n{error}");
+    assert_fits(&done, command);
+    assert_states_summary(&done, &out, command);
     serde_json::from_str(&std::fs::read_to_string(out.join("result.json")).unwrap()).unwrap()
 }
 
@@ -229,6 +234,108 @@ fn masses_springs_and_dampers_of_the_oscillator_and_the_rig_lie_in_their_interva
             let away = (number(&p["value"]) - value).abs();
             assert!(away < 2.0 * 1.96 * number(&p["sigma"]), "{job}: {p}");
             assert!(number(&p["sigma"]) < 1e-3 * value, "{job}: {p}");
+        }
+    }
+}
+
+/// Names of the loads of a large job.
+fn many_loads() -> Vec<String> {
+    (1..40).map(|l| format!("W{l:02}.FZ")).collect()
+}
+
+/// Writes a job with 40 gauges, 39 loads and so many runs, whose strain is that of known loads and a noise of half a microstrain.
+fn write_large_job(folder: &Path, runs: usize) {
+    let _ = std::fs::remove_dir_all(folder);
+    std::fs::create_dir_all(folder).unwrap();
+    let loads = many_loads();
+    let mut state = 7u64;
+    let mut random = || {
+        // Numerical Recipes' linear congruential generator, -1 to 1.
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223) % (1 << 32);
+        state as f64 / f64::from(1u32 << 31) - 1.0
+    };
+    // Each gauge reads one load most.
+    let mut entry = |g: usize, l: usize| random() + if g == l { 20.0 } else { 0.0 };
+    let s: Vec<Vec<f64>> = (0..40)
+        .map(|g| (0..39).map(|l| entry(g, l)).collect())
+        .collect();
+    let cells = |row: &[f64]| {
+        row.iter()
+            .map(|v| format!("{v:.6}"))
+            .collect::<Vec<_>>()
+            .join(",")
+    };
+    let mut text = format!("gauge,{}\n", loads.join(","));
+    for (g, row) in s.iter().enumerate() {
+        text += &format!("G{g:02},{}\n", cells(row));
+    }
+    std::fs::write(folder.join("s.csv"), text).unwrap();
+    let gauges: Vec<String> = (0..40).map(|g| format!("G{g:02}")).collect();
+    let mut text = format!("run,{}\n", gauges.join(","));
+    for r in 0..runs {
+        let force = |l: usize| 20.0 + ((r * 7 + l * 3) % 11) as f64;
+        let reading = |row: &Vec<f64>| {
+            let strain = row.iter().enumerate().map(|(l, s)| s * force(l));
+            strain.sum::<f64>() + 0.5 * random()
+        };
+        let row: Vec<f64> = s.iter().map(reading).collect();
+        text += &format!("R{:02},{}\n", r + 1, cells(&row));
+    }
+    std::fs::write(folder.join("strain.csv"), text).unwrap();
+    let mut job = String::from(
+        "title = \"Many wheels\"\nunits = \"m-kg-s\"\nreport_units = { force = \"kN\", moment = \"kN m\" }\n\
+         [sensitivity]\nfile = \"s.csv\"\nper = { force = \"kN\" }\n\
+         [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 1.0\n\
+         [study]\nlayouts = [\"given\"]\ngauges = [40]\nerrors = [{ kind = \"absolute-normal\", size = 1.0 }]\ntrials = 20\nseed = 1\n",
+    );
+    for l in &loads {
+        job += &format!("[[load]]\nname = \"{l}\"\nexpected = 25000.0\n");
+    }
+    std::fs::write(folder.join("job.toml"), job).unwrap();
+}
+
+/// Runs a command on the large job in a locale.
+fn on_large_job(command: &str, folder: &Path, locale: &str) -> std::process::Output {
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args([command, "job.toml", "--out", command])
+        .env("LC_ALL", locale)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&done.stderr);
+    assert!(done.status.code() < Some(2), "{command}\n{error}");
+    done
+}
+
+#[test]
+fn the_console_names_each_of_39_loads_with_its_interval_in_25_lines() {
+    for (runs, plus_minus, locale) in [(1, "±", "C.UTF-8"), (60, "+-", "C")] {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("many-loads-{runs}"));
+        write_large_job(&folder, runs);
+        for command in ["check", "sensitivity", "recover", "study"] {
+            let done = on_large_job(command, &folder, locale);
+            assert_fits(&done, command);
+            assert_states_summary(&done, &folder.join(command), command);
+            let said = String::from_utf8_lossy(&done.stdout);
+            assert_eq!(
+                said.is_ascii(),
+                locale == "C" || !said.contains('±'),
+                "{said}"
+            );
+            if command == "check" {
+                continue;
+            }
+            for load in many_loads() {
+                let after = said.split_once(&load).map(|s| s.1);
+                let after = after.unwrap_or_else(|| panic!("{command} {load}\n{said}"));
+                // Up to the next load of the line.
+                let own = after.lines().next().unwrap().split('W').next().unwrap();
+                let has_interval = own.contains(plus_minus);
+                assert!(
+                    has_interval || command == "sensitivity",
+                    "{load}: {own}\n{said}"
+                );
+            }
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The guide in `docs/`: every command in a `sh` box is run, in order, in one folder; files that a page names are there afterwards.
 
+mod console;
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;
 
@@ -58,6 +59,13 @@ fn run(line: &str, folder: &Path) {
         .map_or(0, |(_, n)| n.trim().parse().unwrap());
     let error = String::from_utf8_lossy(&done.stderr);
     assert_eq!(done.status.code(), Some(expected), "{line}\n{error}");
+    if expected < 2
+        && !["--json", "--list", "--verbose", " schema"]
+            .iter()
+            .any(|o| line.contains(o))
+    {
+        console::assert_fits(&done, line);
+    }
     if !target.trim().is_empty() {
         std::fs::write(folder.join(target.trim()), &done.stdout).unwrap();
     }

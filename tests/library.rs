@@ -132,6 +132,43 @@ fn the_planned_sigma_is_the_recovered_one_at_the_expected_loads() {
     }
 }
 
+/// Installed gauges at the chosen places have the sigmas of the chosen ones, with and without the tolerances of gluing.
+#[test]
+fn an_installed_layout_has_the_sigmas_of_the_same_chosen_one() {
+    let all = "angle_tolerance_deg = 2.0\nposition_tolerance = 2.0\ngauge_factor_rel = 0.01\nmodel_uncertainty_rel = 0.05\n";
+    for tolerances in [
+        all,
+        "angle_tolerance_deg = 2.0\n",
+        "position_tolerance = 2.0\n",
+        "gauge_factor_rel = 0.02\n",
+    ] {
+        let text = format!("{JOB}spacing = 15.0\nnoise_microstrain = 1.0\n{tolerances}");
+        let plan = files().with("plan.toml", &*text);
+        let job = Job::read("plan.toml", &plan).unwrap();
+        let chosen = place(&job, &Context::new(&plan)).unwrap();
+        let gauges = chosen.gauges.iter().map(|g| {
+            let [x, y, z] = g.direction;
+            format!(
+                "[[gauge]]\nname = \"{}\"\nelement = {}\nsurface = \"{}\"\ndirection = [{x}, {y}, {z}]\n",
+                g.name, g.element, g.surface
+            )
+        });
+        let both = files().with("both.toml", text.clone() + &gauges.collect::<String>());
+        let job = Job::read("both.toml", &both).unwrap();
+        let again = place(&job, &Context::new(&both)).unwrap();
+        let installed = again.installed.as_ref().unwrap().quality.as_ref().unwrap();
+        assert_eq!(installed.load_sigma.len(), chosen.load_sigma.len());
+        for (a, b) in installed.load_sigma.iter().zip(&chosen.load_sigma) {
+            // Directions are written with all digits; the least squares of the loads take a few.
+            let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-6;
+            assert!(near(a.sigma, b.sigma), "{tolerances}: {a:?} {b:?}");
+            let glued = [a, b].map(|l| l.sigma_as_glued.unwrap());
+            assert!(near(glued[0], glued[1]), "{tolerances}: {a:?} {b:?}");
+            assert!(glued[0] > a.sigma, "{tolerances}: {a:?}");
+        }
+    }
+}
+
 #[test]
 fn faults_come_with_file_line_and_remedy() {
     let files = InMemory::default().with("job.toml", "units = \"furlong\"\n");

@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use strainbridge::host::outcome::Answer;
-use strainbridge::report::command::{Report, save, unsaved};
+use strainbridge::report::command::{Report, save, unsaved, words};
 use strainbridge::report::notebook::piece;
 use strainbridge::sensitivity::Sensitivity;
 use strainbridge::workflow::calibrate::Calibrated;
@@ -121,7 +121,7 @@ pub(crate) struct AnyOutcome {
     /// The text of `result.json`, without the tables that only files have.
     #[pyo3(get)]
     json: String,
-    /// What a person reads of it on a terminal.
+    /// Table and summary as on a terminal.
     #[pyo3(get)]
     words: String,
     /// What is worth knowing of the way.
@@ -163,7 +163,7 @@ where
 {
     Ok(AnyOutcome {
         json: unsaved(&outcome)?,
-        words: outcome.words(),
+        words: words(&outcome),
         notes: outcome.notes.clone(),
         kept: Mutex::new(keep(outcome)),
     })

@@ -1,9 +1,13 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
+use super::common_zero::{extended, reduced, zero_of};
 use super::exchanged::Exchanged;
 use super::state::State;
-use super::types::{Calibration, Coverage, LeftOut, ModelError, Task};
-use super::{exchanged, glued, held_out, recorded, runs, shift, undetermined};
+use super::types::{CalibratedRange, Calibration, CommonZero, Coverage, LeftOut, ModelError, Task};
+use super::{
+    exchanged, excluded, glued, held_out, identical, lack_of_fit, recorded, runs, shift,
+    undetermined,
+};
 use crate::finding::{Finding, Severity};
 
 /// Share of the runs that may be refused: with more, it is not the runs that are wrong.
@@ -25,6 +29,17 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     if readings.clone().all(|v| *v == 0.0) {
         return Err("the strain of all runs of known load is zero".to_owned());
     }
+    match task.common_zero {
+        CommonZero::Sought => {
+            let found = calibrate_columns(&extended(task))?;
+            Ok(reduced(found, task.loads.len()))
+        }
+        CommonZero::None | CommonZero::Column => calibrate_columns(task),
+    }
+}
+
+/// The same with the common zero, where one is sought, as a column.
+fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     let mut fitted = Fitted::of(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);
     let mut wrongly_wired = shift::wrongly_wired(&shifts);
@@ -35,13 +50,22 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         wrongly_wired = shift::wrongly_wired(&shifts);
     }
     let Fitted {
-        state,
-        left_out,
+        mut state,
+        mut left_out,
         refused,
         exchanged,
     } = fitted;
+    let lack = lack_of_fit::check(task, &state);
+    if !lack.covariance.is_empty() {
+        state.lack = lack.covariance;
+        left_out = held_out::leave_out(task, &state);
+    }
     let judged = held_out::judge(&left_out, state.scatter.dof);
-    let sensitivity = state.sensitivity(task, judged.factor);
+    let mut sensitivity = state.sensitivity(task, judged.factor);
+    if let Some(uncertainty) = &mut sensitivity.uncertainty {
+        uncertainty.is_tested = !left_out.is_empty();
+        uncertainty.add_common_scale(&sensitivity.values, task.scale_sd);
+    }
     let undetermined = undetermined::check(task, &state);
     let model_error = state.error_evidence.as_ref();
     let model_error = model_error.map(|e| e.most_probable(&wrongly_wired));
@@ -50,6 +74,12 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
         .map(|e| exchanged::finding(task, e))
         .collect();
     findings.extend(runs::findings(task, &left_out, &refused));
+    findings.extend(lack.findings);
+    findings.extend(identical::findings(task));
+    let gone = exchanged.iter().filter(|e| e.certain).count() * 2 + refused.len();
+    let suspect = held_out::suspects(&left_out).len();
+    findings.extend(excluded::too_many(gone + suspect, task.runs.len()));
+    findings.extend(excluded::held_too_few(&judged));
     findings.extend(statements(task, &state, model_error, &judged, &left_out));
     findings.extend(undetermined::findings(task, &undetermined));
     if undetermined.is_empty() || task.model.is_some() {
@@ -65,6 +95,12 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     let signal = state.lefts.iter().map(|l| l.q2).sum::<f64>() / state.lefts.len().max(1) as f64;
     Ok(Calibration {
         sensitivity,
+        common_zero: match task.is_extended() {
+            true => zero_of(task, &state.posterior),
+            false => Vec::new(),
+        },
+        lack_of_fit: lack.answer,
+        range: CalibratedRange::of(task, &state.used),
         model_error,
         shifts,
         as_glued: glued::as_glued(task, &state, model_error),
@@ -195,10 +231,10 @@ fn statements(
     }
     if left_out.is_empty() {
         out.push(Finding::new(
-            Severity::Warning,
+            Severity::Error,
             "coverage-not-tested",
             "calibration",
-            "no run can be left out: each one is needed to determine S, so that nothing checks the intervals",
+            "no run can be left out: each one is needed to determine S. The runs show nothing of the scatter, and the intervals do not include it",
             "add runs; repeats of one loading are the cheapest",
         ));
     }

@@ -1,5 +1,6 @@
 //! Runs left out one by one: their loads recovered by what the others taught, held against what is known.
 
+use super::common_zero::{less_zero, zero_of};
 use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
@@ -88,10 +89,15 @@ pub(super) fn against(
         }
     }
     let dof = scatter.dof;
-    let s = sensitivity_of(task, &state.scales, &posterior, &scatter, 1.0);
+    let s = sensitivity_of(
+        task,
+        (&state.scales, &posterior, &scatter),
+        1.0,
+        &state.lack,
+    );
     let readings = Readings {
         run: run.run.clone(),
-        strain: run.strain.clone(),
+        strain: less_zero(&run.strain, &zero_of(task, &posterior)),
         noise_factor: run.noise_factor,
     };
     let errors = ErrorModel {
@@ -99,7 +105,8 @@ pub(super) fn against(
         model_rel: 0.0,
     };
     let found = estimate(&s, &readings, errors);
-    let k = task.loads.len();
+    let k = s.loads.len();
+    let loads = &loads.first(k);
     if found.rank < k {
         return None;
     }
@@ -110,7 +117,7 @@ pub(super) fn against(
         found.estimate.covariance[at] + loads.covariance[at]
     };
     let covariance: Vec<f64> = (0..w * w).map(entry).collect();
-    let told = Told::of(loads, &wanted, &state.scales);
+    let told = Told::of(loads, &wanted, &state.scales[..k]);
     if told.combinations == 0 {
         return None;
     }
@@ -269,8 +276,23 @@ fn expected_ratio(dof: f64) -> f64 {
     }
 }
 
-/// Tally and factor. The factor is 1 where left-out runs are no farther off than expected, the loads each by itself and each sum;
-/// else the root of the largest ratio.
+/// Factor where scatter was learnt: few left-out runs that are far off need not be significantly so. The variance of intervals over that of the
+/// scatter is its posterior mean, of `dof` degrees of freedom with which the scatter is known and says 1, and of the left-out runs, whose largest mean
+/// square is `z2`: `(dof + runs z2) / (dof + runs)`, at least 1. The more runs, the less it adds to the test of [`judge`].
+///
+/// # Reference
+/// A. Gelman and others, Bayesian Data Analysis (3rd ed., 2013), section 2.6: a variance with a scaled inverse chi-square prior.
+fn few_runs(scores: &[(f64, f64)], runs: usize, dof: f64) -> f64 {
+    if !dof.is_finite() {
+        return 1.0;
+    }
+    let z2 = scores.iter().map(|s| s.0).fold(0.0, f64::max);
+    let runs = runs as f64;
+    ((dof + runs * z2) / (dof + runs)).max(1.0).sqrt()
+}
+
+/// Tally and factor. The factor is that of few runs, or where left-out runs are farther off than expected, the loads each by itself or a sum, the
+/// root of the largest ratio.
 pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
     let suspect = suspects(left_out);
     let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
@@ -289,7 +311,7 @@ pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
         .iter()
         .filter(|s| s.1 < limit)
         .map(|s| s.0.sqrt())
-        .fold(1.0, f64::max);
+        .fold(few_runs(&scores, kept().count(), dof), f64::max);
     let held = left_out
         .iter()
         .filter(|l| l.distance <= factor * factor * region(l.loads, dof))

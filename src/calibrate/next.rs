@@ -83,6 +83,8 @@ fn tried(
         covariance: Vec::new(),
         scatter: known.scatter.clone(),
         mean_square: known.mean_square.clone(),
+        additive: known.additive.clone(),
+        center: Vec::new(),
         ..*known
     }
     .strain_covariance(n, f);
@@ -182,6 +184,8 @@ fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize, covariance: &[f64
             covariance: Vec::new(),
             scatter: covariance.iter().map(|c| c / q2).collect(),
             mean_square: known.mean_square.clone(),
+            additive: known.additive.clone(),
+            center: Vec::new(),
             ..*known
         }),
     };

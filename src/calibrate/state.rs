@@ -1,5 +1,6 @@
 //! One fit of all used runs: posterior of S, error of the model, scatter of repeats and corrected loads in turn.
 
+use super::common_zero::{Centred, less_zero, zero_of};
 use super::given_others;
 use super::known::correct;
 use super::model_error::{ErrorEvidence, error_evidence as learn_error};
@@ -44,6 +45,8 @@ pub(super) struct State {
     pub error_evidence: Option<ErrorEvidence>,
     /// Gauges that are wired wrongly: they say nothing of the model.
     pub wrongly_wired: Vec<usize>,
+    /// Covariance of readings at any load from terms that the model lacks, `n x n` by rows; empty where none is found.
+    pub lack: Vec<f64>,
 }
 
 impl State {
@@ -117,6 +120,7 @@ impl State {
                 row_errors: row_errors.unwrap_or_default(),
                 error_evidence,
                 wrongly_wired: wrongly_wired.to_vec(),
+                lack: Vec::new(),
             });
         }
         state
@@ -124,7 +128,8 @@ impl State {
 
     /// S with its uncertainty, in job units of load.
     pub fn sensitivity(&self, task: &Task, factor: f64) -> Sensitivity {
-        let mut s = sensitivity_of(task, &self.scales, &self.posterior, &self.scatter, factor);
+        let of = (&self.scales[..], &self.posterior, &self.scatter);
+        let mut s = sensitivity_of(task, of, factor, &self.lack);
         if let Some(uncertainty) = &mut s.uncertainty {
             uncertainty.one_by_one = self.is_one_by_one(task);
         }
@@ -137,40 +142,56 @@ impl State {
         let acts = |run: &KnownRun, l: usize| {
             run.loads.mean[l] != 0.0 || run.loads.covariance[l * k + l] > 0.0
         };
-        let alone = |r: &usize| (0..k).filter(|&l| acts(&task.runs[*r], l)).count() <= 1;
+        let own = task.own_loads();
+        let alone = |r: &usize| (0..own).filter(|&l| acts(&task.runs[*r], l)).count() <= 1;
         task.model.is_none() && self.scatter.dof.is_finite() && self.used.iter().all(alone)
     }
 }
 
-/// S of a posterior with what stands behind its intervals, in job units of load.
+/// S of a posterior, for the loads of the job and readings less the common zero, with what stands behind its intervals, in job units of load;
+/// `lack` as [`State::lack`].
 pub(super) fn sensitivity_of(
     task: &Task,
-    scales: &[f64],
-    posterior: &Posterior,
-    scatter: &Scatter,
+    (scales, posterior, scatter): (&[f64], &Posterior, &Scatter),
     factor: f64,
+    lack: &[f64],
 ) -> Sensitivity {
-    let (n, k) = (posterior.n, posterior.k);
-    let order = n * k;
-    let values = Matrix::from_fn(n, k, |g, l| posterior.mean[g * k + l] / scales[l]);
-    let of_entry: Vec<f64> = (0..order).map(|e| scales[e % k]).collect();
-    let mut covariance = posterior.covariance.clone();
-    for (row, a) in covariance.chunks_exact_mut(order.max(1)).zip(&of_entry) {
-        for (c, b) in row.iter_mut().zip(&of_entry) {
-            *c /= a * b;
-        }
+    let (n, all) = (posterior.n, posterior.k);
+    let k = task.own_loads();
+    let order = n * all;
+    let values = Matrix::from_fn(n, k, |g, l| posterior.mean[g * all + l] / scales[l]);
+    let entries = || (0..n).flat_map(|g| (0..k).map(move |l| (g * all + l, scales[l])));
+    let covariance = entries().flat_map(|(e, a)| {
+        entries().map(move |(f, b)| posterior.covariance[e * order + f] / (a * b))
+    });
+    let mut additive = lack.to_vec();
+    let mut center = Vec::new();
+    if task.is_extended() {
+        let centred = Centred::of(posterior);
+        center = centred
+            .center
+            .iter()
+            .zip(scales)
+            .map(|(c, s)| c * s)
+            .collect();
+        additive.resize(n * n, 0.0);
+        let both = additive.iter_mut().zip(&centred.covariance);
+        both.for_each(|(a, c)| *a += c);
     }
     Sensitivity {
         gauges: task.gauges.clone(),
-        loads: task.loads.clone(),
+        loads: task.loads[..k].to_vec(),
         uncertainty: Some(Uncertainty {
-            covariance,
+            covariance: covariance.collect(),
             scatter: scatter.covariance.clone(),
             mean_square: mean_square(&values),
             scale: factor,
             dof: scatter.dof,
             dof_outside: scatter.dof_outside,
             one_by_one: false,
+            additive,
+            center,
+            is_tested: true,
         }),
         values,
     }
@@ -304,6 +325,7 @@ fn equation(
 /// What a run leaves at loads `phi`.
 pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f64]) -> Left {
     let predicted = posterior.predict(phi);
+    let of_loads = less_zero(&predicted, &zero_of(task, posterior));
     let n = predicted.len();
     let noise = task.noise * task.noise * run.noise_factor;
     Left {
@@ -313,7 +335,7 @@ pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f6
             .zip(&predicted)
             .map(|(y, p)| y - p)
             .collect(),
-        q2: predicted.iter().map(|p| p * p).sum::<f64>() / n.max(1) as f64,
+        q2: of_loads.iter().map(|p| p * p).sum::<f64>() / n.max(1) as f64,
         explained: vec![noise.max(f64::MIN_POSITIVE); n],
         group: run.group,
     }

@@ -94,6 +94,18 @@ pub struct Move {
     pub at: Vec<f64>,
 }
 
+/// Strain without load in a task.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CommonZero {
+    /// None: `eps = S f`.
+    #[default]
+    None,
+    /// To be found: `eps = S f + z`.
+    Sought,
+    /// The last column of the task, for a load that is 1 in every run: how a calibration holds it inside.
+    Column,
+}
+
 /// What to calibrate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Task {
@@ -109,6 +121,69 @@ pub struct Task {
     pub runs: Vec<KnownRun>,
     /// Sums of loads whose intervals count too when runs are left out: coefficients by load.
     pub sums: Vec<Vec<f64>>,
+    /// Strain that gauges read without load, alike in all runs.
+    pub common_zero: CommonZero,
+    /// Relative error, 1 sd, that the known loads of all runs share.
+    pub scale_sd: f64,
+}
+
+/// Smallest and largest value of the calibration runs by column; not a number where no run has one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CalibratedRange {
+    /// Known load, job units.
+    pub loads: Vec<[f64; 2]>,
+    /// Reading by gauge, strain.
+    pub strain: Vec<[f64; 2]>,
+}
+
+/// Test of the linear model against further terms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LackOfFit {
+    /// By kind of term; empty where runs are too few.
+    pub tests: Vec<TermTest>,
+    /// Root mean square error of left-out runs over the largest load, over all loads: of a straight line through zero and of one with a common
+    /// zero, both by least squares; `None` where runs are too few.
+    pub held_out: Option<HeldOutError>,
+}
+
+/// Kind of term that is tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Term {
+    /// Strain without load.
+    CommonZero,
+    /// Squares of loads.
+    Squares,
+    /// Products of two loads.
+    Products,
+}
+
+impl Term {
+    /// As in result.json.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CommonZero => "common zero",
+            Self::Squares => "squares",
+            Self::Products => "products",
+        }
+    }
+}
+
+/// Test of one kind of term.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TermTest {
+    /// Which.
+    pub term: Term,
+    /// Chance of a term at least as clear, over all gauges and terms of its kind, where there is none.
+    pub p: f64,
+}
+
+/// See [`LackOfFit::held_out`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HeldOutError {
+    /// `eps = S f`.
+    pub linear: f64,
+    /// `eps = S f + z`.
+    pub intercept: f64,
 }
 
 /// How many left-out runs lay within their 95 % regions.
@@ -138,6 +213,10 @@ pub struct Calibration {
     pub sensitivity: Sensitivity,
     /// Relative error of the model as used: stated, corrected by what the runs say; `None` without a model.
     pub model_error: Option<ModelError>,
+    /// Strain without load, by gauge; empty for a model through zero. S and its intervals are those of readings less it.
+    pub common_zero: Vec<f64>,
+    /// Tests of further terms.
+    pub lack_of_fit: LackOfFit,
     /// By gauge: how far it moved.
     pub shifts: Vec<GaugeShift>,
     /// By gauge: where it sits; empty where no tolerance is stated.
@@ -152,6 +231,8 @@ pub struct Calibration {
     pub coverage: Coverage,
     /// Runs that contradict the others beyond doubt and were not used, by number.
     pub refused: Vec<usize>,
+    /// Range of the loads and readings of the runs that were used.
+    pub range: CalibratedRange,
     /// Combinations of loads that no run determines.
     pub undetermined: Vec<Undetermined>,
     /// What was noticed.

@@ -1,5 +1,6 @@
 //! Combinations of loads that no run has shown: known from the model only, or not at all.
 
+use super::common_zero::{less_zero, zero_of};
 use super::start::is_known;
 use super::state::State;
 use super::types::{KnownRun, Task, Undetermined};
@@ -134,15 +135,16 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
     let used: Vec<&KnownRun> = (state.used.iter())
         .filter_map(|r| task.runs.get(*r))
         .collect();
+    let zero = zero_of(task, &state.posterior);
     let recovered = used.iter().map(|run| {
         let readings = Readings {
             run: run.run.clone(),
-            strain: run.strain.clone(),
+            strain: less_zero(&run.strain, &zero),
             noise_factor: run.noise_factor,
         };
         estimate(s, &readings, errors)
     });
-    let k = task.loads.len();
+    let k = s.loads.len();
     let (told, untold): (Vec<_>, Vec<_>) = recovered.partition(|r| r.rank == k);
     let unsolved = untold.len();
     let told: Vec<&LoadEstimate> = told.iter().map(|r| &r.estimate).collect();
@@ -206,8 +208,9 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
 
 /// The task's sums of loads that are told to better than [`WIDE`] in half of the runs, in words.
 fn told_sums(task: &Task, runs: &[&LoadEstimate]) -> String {
-    let k = task.loads.len();
+    let k = task.own_loads();
     let width = |terms: &[f64]| -> f64 {
+        let terms = &terms[..k];
         let one = |e: &&LoadEstimate| {
             let entry = |i: usize| terms[i / k] * terms[i % k] * e.covariance[(i / k) * k + i % k];
             let variance: f64 = (0..k * k).map(entry).sum();

@@ -138,7 +138,10 @@ pub enum Command {
         after_help = "Example:\n  strainbridge verify job.out    # exit code 1: something differs"
     )]
     Verify(VerifyArguments),
-    /// Remove kept solutions of the built-in solver
+    /// Remove what strainbridge keeps between runs
+    #[command(after_help = "Example:\n  strainbridge cache clean --yes")]
+    Cache(CacheArguments),
+    /// Remove kept solutions of the built-in solver: short for `cache clean`
     #[command(after_help = "Example:\n  strainbridge clean --yes")]
     Clean(CleanArguments),
     /// What a finding means: cause, limit, remedy, an example
@@ -241,6 +244,22 @@ pub struct VerifyArguments {
     /// What every command takes.
     #[command(flatten)]
     pub common: CommonArguments,
+}
+
+/// What is done with kept solutions.
+#[derive(clap::Args, Debug)]
+pub struct CacheArguments {
+    /// The task
+    #[command(subcommand)]
+    pub task: CacheTask,
+}
+
+/// Tasks on kept solutions.
+#[derive(clap::Subcommand, Debug)]
+pub enum CacheTask {
+    /// Remove kept solutions of the built-in solver
+    #[command(after_help = "Example:\n  strainbridge cache clean --yes")]
+    Clean(CleanArguments),
 }
 
 /// What is removed.

@@ -2,9 +2,10 @@
 
 use super::arguments::ExplainArguments;
 use super::run::refuse;
-use super::voice::print;
+use super::voice::{Voice, print};
 use crate::finding::explain::Code;
 use crate::host::output::Output;
+use crate::report::console::wrapped;
 use crate::report::reference;
 use crate::workflow;
 use std::path::Path;
@@ -19,7 +20,10 @@ pub(super) fn explain(a: &ExplainArguments) -> ExitCode {
     match (&a.code, a.common.json) {
         (Some(code), json) => match workflow::explain::explain(code) {
             Ok(entry) if json => print_json(entry),
-            Ok(entry) => print(words(entry).as_bytes()),
+            Ok(entry) => {
+                let voice = Voice::of(&a.common);
+                voice.print_lines(&entry_lines(entry, voice.width()))
+            }
             Err(faults) => refuse(&faults, &a.common),
         },
         (None, true) => print_json(&all),
@@ -34,17 +38,27 @@ fn print_json(value: &impl serde::Serialize) -> ExitCode {
 }
 
 /// An entry as a page for a terminal.
-fn words(c: &Code) -> String {
-    format!(
-        "{}: {}, from {}\n\n  cause    {}\n  limit    {}\n  remedy   {}\n  example  {}\n",
-        c.code,
-        c.severities(),
-        c.said_by,
-        c.cause,
-        c.limit,
-        c.remedy,
-        c.example
-    )
+fn entry_lines(c: &Code, width: usize) -> Vec<String> {
+    let head = format!("{}: {}, from {}", c.code, c.severities(), c.said_by);
+    let fields = [
+        ("cause", c.cause),
+        ("limit", c.limit),
+        ("remedy", c.remedy),
+        ("example", c.example),
+    ];
+    let field = |(name, text): (&str, &str)| {
+        // Names and texts stand in two columns.
+        let lines = wrapped(text, width.saturating_sub(11), 0);
+        let at = |(i, line): (usize, String)| match i {
+            0 => format!("  {name:<7}  {line}"),
+            _ => format!("{}{line}", " ".repeat(11)),
+        };
+        lines.into_iter().enumerate().map(at).collect::<Vec<_>>()
+    };
+    let mut lines = wrapped(&head, width, 2);
+    lines.push(String::new());
+    lines.extend(fields.into_iter().flat_map(field));
+    lines
 }
 
 /// A line a code.

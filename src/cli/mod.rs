@@ -128,7 +128,10 @@ pub fn run(arguments: Arguments) -> ExitCode {
             Run::of(&a.common, &a.job).job(&a.job, workflow::identify::identify)
         }
         Command::Verify(a) => upkeep::verify(&a),
-        Command::Clean(a) => upkeep::clean(&a),
+        Command::Cache(CacheArguments {
+            task: CacheTask::Clean(a),
+        })
+        | Command::Clean(a) => upkeep::clean(&a),
         Command::Explain(a) => explain::explain(&a),
         Command::Man(a) => manual::man(&a),
         Command::Schema => print(job::schema::job_schema().as_bytes()),

@@ -6,11 +6,14 @@ use super::{CommonArguments, InitArguments};
 use crate::finding::Severity;
 use crate::host::context::{Context, Disk};
 use crate::host::fault::{Fault, Faults};
-use crate::host::outcome::{Answer, Findings, Outcome, Seconds};
+use crate::host::outcome::{Answer, Outcome};
 use crate::host::output::{Output, left_by_others};
 use crate::host::store::Folder;
 use crate::job::Job;
-use crate::report::command::{RecordFolder, Report, check_folder, finish, save, unsaved};
+use crate::report::command::{
+    RecordFolder, Report, check_folder, console_of, finish, save, unsaved,
+};
+use crate::report::console::Texts;
 use crate::workflow::check::{Checked, check};
 use crate::workflow::init::{init, init_for};
 use crate::workflow::recover::{Recovered, recover_into};
@@ -24,19 +27,6 @@ const STACK: usize = 8 << 20;
 pub(super) struct Run {
     common: CommonArguments,
     store: Option<Folder>,
-}
-
-/// What a command leaves to be said.
-struct Said<'a> {
-    text: &'a str,
-    json: &'a str,
-    findings: &'a Findings,
-    notes: &'a [String],
-    seconds: &'a Seconds,
-    folder: Option<&'a Path>,
-    /// What other commands left in it.
-    beside: Option<String>,
-    faults: &'a [Fault],
 }
 
 impl Run {
@@ -110,7 +100,7 @@ impl Run {
             let json = save(&outcome, folder)?;
             Ok((outcome, json))
         });
-        self.told(done, Some(folder))
+        self.print(done, Some(folder))
     }
 
     /// Recovers the loads of a job into `--out`, else `<job name>.out` beside the job; those of a record are written as they come.
@@ -120,7 +110,7 @@ impl Run {
             check_folder::<Recovered>(&folder)?;
             recover_and_save(&Job::read(path, cx.files)?, cx, &folder)
         });
-        self.told(done, Some(&folder))
+        self.print(done, Some(&folder))
     }
 
     /// Checks files: written only with `--out`; their faults are part of the answer.
@@ -135,7 +125,7 @@ impl Run {
             };
             Ok((outcome, json))
         });
-        self.told_with(done, folder, |checked| &checked.faults)
+        self.print(done, folder)
     }
 
     /// Writes a job from files: alone into the current folder, with `result.json` into `--out`.
@@ -160,7 +150,7 @@ impl Run {
             };
             Ok((outcome, json))
         });
-        self.told(done, self.common.out.as_deref())
+        self.print(done, self.common.out.as_deref())
     }
 
     /// Asks a question that writes only into `--out`, where that names a folder.
@@ -182,7 +172,7 @@ impl Run {
             };
             Ok((outcome, json))
         });
-        self.told(done, out)
+        self.print(done, out)
     }
 
     /// Work on the asked number of threads. It begins on a thread of the pool: from outside, each of a factorisation's many small
@@ -215,8 +205,8 @@ impl Run {
         pool.install(|| work(&cx))
     }
 
-    /// Says an outcome whose files are in `folder`, or its faults.
-    fn told<A: Answer>(
+    /// Prints an outcome whose files are in `folder`, or its faults.
+    fn print<A: Answer>(
         &self,
         done: Result<(Outcome<A>, String), Faults>,
         folder: Option<&Path>,
@@ -224,50 +214,35 @@ impl Run {
     where
         Outcome<A>: Report,
     {
-        self.told_with(done, folder, |_| &[])
-    }
-
-    /// The same for an outcome that may hold faults.
-    fn told_with<A: Answer>(
-        &self,
-        done: Result<(Outcome<A>, String), Faults>,
-        folder: Option<&Path>,
-        faults: impl Fn(&A) -> &[Fault],
-    ) -> ExitCode
-    where
-        Outcome<A>: Report,
-    {
-        match done {
-            Ok((outcome, json)) => self.say(&Said {
-                text: &outcome.words(),
-                json: &json,
-                findings: &outcome.findings,
-                notes: &outcome.notes,
-                seconds: &outcome.seconds,
-                folder,
-                beside: folder.and_then(|f| left_by_others(f, A::COMMAND)),
-                faults: faults(&outcome.answer),
-            }),
-            Err(faults) => refuse(&faults, &self.common),
-        }
-    }
-
-    fn say(&self, said: &Said) -> ExitCode {
+        let (outcome, json) = match done {
+            Ok(done) => done,
+            Err(faults) => return refuse(&faults, &self.common),
+        };
+        let console = console_of(&outcome);
+        let others = folder.and_then(|f| left_by_others(f, A::COMMAND));
+        let notes: Vec<String> = outcome.notes.iter().cloned().chain(others).collect();
+        let files = ["report.html"].into_iter().chain(console.file);
+        let paths = files.filter_map(|file| {
+            let path = folder?.join(file);
+            path.is_file().then(|| path.display().to_string())
+        });
+        let paths: Vec<String> = paths.collect();
+        let texts = Texts {
+            summary: &outcome.summary(),
+            findings: &outcome.findings,
+            notes: &notes,
+            paths: &paths,
+        };
         let voice = Voice::of(&self.common);
-        let is_told = voice.answer(said.text, said.json);
-        voice.findings(said.findings);
-        let notes = said.notes.iter().map(|note| format!("note: {note}"));
-        let written = said.folder.map(|f| format!("written to `{}`", f.display()));
-        let beside = said.beside.as_ref().map(|b| format!("note: {b}"));
-        let lines: Vec<String> = notes.chain(beside).chain(written).collect();
-        voice.notes(lines.iter().map(String::as_str));
-        voice.seconds(said.seconds);
-        if !said.faults.is_empty() {
-            voice.fault_lines(said.faults);
+        let is_printed = voice.outcome(&console, &texts, &json);
+        voice.seconds(&outcome.seconds);
+        let faults = outcome.answer.faults();
+        if !faults.is_empty() {
+            voice.fault_lines(faults);
             return ExitCode::from(2);
         }
-        match said.findings.worst() {
-            _ if !is_told => ExitCode::from(2),
+        match outcome.findings.worst() {
+            _ if !is_printed => ExitCode::from(2),
             Some(Severity::Error) => ExitCode::from(1),
             _ => ExitCode::SUCCESS,
         }
@@ -303,6 +278,6 @@ fn default_folder(main_input: &Path) -> PathBuf {
 pub(super) fn refuse(faults: &Faults, common: &CommonArguments) -> ExitCode {
     let voice = Voice::of(common);
     voice.faults(faults);
-    voice.notes(["nothing was written"]);
+    voice.note("nothing was written");
     ExitCode::from(2)
 }

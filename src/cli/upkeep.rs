@@ -5,6 +5,7 @@ use super::run::{Run, refuse};
 use super::voice::print;
 use crate::host::fault::{Fault, Faults};
 use crate::host::store::Folder;
+use crate::host::words::counted;
 use crate::workflow::verify::Made;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -85,17 +86,14 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
     let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
     let shown = folder.path().display().to_string();
     let (n, bytes) = folder.size();
-    let what = format!(
-        "{n} kept solutions in `{shown}`, {:.1} MB",
-        bytes as f64 / 1e6
-    );
-    if n > 0 && !a.yes {
+    let solutions = counted(n, "kept solution");
+    let what = format!("{solutions} in `{shown}`, {:.1} MB", bytes as f64 / 1e6);
+    if !a.yes {
         match agrees(&format!("Remove {what}?")) {
             Some(true) => {}
             Some(false) => return print(b"nothing is removed\n"),
             None => {
-                let wrong =
-                    format!("{what}: nobody is at a terminal to agree that they are removed");
+                let wrong = format!("{what}: no terminal to ask whether to remove them");
                 let fault = Fault::of(shown, "clean", wrong, "call it with `--yes`");
                 return refuse(&fault.into(), &a.common);
             }
@@ -107,12 +105,9 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             print(format!("{json:#}\n").as_bytes())
         }
         Ok((n, bytes)) => {
+            let solutions = counted(n, "kept solution");
             let megabytes = bytes as f64 / 1e6;
-            let plural = if n == 1 { "" } else { "s" };
-            print(
-                format!("{n} kept solution{plural} removed from `{shown}`, {megabytes:.1} MB\n")
-                    .as_bytes(),
-            )
+            print(format!("{solutions} removed from `{shown}`, {megabytes:.1} MB\n").as_bytes())
         }
         Err(e) => refuse(
             &Fault::of(

@@ -1,22 +1,24 @@
-//! What a command says on standard error: faults and findings one line each, quieter or louder as asked, in colour on a terminal.
+//! Texts of a command on standard output and standard error: in the width of the terminal, quieter or louder as asked, in colour on a terminal.
 
 use super::CommonArguments;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::Fault;
 use crate::host::outcome::Seconds;
-use crate::host::words::finding_text;
+use crate::report::console::{
+    Console, FindingLines, LINES, Room, Texts, WIDTH, ascii, lay_out, wrapped,
+};
 use serde_json::{Value, json};
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::process::ExitCode;
 
-/// How much is said.
+/// How much is printed.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Level {
     /// Faults, and findings of severity error.
     Quiet,
-    /// Findings, of those with one code the first.
+    /// What fits a terminal; of findings with one code the first.
     Plain,
-    /// Every finding, and seconds by stage.
+    /// Every row, every finding, and seconds by stage.
     Verbose,
 }
 
@@ -26,6 +28,7 @@ pub(super) struct Voice {
     level: Level,
     colour: bool,
     json: bool,
+    room: Room,
 }
 
 impl Voice {
@@ -42,6 +45,11 @@ impl Voice {
             level,
             colour: std::io::stderr().is_terminal() && !set("NO_COLOR") && !dumb,
             json: common.json,
+            room: Room {
+                width: width(),
+                lines: (level != Level::Verbose).then_some(LINES),
+                is_utf8: is_utf8(),
+            },
         }
     }
 
@@ -50,54 +58,75 @@ impl Voice {
         self.level == Level::Quiet
     }
 
-    /// Prints the answer to standard output: `result.json` where asked for, else words; whether it got there.
-    pub fn answer(self, words: &str, json: &str) -> bool {
+    /// Prints an outcome: table, summary and next step on standard output, findings in between on standard error. Where `result.json` is asked
+    /// for, that alone goes to standard output. Returns whether standard output could be written.
+    pub fn outcome(self, console: &Console, texts: &Texts, json: &str) -> bool {
+        let layout = match self.level {
+            Level::Quiet => {
+                let errors = texts
+                    .findings
+                    .iter()
+                    .filter(|f| f.severity == Severity::Error);
+                let errors: Vec<Finding> = errors.cloned().collect();
+                let texts = Texts {
+                    findings: &errors,
+                    ..Texts::default()
+                };
+                lay_out(&Console::default(), &texts, &self.room)
+            }
+            _ => lay_out(console, texts, &self.room),
+        };
+        let [answer, next, paths] =
+            [&layout.answer, &layout.next, &layout.paths].map(|lines| text_of(lines));
+        let findings: String = layout.findings.iter().map(|f| self.painted(f)).collect();
         match (self.json, self.level) {
-            (true, _) => is_printed(json.as_bytes()),
-            (false, Level::Quiet) => true,
-            (false, _) => is_printed(words.as_bytes()),
+            (true, _) => {
+                let printed = is_printed(json.as_bytes());
+                say(&(findings + &paths));
+                printed
+            }
+            (false, Level::Quiet) => {
+                say(&findings);
+                true
+            }
+            (false, _) => {
+                let printed = is_printed(answer.as_bytes());
+                say(&findings);
+                printed && is_printed((next + &paths).as_bytes())
+            }
         }
     }
 
-    /// Says findings, the worst first.
-    pub fn findings(self, findings: &[Finding]) {
-        let mut text = String::new();
-        for (i, f) in findings.iter().enumerate() {
-            if self.level == Level::Quiet && f.severity < Severity::Error {
-                continue;
+    /// Lines of a finding, its severity in colour.
+    fn painted(self, f: &FindingLines) -> String {
+        let text = text_of(&f.lines);
+        match f.severity {
+            Some(severity) if self.colour => {
+                let word = severity.word();
+                text.replacen(word, &format!("{}{word}\x1b[0m", colour(severity)), 1)
             }
-            let alike = |g: &&Finding| (g.severity, g.code) == (f.severity, f.code);
-            let mut more = 0;
-            if self.level != Level::Verbose {
-                if findings.iter().take(i).any(|g| alike(&g)) {
-                    continue;
-                }
-                more = findings.iter().skip(i + 1).filter(alike).count();
-            }
-            text.push_str(&self.painted(f));
-            if more > 0 {
-                text.push_str(&format!(" (and {more} more `{}`: -v lists them)", f.code));
-            }
-            text.push('\n');
-        }
-        say(&text);
-    }
-
-    /// One finding, its severity in colour.
-    fn painted(self, f: &Finding) -> String {
-        let line = finding_text(f);
-        let word = f.severity.word();
-        match self.colour {
-            true => line.replacen(word, &format!("{}{word}\x1b[0m", colour(f.severity)), 1),
-            false => line,
+            _ => text,
         }
     }
 
-    /// Says what is worth knowing of the way.
-    pub fn notes<'a>(self, notes: impl IntoIterator<Item = &'a str>) {
+    /// Columns of the terminal.
+    pub fn width(self) -> usize {
+        self.room.width
+    }
+
+    /// Prints lines on standard output.
+    pub fn print_lines(self, lines: &[String]) -> ExitCode {
+        let text = text_of(lines);
+        match self.room.is_utf8 {
+            true => print(text.as_bytes()),
+            false => print(ascii(&text).as_bytes()),
+        }
+    }
+
+    /// Prints a remark on standard error.
+    pub fn note(self, text: &str) {
         if self.level != Level::Quiet {
-            let lines: String = notes.into_iter().map(|n| format!("{n}\n")).collect();
-            say(&lines);
+            say(&text_of(&wrapped(text, self.room.width, 4)));
         }
     }
 
@@ -113,7 +142,8 @@ impl Voice {
         let of =
             |(stage, s): (&String, &Value)| format!("{stage} {:.2} s", s.as_f64().unwrap_or(0.0));
         let list: Vec<String> = stages.iter().map(of).collect();
-        say(&format!("time: {}\n", list.join(", ")));
+        let time = format!("time: {}", list.join(", "));
+        say(&text_of(&wrapped(&time, self.room.width, 4)));
     }
 
     /// Says faults; as JSON on standard output too where that is asked for.
@@ -129,6 +159,9 @@ impl Voice {
     pub fn fault_lines(self, faults: &[Fault]) {
         let n = faults.len();
         let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
+        if !self.room.is_utf8 {
+            text = ascii(&text);
+        }
         let plural = if n == 1 { "" } else { "s" };
         let total = format!("{n} fault{plural} found");
         text.push_str(&match self.colour {
@@ -146,6 +179,31 @@ fn colour(severity: Severity) -> &'static str {
         Severity::Warning => "\x1b[33m",
         Severity::Info => "\x1b[36m",
     }
+}
+
+/// Columns of the terminal; [`WIDTH`] where standard output is none.
+fn width() -> usize {
+    /// A narrower terminal wraps by itself.
+    const LEAST: usize = 40;
+    let size = terminal_size::terminal_size_of(std::io::stdout());
+    size.map_or(WIDTH, |(w, _)| usize::from(w.0).max(LEAST))
+}
+
+/// Whether the terminal shows UTF-8, by the first of `LC_ALL`, `LC_CTYPE` and `LANG` that is set. Windows consoles always do: the standard
+/// library writes to them in Unicode. Where none is set nothing is known, and most terminals do.
+fn is_utf8() -> bool {
+    let value = |name: &str| std::env::var(name).ok().filter(|v| !v.is_empty());
+    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value);
+    let Some(locale) = locale.filter(|_| !cfg!(windows)) else {
+        return true;
+    };
+    let locale = locale.to_ascii_lowercase();
+    locale.contains("utf-8") || locale.contains("utf8")
+}
+
+/// Lines as text.
+fn text_of(lines: &[String]) -> String {
+    lines.iter().map(|l| format!("{l}\n")).collect()
 }
 
 fn say(text: &str) {

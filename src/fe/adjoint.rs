@@ -142,7 +142,11 @@ fn forces_of(
         let Some(shell) = prepared.model.shells.get(t.shell.us()) else {
             continue;
         };
-        let z = prepared.model.shell_properties[shell.property.us()].z;
+        let fibres = prepared.model.fibres(shell);
+        let z = match t.place {
+            ShellPlace::Centre => fibres.centre,
+            ShellPlace::Corner(k) => fibres.at(Some(k)),
+        };
         let free = [[0.0; 3]; 2];
         let matrices = shell_matrices(prepared, t.shell.us(), Parts::WithoutStiffness, None)?;
         let strain = |u: &[f64]| -> [PlaneStrain; 2] {

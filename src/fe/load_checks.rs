@@ -114,6 +114,26 @@ fn point_loads(model: &Model, case: &LoadCase) -> Vec<[f64; 6]> {
     f
 }
 
+/// Share of the loads up to which their sum counts as nothing: decks state loads with six to eight digits.
+const EQUAL: f64 = 1e-6;
+
+/// Whether point loads (basic frame) are in equilibrium with each other: supports then react with nothing, wherever they are.
+fn are_balanced(model: &Model, loads: &[[f64; 6]]) -> bool {
+    let (mut sum, mut size) = ([Vec3::zeros(); 2], [0.0; 2]);
+    for (grid, f) in model.grids.iter().zip(loads) {
+        let [force, moment] = [0, 3].map(|k| Vec3::new(f[k], f[k + 1], f[k + 2]));
+        let lever = grid.x.cross(&force);
+        sum = [sum[0] + force, sum[1] + lever + moment];
+        size = [
+            size[0] + force.norm(),
+            size[1] + lever.norm() + moment.norm(),
+        ];
+    }
+    sum.iter()
+        .zip(size)
+        .all(|(s, size)| s.norm() <= EQUAL * size)
+}
+
 /// A finding where a point load goes straight into a support, in part or whole: supports are stiff, so that part strains nothing.
 ///
 /// Measured: the share of the point loads' forces (moments, where there are no forces) that supports take before the structure does.
@@ -124,6 +144,9 @@ pub(super) fn load_into_support(
     case: &LoadCase,
 ) -> Option<Finding> {
     let mut f = point_loads(model, case);
+    if are_balanced(model, &f) {
+        return None;
+    }
     for (f, axes) in f.iter_mut().zip(axes) {
         *f = to_local(axes, *f);
     }

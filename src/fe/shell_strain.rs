@@ -83,7 +83,7 @@ fn fill(
     pieces: &mut [Piece<'_>],
 ) -> Result<(), Refusal> {
     let shell = &prepared.model.shells[i];
-    let z = prepared.model.shell_properties[shell.property.us()].z;
+    let fibres = prepared.model.fibres(shell);
     let n = shell.shape.n_corners();
     let matrices = shell_matrices(prepared, i, Parts::WithoutStiffness, None)?;
     for ((u, t), (centre, corners)) in u.iter().zip(temperatures).zip(pieces) {
@@ -95,16 +95,17 @@ fn fill(
                     Some(k) => h.rise[k],
                     None => h.rise[..n].iter().sum::<f64>() / n as f64,
                 };
-                h.free(rise, z)
+                h.free(rise, fibres.at(corner))
             })
         };
         match &matrices {
             AnyShell::Quad(m) => {
                 let local = local::<24>(u, &shell.grids[..4]);
-                centre[at] = surfaces(&m.centre, z, &local, &free(None));
+                centre[at] = surfaces(&m.centre, fibres.centre, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
-                    *slot =
-                        std::array::from_fn(|k| surfaces(&m.corners[k], z, &local, &free(Some(k))));
+                    *slot = std::array::from_fn(|k| {
+                        surfaces(&m.corners[k], fibres.corners[k], &local, &free(Some(k)))
+                    });
                 }
             }
             AnyShell::Many(plain) => {
@@ -123,17 +124,17 @@ fn fill(
                     _ => plain,
                 };
                 let local: Vec<f64> = shell.all_grids().iter().flat_map(|g| u[g.us()]).collect();
-                centre[at] = m.centre.surfaces(z, &local, &free(None));
+                centre[at] = m.centre.surfaces(fibres.centre, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
                     *slot = [[[f64::NAN; 3]; 2]; 4];
                     for (k, (slot, rows)) in slot.iter_mut().zip(&m.corners).enumerate() {
-                        *slot = rows.surfaces(z, &local, &free(Some(k)));
+                        *slot = rows.surfaces(fibres.corners[k], &local, &free(Some(k)));
                     }
                 }
             }
             AnyShell::Tria(m) => {
                 let local = local::<18>(u, &shell.grids[..3]);
-                centre[at] = surfaces(&m.centre, z, &local, &free(None));
+                centre[at] = surfaces(&m.centre, fibres.centre, &local, &free(None));
                 if let Some(slot) = corners.get_mut(at) {
                     *slot = [centre[at], centre[at], centre[at], [[f64::NAN; 3]; 2]];
                 }

@@ -59,6 +59,9 @@ impl System {
         if let Some(body) = &body {
             findings.extend(ties(prepared, &assembled, body));
         }
+        if body.is_none() && relief == Relief::Automatic && model.params.inrel == -2 {
+            findings.push(relief_without_motion(sets.0));
+        }
         let weak = weak_unknowns(&assembled, model.params.autospc);
         for w in &weak {
             assembled
@@ -377,6 +380,20 @@ fn body(
     }
     let touched = touched(prepared.model, reduction);
     RigidBody::new(prepared.model, &prepared.axes, mass, reduction, &touched)
+}
+
+/// Returns the finding of PARAM,INREL,-2 on a structure whose supports leave no rigid motion free.
+fn relief_without_motion(spc: Option<u32>) -> Finding {
+    let held = spc.map_or("its supports".to_owned(), |set| format!("SPC set {set}"));
+    Finding::new(
+        Severity::Warning,
+        "inertia-relief-idle",
+        "PARAM,INREL",
+        format!(
+            "PARAM,INREL,-2 is stated, and {held} leaves no rigid motion free: inertia balances no load, and the supports take all of it"
+        ),
+        "leave PARAM,INREL out if the structure is held, or select no SPC set if it is free",
+    )
 }
 
 /// f - K u0 for enforced displacements, displacement frames.

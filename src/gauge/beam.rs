@@ -6,6 +6,7 @@ use super::error::GaugeError;
 use super::spec::{Bridge, GaugeSpec};
 use crate::fe::section_at;
 use crate::fe::strain_tensor::Surface;
+use crate::finding::{Finding, Severity};
 use crate::model::{BeamIx, Model, Vec3};
 
 /// Where along which beam, at which of its recovery points C D E F (0 to 3).
@@ -122,5 +123,28 @@ pub(super) fn on_beam(
         direction: b.axes.row(0).transpose(),
         normal: b.axes.row(2).transpose(),
         angle_rad: 0.0,
+    })
+}
+
+/// Returns a warning for a gauge at a recovery point that is on the neutral axis, as one is whose coordinates the property does not state.
+pub(super) fn point_on_axis(model: &Model, spec: &GaugeSpec, seat: BeamSeat) -> Option<Finding> {
+    let beam = model.beams.get(seat.beam.us())?;
+    let property = model.beam_properties.get(beam.property.us())?;
+    let section = section_at(&property.sections, seat.station);
+    let [y, z] = *section.recovery.get(seat.point)?;
+    let distance = (y - section.neutral[0]).hypot(z - section.neutral[1]);
+    let point = ["C", "D", "E", "F"].get(seat.point)?;
+    (distance == 0.0).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "bar-point-on-axis",
+            &spec.name,
+            format!(
+                "gauge `{}` is at point {point} of element {}, and property {} states no distance of it from the neutral axis: the gauge reads axial \
+                 strain alone, and no bending",
+                spec.name, beam.id, property.id
+            ),
+            "state the stress recovery points of the property, or another `point`",
+        )
     })
 }

@@ -1,12 +1,12 @@
 //! From a description to arms.
 
 use super::arms::Gauge;
-use super::beam::{BeamSeat, on_beam};
+use super::beam::{BeamSeat, on_beam, point_on_axis};
 use super::error::GaugeError;
 use super::grid::{Seat, Site, laid_onto, rotated};
 use super::grid_average::POINTS;
 use super::spec::{CornerRows, GaugePlace, GaugeSpec};
-use super::surface::{Foot, centre, nearest_skin, to_side};
+use super::surface::{Foot, centre, from_skins, nearest_skin, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
@@ -45,7 +45,9 @@ pub(super) fn build_by(
             point,
             station,
         };
-        return Ok((vec![on_beam(model, spec, seat)?], findings));
+        let gauge = on_beam(model, spec, seat)?;
+        findings.extend(point_on_axis(model, spec, seat));
+        return Ok((vec![gauge], findings));
     }
     let no_area = |element| GaugeError::NoArea {
         gauge: spec.name.clone(),
@@ -86,8 +88,14 @@ pub(super) fn build_by(
         Some(f) if corners == CornerRows::Present => f.point,
         _ => middle,
     };
-    if let Some(f) = foot {
+    if let (Some(f), GaugePlace::Nearest(x)) = (foot, spec.place) {
         let size = reach(model, element, middle);
+        // The skin of a stated side may be the farther one.
+        let distance = match from_skins(model, shell, x) {
+            Some(skins) if side != f.side => skins[side.ix()],
+            _ => f.distance,
+        };
+        let f = Foot { distance, ..f };
         findings.push(found(spec, element.id, side, &f, corners, size));
     }
     let drawn = foot.map_or(middle, |f| f.point);

@@ -13,9 +13,11 @@ mod glued;
 mod grid;
 mod grid_average;
 mod moved;
+mod off_skin;
 mod on_refined;
 mod side;
 mod spec;
+mod stated_side;
 mod surface;
 mod unverified;
 
@@ -26,9 +28,11 @@ pub use error::GaugeError;
 pub use glued::{Drawn, Offset};
 pub use grid_average::SMOOTH;
 pub use moved::moved;
+pub use off_skin::off_skin;
 pub use on_refined::{change_by_refining, on_refined};
-pub use side::opposite;
+pub use side::{away_from, opposite};
 pub use spec::{Bridge, CornerRows, GaugePlace, GaugeSpec, Pair, Rosette};
+pub use stated_side::{BetweenSkins, between_skins};
 pub use surface::{Foot, centre, nearest_skin, to_side};
 pub use unverified::on_unverified_elements;
 

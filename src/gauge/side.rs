@@ -31,3 +31,18 @@ pub(super) fn same_side(
     let opposed = normal(model, from)?.dot(&normal(model, other)?) < 0.0;
     Some(if opposed { opposite(side) } else { side })
 }
+
+/// Cosine of the angle between two normals below which shells face neither the same nor opposite ways: 60 degrees.
+const FACING: f64 = 0.5;
+
+/// Returns the side of shell `other` that faces away from `side` of shell `from`, in space; `None` where their planes are across each other.
+pub fn away_from(
+    model: &Model,
+    (from, side): (ShellIx, Surface),
+    other: ShellIx,
+) -> Option<Surface> {
+    let facing = normal(model, from)?.dot(&normal(model, other)?);
+    (facing.abs() >= FACING)
+        .then(|| same_side(model, (from, side), other).map(opposite))
+        .flatten()
+}

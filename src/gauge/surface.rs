@@ -1,9 +1,8 @@
 //! The point of the shells' surfaces, or of their skins, nearest to a given one.
 
 use super::side::{normal, opposite};
-use crate::fe::from_results::surface_z;
 use crate::fe::strain_tensor::Surface;
-use crate::model::{Model, Shell, ShellIx, Vec3};
+use crate::model::{Model, Shell, ShellIx, ShellKind, Vec3};
 
 /// A point on a shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,15 +37,48 @@ pub fn centre(model: &Model, shell: &Shell) -> Option<Vec3> {
     Some(corners(model, shell)?.iter().take(n).sum::<Vec3>() / n as f64)
 }
 
-/// From the reference surface of a shell to its side: offset and fibre distance along the normal.
+/// Returns the distance from the reference surface of a shell to the skin of a side along the normal, at its centre: the offset and half of the
+/// thickness there (of a laminate, the outer face of its last ply). Z1 and Z2 state where strain is taken, which may be elsewhere.
 pub fn to_side(model: &Model, shell: &Shell, side: Surface) -> f64 {
-    let z = surface_z(model, shell)[side.ix()];
+    let n = shell.shape.n_corners();
+    let weights = std::array::from_fn(|i| if i < n { 1.0 / n as f64 } else { 0.0 });
+    to_side_at(model, shell, side, weights)
+}
+
+/// [`to_side`] at the place of these weights of the corners.
+fn to_side_at(model: &Model, shell: &Shell, side: Surface, weights: [f64; 4]) -> f64 {
+    let property = model.shell_properties.get(shell.property.us());
+    let homogeneous = property.is_some_and(|p| matches!(p.kind, ShellKind::Homogeneous { .. }));
+    let n = shell.shape.n_corners();
+    let corners = weights.iter().take(n);
+    let thickness: f64 = (shell.thickness.iter().zip(corners.clone()))
+        .map(|(t, w)| t * w)
+        .sum();
+    let z = if homogeneous && thickness.is_finite() && thickness > 0.0 {
+        [-0.5 * thickness, 0.5 * thickness][side.ix()]
+    } else {
+        let fibres = model.fibres(shell).corners;
+        fibres
+            .iter()
+            .zip(corners)
+            .map(|(z, w)| z[side.ix()] * w)
+            .sum()
+    };
     shell.zoffs + if z.is_finite() { z } else { 0.0 }
+}
+
+/// Returns the distances of a point from the bottom and the top skin of a shell; `None` where it has no area.
+pub fn from_skins(model: &Model, ix: ShellIx, x: Vec3) -> Option<[f64; 2]> {
+    let z = normal(model, ix)?;
+    let shell = model.shells.get(ix.us())?;
+    let from =
+        |side: Surface| foot_on(model, ix, x - z * to_side(model, shell, side)).map(|f| f.distance);
+    Some([from(Surface::Bottom)?, from(Surface::Top)?])
 }
 
 /// Returns the shell and the side whose skin is nearest to `x`; `None` without shells.
 ///
-/// The skins are offset from the reference surface by ZOFFS and half the thickness (Z1, Z2), so that the reference surface alone determines neither
+/// The skins are offset from the reference surface by ZOFFS and half the thickness, so that the reference surface alone determines neither
 /// the plate nor the side that a point is on. A point inside a plate belongs to that plate: its middle surface counts as a skin does. Of
 /// equally near skins that of side `stated` is taken, else the top.
 ///
@@ -98,7 +130,16 @@ fn nearness(model: &Model, ix: ShellIx, x: Vec3, stated: Option<Surface>) -> Opt
     let shell = model.shells.get(ix.us())?;
     let layer = |height: f64| foot_on(model, ix, x - z * height);
     let first = stated.unwrap_or(Surface::Top);
-    let height = [first, opposite(first)].map(|s| to_side(model, shell, s));
+    let sides = [first, opposite(first)];
+    let mut height = sides.map(|s| to_side(model, shell, s));
+    if shell.thickness[..shell.shape.n_corners()]
+        .windows(2)
+        .any(|t| t[0] != t[1])
+    {
+        // The skins of a tapered shell are as far from the reference surface as the thickness at the place says.
+        let local = |s: Surface, h: f64| Some(to_side_at(model, shell, s, layer(h)?.weights));
+        height = [local(sides[0], height[0])?, local(sides[1], height[1])?];
+    }
     let skins = [layer(height[0])?, layer(height[1])?];
     let middle = layer(0.5 * (height[0] + height[1]))?.distance;
     let tolerance = SAME_PLACE * (height[0] - height[1]).abs().max(x.norm());

@@ -63,7 +63,7 @@ fn plate(nx: u32, ny: u32, start: usize) -> Model {
             shear_ratio: 0.833_333,
         },
         nsm: 0.0,
-        z: [-1.0, 1.0],
+        z: [Some(-1.0), Some(1.0)],
         at,
     });
     m

@@ -1,6 +1,8 @@
 //! What a question comes to: the answer of its own type, with units, inputs, findings and seconds. `result.json` is it, serialised.
 
-use crate::finding::{Finding, Severity, worst};
+use super::words::counted;
+use crate::finding::{Finding, Severity, few, worst};
+use crate::host::fault::Fault;
 use crate::host::files::Input;
 use crate::units::{ReportUnits, UnitSystem};
 use serde::{Serialize, Serializer};
@@ -15,6 +17,17 @@ pub const SCHEMA: u32 = 1;
 pub trait Answer: Serialize {
     /// The command that asks.
     const COMMAND: &'static str;
+    /// Name of the result, as the subject of a sentence: `The recovered loads`.
+    const RESULT: &'static str;
+
+    /// Returns the result in one sentence: what it is and how certain it is, in numbers with units. `±` is the half width of a 95 % interval.
+    /// The sentence is right for an answer without findings; [`Outcome::summary`] adds what the findings mean.
+    fn verdict(&self) -> String;
+
+    /// Returns the faults of the input that are part of the answer: only `check` has them.
+    fn faults(&self) -> &[Fault] {
+        &[]
+    }
 }
 
 /// An answer, and how it was come by. The fields of the answer are reached through it: `plan.gauges`.
@@ -48,6 +61,65 @@ impl<A> Outcome<A> {
     pub fn is_reliable(&self) -> bool {
         self.findings.worst() < Some(Severity::Error)
     }
+}
+
+impl<A: Answer> Outcome<A> {
+    /// Returns the sentence that states the result and whether it can be used. Console, page and `result.json` show the same one first.
+    pub fn summary(&self) -> String {
+        let count = |severity| {
+            let of_severity = self.findings.iter().filter(|f| f.severity == severity);
+            of_severity.count()
+        };
+        let faults = self.answer.faults().len();
+        match (count(Severity::Error), count(Severity::Warning)) {
+            _ if faults > 0 => format!(
+                "The input has {}: nothing can be computed from it before {} corrected.",
+                counted(faults, "fault"),
+                if faults == 1 { "it is" } else { "they are" }
+            ),
+            (0, 0) => self.answer.verdict(),
+            (0, n) => format!(
+                "{} Usable, with {}.",
+                self.answer.verdict(),
+                counted(n, "warning")
+            ),
+            _ => format!(
+                "{} cannot be relied on: {}.",
+                A::RESULT,
+                reasons(&self.findings)
+            ),
+        }
+    }
+}
+
+/// Returns the errors in the short words of their codes, each with what it is about: `gauge silent (P03)`.
+fn reasons(findings: &[Finding]) -> String {
+    /// Codes that a sentence names; the findings below it name all.
+    const MOST: usize = 2;
+    /// Characters of the subjects that a sentence has room for.
+    const ROOM: usize = 32;
+    let errors = findings.iter().filter(|f| f.severity == Severity::Error);
+    let mut by_code: Vec<(&str, Vec<&str>)> = Vec::new();
+    for f in errors {
+        match by_code.iter_mut().find(|c| c.0 == f.code) {
+            Some((_, subjects)) if subjects.contains(&f.subject.as_str()) => {}
+            Some((_, subjects)) => subjects.push(&f.subject),
+            None => by_code.push((f.code, vec![&f.subject])),
+        }
+    }
+    let reason = |(code, subjects): &(&str, Vec<&str>)| {
+        let words = code.replace('-', " ");
+        let subjects = few(subjects);
+        match subjects.chars().count() <= ROOM {
+            true => format!("{words} ({subjects})"),
+            false => words,
+        }
+    };
+    let mut list: Vec<String> = by_code.iter().take(MOST).map(reason).collect();
+    if by_code.len() > MOST {
+        list.push(format!("and {} more", by_code.len() - MOST));
+    }
+    list.join("; ")
 }
 
 /// Findings of an outcome.
@@ -135,6 +207,7 @@ struct ResultFile<'a, A> {
     command: &'a str,
     version: &'a str,
     schema: u32,
+    summary: &'a str,
     units: &'a StatedUnits,
     inputs: &'a [Input],
     findings: &'a Findings,
@@ -154,6 +227,7 @@ impl<A: Answer> Outcome<A> {
             command: A::COMMAND,
             version: env!("CARGO_PKG_VERSION"),
             schema: SCHEMA,
+            summary: &self.summary(),
             units: &self.units,
             inputs: &self.inputs,
             findings: &self.findings,
@@ -169,4 +243,70 @@ impl<A: Answer> Outcome<A> {
 #[must_use]
 pub fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Serialize)]
+    struct Asked(#[serde(skip)] Vec<Fault>);
+
+    impl Answer for Asked {
+        const COMMAND: &'static str = "asked";
+        const RESULT: &'static str = "The answer";
+
+        fn verdict(&self) -> String {
+            "The answer is 42 ± 1 kN.".into()
+        }
+
+        fn faults(&self) -> &[Fault] {
+            &self.0
+        }
+    }
+
+    fn summary(faults: usize, findings: &[(Severity, &'static str, &str)]) -> String {
+        let finding = |(severity, code, subject): &(Severity, &'static str, &str)| {
+            Finding::new(*severity, code, *subject, "message", "remedy")
+        };
+        let fault = || Fault::of("job.toml", "units", "unknown", "correct it");
+        Outcome {
+            units: StatedUnits::default(),
+            inputs: Vec::new(),
+            sources: Vec::new(),
+            findings: Findings(findings.iter().map(finding).collect()),
+            seconds: Seconds::default(),
+            notes: Vec::new(),
+            answer: Asked((0..faults).map(|_| fault()).collect()),
+        }
+        .summary()
+    }
+
+    #[test]
+    fn an_answer_with_errors_never_sounds_fine() {
+        let (info, warning, error) = (Severity::Info, Severity::Warning, Severity::Error);
+        let fine = "The answer is 42 ± 1 kN.";
+        assert_eq!(summary(0, &[(info, "strain-source", "model")]), fine);
+        let warned = summary(0, &[(warning, "gauge-suspect", "P1")]);
+        assert_eq!(warned, format!("{fine} Usable, with 1 warning."));
+        let said = summary(
+            0,
+            &[
+                (error, "gauge-silent", "P1"),
+                (error, "gauge-silent", "P2"),
+                (warning, "gauge-suspect", "P3"),
+                (
+                    error,
+                    "loads-not-separable",
+                    "a subject with more words than a sentence has room for",
+                ),
+            ],
+        );
+        assert_eq!(
+            said,
+            "The answer cannot be relied on: gauge silent (P1, P2); loads not separable."
+        );
+        let refused = summary(2, &[(error, "gauge-silent", "P1")]);
+        assert!(refused.starts_with("The input has 2 faults"), "{refused}");
+    }
 }

@@ -34,6 +34,15 @@ fn placed(message: &str) -> (String, &str) {
     place().unwrap_or((String::new(), message))
 }
 
+/// Returns a number with what it counts, in the plural where it is not 1.
+pub fn counted(n: usize, what: &str) -> String {
+    match (n, what.strip_suffix('y')) {
+        (1, _) => format!("1 {what}"),
+        (_, Some(stem)) => format!("{n} {stem}ies"),
+        (_, None) => format!("{n} {what}s"),
+    }
+}
+
 /// A number with four significant digits, plain where that is readable.
 pub fn short(x: f64) -> String {
     let a = x.abs();

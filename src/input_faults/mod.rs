@@ -6,6 +6,7 @@
 //! vehicle.
 
 mod fault;
+pub mod identical;
 mod known_loads;
 mod motion;
 mod recorded_loads;

@@ -1,6 +1,5 @@
 //! Columns of a gauge table: what is read from each, in which unit, and which columns nothing reads.
 
-use super::resolve::surface_from;
 use super::same_name::is_same_name;
 use super::suggest;
 use super::table::Table;
@@ -228,15 +227,38 @@ fn column_of(
     Some(first)
 }
 
-/// Whether a column called `side` contains sides of a shell; sides of a vehicle are something else.
+/// Words of a column `side` that are sides of a vehicle and not of a shell.
+const OF_VEHICLE: [&str; 20] = [
+    "left",
+    "right",
+    "l",
+    "r",
+    "lh",
+    "rh",
+    "links",
+    "rechts",
+    "li",
+    "re",
+    "front",
+    "rear",
+    "middle",
+    "centre",
+    "center",
+    "driver",
+    "passenger",
+    "both",
+    "-",
+    "none",
+];
+
+/// Whether a column called `side` contains sides of a shell; sides of a vehicle are something else. Any other word is one that its row refuses.
 fn holds_words(t: &Table, at: usize, name: &str) -> bool {
     let header = t.header[at].as_str();
     if !name.starts_with("surface") || !header.to_lowercase().starts_with("side") {
         return true;
     }
     let mut words = t.rows.iter().filter_map(|r| r.1.get(at));
-    let is_side = |w: &String| w.is_empty() || surface_from(w).is_some();
-    words.all(is_side)
+    words.all(|w| !OF_VEHICLE.contains(&w.to_lowercase().as_str()))
 }
 
 /// Returns name and unit of a header: `angle_deg [rad]`, `x [mm]`, `x_mm`.

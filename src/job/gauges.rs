@@ -5,8 +5,8 @@
 
 use super::gauge_table::{GaugeColumn, GaugeColumns};
 use super::resolve::{
-    POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from, role_from, rosette_from,
-    surface_from, with_pair,
+    ELEMENT_STATED, POINT_ALONE, POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from,
+    role_from, rosette_from, surface_from, with_pair,
 };
 use super::suggest;
 use super::table::{Table, read_table};
@@ -264,6 +264,10 @@ fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlac
     if stated.is_some() && point.is_none() {
         row.fault("station", STATION_ALONE.to_owned(), POINT_STATED);
     }
+    let positioned = location.at.is_some() && (laid || location.in_job_units);
+    if element.is_none() && point.is_some() && positioned {
+        row.fault("point", POINT_ALONE.to_owned(), ELEMENT_STATED);
+    }
     match (element, point, location.at) {
         (Some(element), Some(point), _) => StatedPlace::BeamPoint {
             element,
@@ -272,7 +276,7 @@ fn place(row: &mut Row, location: &Location, laid: bool, cid: u32) -> StatedPlac
         },
         (Some(e), None, _) => StatedPlace::Element(e),
         // Metres beside a gauge of a given S only describe it.
-        (None, _, Some(x)) if laid || location.in_job_units => StatedPlace::Position(x, cid),
+        (None, _, Some(x)) if positioned => StatedPlace::Position(x, cid),
         _ => StatedPlace::Unstated,
     }
 }

@@ -2,6 +2,7 @@
 //! structs of [`types`]; [`gauges`], [`given_columns`] and [`table`] read the tables a job names; [`schema`] describes
 //! a job to editors.
 
+pub mod calibrated_range;
 pub mod correct;
 mod faults;
 mod gauge_table;
@@ -13,6 +14,7 @@ mod parse;
 pub mod payload_loads;
 pub mod payload_signature;
 mod picked;
+mod property_names;
 pub mod quantity;
 mod raw;
 pub mod readings;
@@ -30,6 +32,7 @@ pub mod unread;
 #[cfg(test)]
 pub(crate) mod tests;
 
+pub use resolve::{SAME_SIDE, SAME_SIDE_REMEDY};
 pub use types::*;
 
 use crate::host::context::Files;

@@ -3,19 +3,42 @@
 use super::faults::Collector;
 use super::parse::parse_job;
 use super::resolve::candidates_of;
-use super::types::{Candidates, Ids, Job, NamedFile};
+use super::types::{Candidates, Ids, Job, NamedFile, PropertyIds};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::Inputs;
 
-type Lists<'a> = [(&'static str, &'a mut Option<Ids>); 5];
+/// A list of `[candidates]`.
+enum List<'a> {
+    Elements(&'a mut Option<Ids>),
+    Properties(&'a mut Option<PropertyIds>),
+}
 
-fn lists(c: &mut Candidates) -> Lists<'_> {
+impl List<'_> {
+    fn is_stated(&self) -> bool {
+        match self {
+            Self::Elements(list) => list.is_some(),
+            Self::Properties(list) => list.is_some(),
+        }
+    }
+
+    /// Takes what `other`, the same list of another file, states.
+    fn take(self, other: Self) {
+        match (self, other) {
+            (Self::Elements(own), Self::Elements(other)) => *own = other.take(),
+            (Self::Properties(own), Self::Properties(other)) => *own = other.take(),
+            _ => {}
+        }
+    }
+}
+
+fn lists(c: &mut Candidates) -> [(&'static str, List<'_>); 5] {
+    use List::{Elements, Properties};
     [
-        ("properties", &mut c.properties),
-        ("elements", &mut c.elements),
-        ("exclude_properties", &mut c.exclude_properties),
-        ("exclude_elements", &mut c.exclude_elements),
-        ("wanted_elements", &mut c.wanted_elements),
+        ("properties", Properties(&mut c.properties)),
+        ("elements", Elements(&mut c.elements)),
+        ("exclude_properties", Properties(&mut c.exclude_properties)),
+        ("exclude_elements", Elements(&mut c.exclude_elements)),
+        ("wanted_elements", Elements(&mut c.wanted_elements)),
     ]
 }
 
@@ -76,7 +99,7 @@ fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
         .into_iter()
         .zip(lists(&mut picked))
     {
-        if own.is_some() && other.is_some() {
+        if own.is_stated() && other.is_stated() {
             let wrong = format!("`{name}` stands in the job too");
             c.fault(
                 section,
@@ -85,8 +108,8 @@ fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
                 "state it in one of the two",
             );
         }
-        if own.is_none() {
-            *own = other.take();
+        if !own.is_stated() {
+            own.take(other);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The job as written: every key of every section, each value with its place in the text, nothing required here.
 
-use super::shapes::{Counts, Ids, NumberOrWord, Texts};
+use super::shapes::{Counts, Ids, NumberOrWord, PropertyIds, Texts};
 use super::spanned::Spanned;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -26,6 +26,8 @@ pub(super) struct RawJob {
     pub placement: S<RawPlacement>,
     pub measured: S<RawMeasured>,
     pub runs: S<RawRuns>,
+    pub compare: S<RawCompare>,
+    pub section: Vec<Spanned<RawSection>>,
     pub ballast: S<RawBallast>,
     pub payload: S<RawPayload>,
     pub dynamic: S<RawDynamic>,
@@ -89,6 +91,9 @@ pub(super) struct RawCalibration {
     pub model_uncertainty_rel: S<f64>,
     pub position_tolerance: S<f64>,
     pub angle_tolerance_deg: S<f64>,
+    pub scale_sd: S<f64>,
+    pub terms: S<String>,
+    pub check: S<Vec<Spanned<String>>>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -134,7 +139,7 @@ pub(super) struct RawGauges {
 #[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawCandidates {
-    pub properties: S<Ids>,
+    pub properties: S<PropertyIds>,
     pub elements: S<Ids>,
     pub surfaces: S<Vec<Spanned<String>>>,
     pub angle_step_deg: S<NumberOrWord>,
@@ -142,7 +147,7 @@ pub(super) struct RawCandidates {
     pub bridge: S<Texts>,
     pub rosette: S<String>,
     pub sets: S<Ids>,
-    pub exclude_properties: S<Ids>,
+    pub exclude_properties: S<PropertyIds>,
     pub exclude_elements: S<Ids>,
     pub wanted_elements: S<Ids>,
     pub file: S<String>,
@@ -219,10 +224,38 @@ pub(super) struct RawRunNoise {
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
+pub(super) struct RawCompare {
+    pub file: S<String>,
+    pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
+    pub units: Option<RawUnits>,
+    pub noise: Option<RawCompareNoise>,
+    pub shift_s: S<NumberOrWord>,
+    pub time_unit: S<String>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawCompareNoise {
+    pub force: S<f64>,
+    pub moment: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
+pub(super) struct RawSection {
+    pub name: S<String>,
+    pub start_s: S<f64>,
+    pub end_s: S<f64>,
+    pub file: S<String>,
+    pub repeats: S<f64>,
+}
+
+#[derive(Deserialize, JsonSchema, Default, Debug)]
+#[serde(deny_unknown_fields, default)]
 pub(super) struct RawBallast {
     pub masses: S<u32>,
     pub region: S<Vec<[f64; 2]>>,
-    pub properties: S<Ids>,
+    pub properties: S<PropertyIds>,
     pub max_mass: S<f64>,
     pub run: S<String>,
     pub gravity: S<f64>,
@@ -257,6 +290,7 @@ pub(super) struct RawDynamic {
 pub(super) struct RawRecover {
     pub files: S<Vec<Spanned<String>>>,
     pub slope: S<f64>,
+    pub csv_every: S<u32>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -293,6 +327,7 @@ pub(super) struct RawRespond {
     pub elements: S<Ids>,
     pub hottest: S<u32>,
     pub loads: S<String>,
+    pub slope: S<f64>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]
@@ -380,7 +415,7 @@ pub(super) struct RawTolerance {
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawReconcile {
     pub path: S<String>,
-    pub zones: BTreeMap<String, Ids>,
+    pub zones: BTreeMap<String, PropertyIds>,
     pub places: BTreeMap<String, u32>,
     #[serde(rename = "thermal_microstrain_per_degC")]
     pub thermal: BTreeMap<Spanned<String>, f64>,
@@ -434,6 +469,9 @@ pub(super) struct RawSensitivity {
     pub columns: BTreeMap<Spanned<String>, Spanned<String>>,
     pub signatures: Option<RawSignatures>,
     pub covariance: S<String>,
+    pub common_zero: S<String>,
+    pub range: BTreeMap<Spanned<String>, [f64; 2]>,
+    pub strain_range: BTreeMap<Spanned<String>, [f64; 2]>,
 }
 
 #[derive(Deserialize, JsonSchema, Default, Debug)]

@@ -9,6 +9,18 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct Ids(pub Vec<[u32; 2]>);
 
+/// Ids of properties, and names that the deck gives properties: `[14, "RailLeft"]`, `"RailLeft"`.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct PropertyIds {
+    /// Ids as stated.
+    pub ids: Ids,
+    /// Names as stated.
+    pub names: Vec<String>,
+}
+
+/// An entry of a list of properties.
+struct IdOrName(PropertyIds);
+
 impl Ids {
     /// Whether `id` is among them.
     pub fn contains(&self, id: u32) -> bool {
@@ -65,6 +77,78 @@ impl<'de> Deserialize<'de> for Ids {
                 let mut out = Ids::default();
                 while let Some(id) = s.next_element::<u32>()? {
                     out.0.push([id, id]);
+                }
+                Ok(out)
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
+impl PropertyIds {
+    fn of_text(text: &str) -> Self {
+        match ids_from_text(text) {
+            Some(ids) => Self {
+                ids,
+                names: Vec::new(),
+            },
+            None => Self {
+                ids: Ids::default(),
+                names: vec![text.trim().to_owned()],
+            },
+        }
+    }
+
+    fn of_id<E: Error>(v: i64) -> Result<Self, E> {
+        let id = u32::try_from(v).map_err(|_| E::custom("an id must be a whole number above 0"))?;
+        Ok(Self {
+            ids: Ids(vec![[id, id]]),
+            names: Vec::new(),
+        })
+    }
+}
+
+const ID_OR_NAME: &str =
+    "properties: an id, a name of the deck, a list of both, or text such as \"1 THRU 5000\"";
+
+impl<'de> Deserialize<'de> for IdOrName {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl Visitor<'_> for V {
+            type Value = IdOrName;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(ID_OR_NAME)
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<IdOrName, E> {
+                PropertyIds::of_id(v).map(IdOrName)
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<IdOrName, E> {
+                Ok(IdOrName(PropertyIds::of_text(v)))
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
+impl<'de> Deserialize<'de> for PropertyIds {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = PropertyIds;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str(ID_OR_NAME)
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<PropertyIds, E> {
+                PropertyIds::of_id(v)
+            }
+            fn visit_str<E: Error>(self, v: &str) -> Result<PropertyIds, E> {
+                Ok(PropertyIds::of_text(v))
+            }
+            fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<PropertyIds, A::Error> {
+                let mut out = PropertyIds::default();
+                while let Some(IdOrName(entry)) = s.next_element()? {
+                    out.ids.0.extend(entry.ids.0);
+                    out.names.extend(entry.names);
                 }
                 Ok(out)
             }
@@ -187,6 +271,11 @@ macro_rules! schema {
 schema!(Ids, {
     "type": ["integer", "string", "array"],
     "items": { "type": "integer" },
+    "minimum": 1
+});
+schema!(PropertyIds, {
+    "type": ["integer", "string", "array"],
+    "items": { "type": ["integer", "string"] },
     "minimum": 1
 });
 schema!(Texts, { "type": ["string", "array"], "items": { "type": "string" } });

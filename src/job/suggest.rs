@@ -21,6 +21,14 @@ pub fn closest<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Opti
         .map(|(_, n)| n)
 }
 
+/// Returns the name that `word` misspells by a letter, or by two of eight; `None` for short words, which are near to anything.
+pub fn misspelt<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let name = closest(word, names)?;
+    let distance = edit_distance(&word.to_lowercase(), &name.to_lowercase());
+    let letters = word.chars().count().min(name.chars().count());
+    (4 * distance <= letters).then_some(name)
+}
+
 /// What to do about an unknown name: the closest, else the list.
 pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match closest(word, names.clone()) {

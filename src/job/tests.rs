@@ -148,7 +148,7 @@ fn a_job_with_every_key_of_the_contract_is_read() {
     );
     assert_eq!(job.candidates.angles, AngleStep::Continuous);
     assert!(job.candidates.elements.unwrap().contains(77));
-    assert_eq!(job.gauges[0].pair, Some((1305, Surface::Bottom)));
+    assert_eq!(job.gauges[0].pair, Some((1305, Some(Surface::Bottom))));
     assert_eq!(
         job.gauges[1].place,
         StatedPlace::Position([0.1, 2.0, 3.0], 0)
@@ -286,7 +286,7 @@ fn gauge_tables_take_the_contracts_columns_and_list_every_fault() {
     assert_eq!(gauges[0].place, StatedPlace::Element(12));
     assert_eq!(
         (gauges[0].bridge, gauges[0].bridge_factor, gauges[0].pair),
-        (Bridge::HalfBending, 2.0, Some((13, Surface::Bottom)))
+        (Bridge::HalfBending, 2.0, Some((13, Some(Surface::Bottom))))
     );
     let fields: Vec<(Option<u32>, &str)> =
         found.iter().map(|f| (f.line, f.field.as_str())).collect();

@@ -27,7 +27,7 @@ pub fn unread_columns(
     let unread = columns.filter(|(c, name)| !name.is_empty() && !is_read(*c));
     let unread: Vec<&str> = unread.map(|(_, name)| name.as_str()).collect();
     let renamed = unread.iter().filter_map(|column| {
-        let near = suggest::closest(column, lacking.iter().copied())?;
+        let near = suggest::misspelt(column, lacking.iter().copied())?;
         Some(format!("`{column}` to `{near}`"))
     });
     let renamed: Vec<String> = renamed.collect();

@@ -162,6 +162,7 @@ impl Record {
                 start_s,
                 step_s,
                 samples: readings.first().map_or(0, Vec::len),
+                unit_stated: !self.is_time_unit_open(),
             },
             samples: readings,
             stored: Vec::new(),

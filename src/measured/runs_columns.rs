@@ -63,7 +63,7 @@ fn sole_column(
             1,
             &*second.header.whole,
             format!("two columns hold `{name}`"),
-            "leave one of them out, or name it in [runs] columns",
+            "leave one of them out, or name the right one in the job (`columns`)",
         )),
     }
 }
@@ -118,12 +118,19 @@ pub const PAYLOAD: [(&str, Quantity); 4] = [
     ("payload_y", Quantity::Length),
 ];
 
+/// Column of the runs file that says which runs are recovered and compared, and not calibrated with.
+pub const CHECK: &str = "check";
+
 /// Returns the names that a column of the runs file may have for any command, those of a given S apart.
 pub fn names_in_runs(job: &Job) -> Vec<String> {
     let loads = job.loads.iter().map(|l| l.name.clone());
     let sums = job.combinations.iter().map(|c| c.name.clone());
     let payload = PAYLOAD.iter().map(|p| p.0.to_owned());
-    let mapped = job.runs.iter().flat_map(|r| r.columns.values().cloned());
+    let files = job
+        .runs
+        .iter()
+        .chain(job.compare.iter().map(|c| &c.recorded));
+    let mapped = files.flat_map(|r| r.columns.values().cloned());
     let mut out: Vec<String> = loads.chain(sums).chain(payload).chain(mapped).collect();
     let sd: Vec<String> = out.iter().map(|n| format!("{n}_sd")).collect();
     out.extend(sd);
@@ -132,6 +139,7 @@ pub fn names_in_runs(job: &Job) -> Vec<String> {
     out.extend(job.calibration.repeats.iter().cloned());
     out.extend(job.calibration.depends_on.clone());
     out.push("run".to_owned());
+    out.push(CHECK.to_owned());
     out
 }
 
@@ -182,7 +190,9 @@ pub fn note_unread_runs(
     given: &[String],
 ) {
     let (names, read) = columns_claimed(job, (t, columns), given);
-    let lacking = |n: &&String| !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd");
+    let lacking = |n: &&String| {
+        !columns.iter().any(|c| is_called(c, n)) && !n.ends_with("_sd") && *n != CHECK
+    };
     let lacking: Vec<&str> = names.iter().filter(lacking).map(String::as_str).collect();
     note_unread(inputs, t, |c| read[c], &lacking);
 }
@@ -246,7 +256,7 @@ pub fn known_column(
 ) -> Option<KnownColumn> {
     let given = runs.columns.get(name);
     let wanted = given.map_or(name, String::as_str);
-    let key = format!("runs.columns.{name}");
+    let key = format!("{}.columns.{name}", runs.section);
     let at = match given {
         Some(_) => asked_column(job, (runs.line, &key), t, columns, wanted, faults)?,
         None => column_called(job, t, columns, wanted)
@@ -264,7 +274,7 @@ pub fn known_column(
     if !is_named || stated.clash() == Some(Clash::Size) {
         let remedy = match is_named {
             true => "correct whichever is wrong",
-            false => "correct whichever is wrong, or name the column in [runs] columns",
+            false => "correct whichever is wrong, or name the column in the job (`columns`)",
         };
         faults.push(Fault::at(&*t.file, 1, header, stated.clash_words(), remedy));
         return Some(here);
@@ -297,12 +307,16 @@ pub fn known_column(
     };
     if unit != of_job && runs.stated_units.contains(&quantity) {
         let wrong = format!(
-            "the column says `{}`, the job says `{}` (runs.units.{})",
+            "the column says `{}`, the job says `{}` ({}.units.{})",
             unit.name,
             of_job.name,
+            runs.section,
             quantity.word()
         );
-        let remedy = "correct whichever is wrong; without runs.units the column's own unit counts";
+        let remedy = format!(
+            "correct whichever is wrong; without {}.units the column's own unit counts",
+            runs.section
+        );
         faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
     } else if unit != of_job {
         let doubt = noise_in_doubt(job, runs, quantity, unit, of_job);
@@ -337,14 +351,14 @@ fn noise_in_doubt(
     Some(Fault::at(
         &*job.file,
         runs.line,
-        format!("runs.noise.{word}"),
+        format!("{}.noise.{word}", runs.section),
         format!(
             "is {noise} in `{}` or, as columns of the file, in `{}`?",
             of_job.name, of_column.name
         ),
         format!(
-            "state the unit of file and noise: [runs] units = {{ {word} = \"{}\" }}",
-            of_column.name
+            "state the unit of file and noise: [{}] units = {{ {word} = \"{}\" }}",
+            runs.section, of_column.name
         ),
     ))
 }

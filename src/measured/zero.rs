@@ -5,6 +5,7 @@
 //! row to row is seen between them, and the readings count with that much more noise.
 
 use super::columns::{columns_of, gauges_without_strain, strain_without_gauge};
+use super::common_zero::common_zero;
 use super::faults::no_runs;
 use super::means::is_long_record;
 use super::means::read_strain_file;
@@ -189,16 +190,17 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
     .into())
 }
 
-/// The zero readings, strain by gauge, and the effective number of samples behind them; zeros and `None` without a file. Not a number for a
-/// gauge that the file says nothing of: its readings have no zero, and it is left out.
+/// The zero readings, strain by gauge, with the common zero of a calibration with an intercept, and the effective number of samples behind them;
+/// the common zero and `None` without a file. Not a number for a gauge that the file says nothing of: its readings have no zero, and it is left out.
 pub(crate) fn zero_of(
     work: &mut Work,
     job: &Job,
     measured: &Measured,
     gauges: &[String],
 ) -> Result<(Vec<f64>, Option<f64>), Faults> {
+    let common = common_zero(work, job, gauges)?;
     let Some(named) = &measured.zero else {
-        return Ok((vec![0.0; gauges.len()], None));
+        return Ok((common, None));
     };
     let wanted = wanted_columns(&mut work.inputs, job);
     let file = read_strain_file(&mut work.inputs, job, named, &wanted)?;
@@ -206,10 +208,10 @@ pub(crate) fn zero_of(
     let readings = file.readings();
     let mut effective = f64::INFINITY;
     let mut zero = vec![f64::NAN; gauges.len()];
-    for (z, c) in zero.iter_mut().zip(&columns) {
+    for ((z, c), of_common) in zero.iter_mut().zip(&columns).zip(common) {
         let series = c.and_then(|c| readings.get(c));
         if let Some((series, mean)) = series.and_then(|s| Some((s, s.mean()?))) {
-            *z = mean * MICROSTRAIN;
+            *z = mean * MICROSTRAIN + of_common;
             effective = effective.min(series.effective_samples());
         }
     }

@@ -50,6 +50,7 @@ impl Model {
         let heated = super::material_at::heat_materials(&mut model, deck);
         model.unsupported_cards.extend(heated.refused);
         faults.extend(heated.faults);
+        faults.extend(super::temperature_gaps::missing_temperatures(&model, deck));
         model.params.expanding_rigids = expanding_rigids(deck);
         model.mpc = deck.case_control.mpc_of_structure();
         let subcases = deck.case_control.effective_subcases();
@@ -57,6 +58,7 @@ impl Model {
         model.selected_spcs.sort_unstable();
         model.selected_spcs.dedup();
         model.property_names = super::property_names::property_names(deck);
+        super::not_carried::attach_grids(deck, &mut faults);
         let faults = super::not_carried::name_cards(deck, &mut model, faults);
         (model, faults)
     }
@@ -97,6 +99,7 @@ impl Model {
         b.constraints();
         b.rigid_bushes();
         b.check_dependents();
+        b.check_duplicates();
         b.loads();
         b.attachments();
         b.faults.sort_by_key(|f| f.at);

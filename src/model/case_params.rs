@@ -5,7 +5,7 @@ use nastran::bdf::Deck;
 use nastran::cards::Param;
 
 /// Parameters that change the structure itself, which is one for all subcases.
-const OF_STRUCTURE: [&str; 8] = [
+pub(super) const OF_STRUCTURE: [&str; 8] = [
     "WTMASS", "GRDPNT", "INREL", "K6ROT", "SNORM", "AUTOSPC", "COUPMASS", "OMID",
 ];
 

@@ -22,6 +22,8 @@ pub struct ModelFault {
 pub enum FaultWeight {
     /// Worth knowing: the model is complete.
     Note,
+    /// The model lacks what a card that is not carried defines: refuse to use it.
+    NotCarried,
     /// The model can't be trusted: refuse to solve it.
     Error,
 }
@@ -43,6 +45,16 @@ pub enum FaultKind {
     },
     /// An id stands twice.
     Duplicate { what: &'static str, first: Place },
+    /// A card is there twice with the same content, and is read once.
+    Repeated { what: &'static str, first: Place },
+    /// A temperature set that states no temperature of a grid, and none of all grids.
+    NoTemperature {
+        grid: u32,
+        /// The first element that needs it.
+        element: String,
+        /// Number of further grids.
+        more: usize,
+    },
     /// An element id is shared by elements of unlike kind.
     SharedId { other: String, first: Place },
     /// A number that must be above 0 isn't.
@@ -98,12 +110,14 @@ impl ModelFault {
     /// Whether it stops a solution.
     pub fn weight(&self) -> FaultWeight {
         match self.kind {
-            FaultKind::Unattached | FaultKind::SharedId { .. } => FaultWeight::Note,
+            FaultKind::Unattached | FaultKind::SharedId { .. } | FaultKind::Repeated { .. } => {
+                FaultWeight::Note
+            }
             // Solvers pass over a set of SPCADD or MPCADD that has no cards.
             FaultKind::Missing { what: "set", .. } => FaultWeight::Note,
             // Shells need a thickness, and places need grids and coordinate systems; other elements are left out and results may be given.
             FaultKind::NotCarried { what, .. } => match what {
-                "grid" | "coordinate system" | "shell property" => FaultWeight::Error,
+                "grid" | "coordinate system" | "shell property" => FaultWeight::NotCarried,
                 _ => FaultWeight::Note,
             },
             _ => FaultWeight::Error,
@@ -118,7 +132,10 @@ impl ModelFault {
             NotCarried { .. } => {
                 "replace it by a card that is carried, or solve with Nastran and name the results in the job".into()
             }
-            Duplicate { .. } => "delete one of them, or renumber".into(),
+            Duplicate { .. } | Repeated { .. } => "delete one of them, or renumber".into(),
+            NoTemperature { .. } => {
+                "add a TEMP for each grid, or a TEMPD for the grids without one".into()
+            }
             SharedId { .. } => "renumber one of them, so that results tell them apart".into(),
             NotPositive { what, .. } => format!("give a {what} above 0"),
             ZeroLength { .. } => "merge the ends by an RBE2, or correct grids and offsets".into(),
@@ -145,7 +162,7 @@ impl ModelFault {
             Poisson { .. } => "give a ratio above -1 and up to 0.5".into(),
             Underdetermined => "give two of E, G and NU".into(),
             Unsupported { remedy, .. } => (*remedy).into(),
-            Unattached => "delete it, attach it, or leave it to AUTOSPC".into(),
+            Unattached => "attach it, or delete it where nothing refers to it; AUTOSPC holds it otherwise".into(),
             OffPatch { .. } => "move the point over the patch, name the property or shell that lies there, or give a smaller diameter; shells with mid-side grids are no patch".into(),
             Word { expected, .. } => format!("write {expected}"),
         }
@@ -174,6 +191,27 @@ impl fmt::Display for FaultKind {
             }
             Duplicate { what, first } => {
                 write!(f, "the {what} stands twice, first on line {}", first.line)
+            }
+            Repeated { what, first } => {
+                write!(
+                    f,
+                    "the {what} is there twice with the same content, first on line {}, and is read once",
+                    first.line
+                )
+            }
+            NoTemperature {
+                grid,
+                element,
+                more,
+            } => {
+                write!(f, "grid {grid} of {element}")?;
+                if *more > 0 {
+                    write!(f, " (and {more} more grids)")?;
+                }
+                write!(
+                    f,
+                    " has no temperature in the set, and the set has no TEMPD"
+                )
             }
             SharedId { other, first } => {
                 write!(f, "the id is also that of {other} on line {}", first.line)

@@ -9,9 +9,11 @@ mod case_params;
 mod connector;
 mod constraint;
 mod curved;
+mod duplicates;
 mod elements;
 mod face;
 mod fault;
+mod fibre;
 mod frame;
 mod grids;
 mod isotropic;
@@ -39,6 +41,7 @@ mod shell;
 mod solid;
 mod spline;
 mod table;
+mod temperature_gaps;
 mod types;
 mod unsupported_cards;
 
@@ -50,6 +53,7 @@ pub(crate) use elements::ElementRef;
 #[cfg(feature = "report")]
 pub(crate) use face::faces as solid_faces;
 pub use fault::*;
+pub use fibre::Fibres;
 pub use mass::Weight;
 pub use refine::RefinedModel;
 pub use types::*;

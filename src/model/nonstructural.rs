@@ -28,11 +28,13 @@ pub(super) fn add_selected(
     }
     let cards = &deck.cards;
     let sets = parts(cards, set);
+    let first = subcases.first().map(|s| s.id);
+    let stated = deck.case_control.place_of("NSM", first);
     if set != 0 && !cards.nsms.iter().any(|c| sets.contains(&c.sid)) {
         faults.push(ModelFault {
             card: "NSM".to_owned(),
             field: "SID",
-            at: subcases.first().map_or(Place::default(), |s| s.at),
+            at: stated.unwrap_or_default(),
             kind: FaultKind::Missing {
                 what: "NSM set",
                 id: set.into(),

@@ -2,8 +2,9 @@
 
 use super::fault::{FaultKind, ModelFault};
 use super::types::{Model, UnsupportedCard};
+use nastran::bdf::vocabulary::effect_of_card;
 use nastran::bdf::{Deck, OtherCard};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Kind of object that a card defines under its id.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -45,6 +46,8 @@ pub(super) fn name_cards(
     let mut out = Vec::with_capacity(faults.len());
     for fault in faults {
         match card_of(&fault.kind, deck, &cards, generator) {
+            // The fault of the unknown name is enough.
+            Some((_, card)) if effect_of_card(&card.name).is_none() => {}
             Some((what, card)) => {
                 named.insert(card.at, card);
                 users.entry((card.at, what)).or_default().push(fault);
@@ -79,6 +82,23 @@ pub(super) fn name_cards(
     out
 }
 
+/// Drops the notes of unattached grids that an element without a struct names: an element uses them, though the model lacks it.
+pub(super) fn attach_grids(deck: &Deck, faults: &mut Vec<ModelFault>) {
+    let is_element = |c: &&OtherCard| defined_by(&c.name) == Some(Defined::Element);
+    let elements = deck.others.iter().filter(is_element);
+    let mut named: HashSet<String> = HashSet::new();
+    for card in elements {
+        named.extend(deck.fields(card).into_iter().skip(1));
+    }
+    if named.is_empty() {
+        return;
+    }
+    faults.retain(|f| {
+        let grid = f.card.strip_prefix("GRID ");
+        f.kind != FaultKind::Unattached || !grid.is_some_and(|id| named.contains(id))
+    });
+}
+
 /// Cards without a struct by what they define and its id, the first of each.
 fn by_id(deck: &Deck) -> HashMap<(Defined, u32), &OtherCard> {
     let mut cards = HashMap::new();
@@ -101,6 +121,8 @@ fn defined_by(name: &str) -> Option<Defined> {
     };
     Some(match name {
         "GRIDB" | "GRIDF" | "EGRID" | "RINGAX" | "RINGFL" => Defined::Grid,
+        // A misspelt name: the reference to its id is not another fault.
+        n if n.starts_with("MAT") && effect_of_card(n).is_none() => Defined::Material,
         n if n.starts_with("CORD") || n == "GMCORD" => Defined::Frame,
         n if n.strip_prefix("MAT").is_some_and(is_material) => Defined::Material,
         n if n.starts_with("PLOAD") || NO_PROPERTIES.contains(&n) => return None,

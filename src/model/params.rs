@@ -41,7 +41,11 @@ impl Builder<'_> {
             }
             if let Some(expected) = wrong {
                 let kind = FaultKind::Word {
-                    found: format!("{value:?}"),
+                    found: match value {
+                        ParamValue::Integer(n) => n.to_string(),
+                        ParamValue::Real(x) => x.to_string(),
+                        ParamValue::Text(t) => t.clone(),
+                    },
                     expected,
                 };
                 self.fault(format!("PARAM,{}", p.name), "V1", at, kind);

@@ -19,7 +19,6 @@ impl Builder<'_> {
             .enumerate()
             .map(|(i, p)| (p.id, ShellPropertyIx(i as u32)))
             .collect();
-        let first_thickness = self.first_corner_thickness();
         let cards = self.cards;
         let blank_t: HashSet<u32> = cards
             .pshells
@@ -66,32 +65,9 @@ impl Builder<'_> {
             s.property = new_ix.get(s.property.us()).copied().unwrap_or(s.property);
         }
         properties.sort_by_key(|p| p.id);
-        for p in &mut properties {
-            // Z1 and Z2 of a PSHELL without T follow from the thickness of its elements.
-            if let (ShellKind::Homogeneous { t, .. }, Some(te)) =
-                (&p.kind, first_thickness.get(&p.id))
-                && *t == 0.0
-                && p.z == [0.0, 0.0]
-            {
-                p.z = [-te / 2.0, te / 2.0];
-            }
-        }
         out.sort_by_key(|s| s.id);
         self.model.shell_properties = properties;
         self.model.shells = out;
-    }
-
-    /// Mean corner thickness of the first element of each property that states any.
-    fn first_corner_thickness(&self) -> HashMap<u32, f64> {
-        let mut out = HashMap::new();
-        for s in &self.cards.shells {
-            let stated: Vec<f64> = s.thickness.iter().flatten().copied().collect();
-            if !stated.is_empty() && !s.tflag {
-                out.entry(s.pid.unwrap_or(s.id))
-                    .or_insert(stated.iter().sum::<f64>() / stated.len() as f64);
-            }
-        }
-        out
     }
 
     fn shell(
@@ -257,12 +233,11 @@ impl Builder<'_> {
             bending_ratio: p.bending_ratio.unwrap_or(1.0),
             shear_ratio: p.shear_ratio.unwrap_or(SHEAR_RATIO),
         };
-        let z = [p.z1.unwrap_or(-t / 2.0), p.z2.unwrap_or(t / 2.0)];
         ShellProperty {
             id: p.id,
             kind,
             nsm: p.nsm.unwrap_or(0.0),
-            z,
+            z: [p.z1, p.z2],
             at: p.at,
         }
     }
@@ -302,7 +277,7 @@ impl Builder<'_> {
             id: p.id,
             kind,
             nsm: p.nsm,
-            z: [z0, z0 + total],
+            z: [Some(z0), Some(z0 + total)],
             at: p.at,
         }
     }
@@ -324,7 +299,7 @@ fn without_stiffness(id: u32, at: Place) -> ShellProperty {
         id,
         kind,
         nsm: 0.0,
-        z: [0.0, 0.0],
+        z: [None, None],
         at,
     }
 }

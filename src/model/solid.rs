@@ -6,6 +6,27 @@ use super::shell::shell_normal;
 use super::types::*;
 use std::collections::HashMap;
 
+/// Words of the fields 5 to 8 of a PSOLID.
+///
+/// # Reference
+/// PSOLID in the quick reference guides of MSC Nastran, Simcenter Nastran and OptiStruct.
+const OPTIONS: [(&str, &[&str]); 4] = [
+    ("IN", &["BUBBLE", "TWO", "THREE", "0", "1", "2", "3"]),
+    ("STRESS", &["GRID", "GAUSS", "GAUS", "BOTH", "0", "1"]),
+    (
+        "ISOP",
+        &[
+            "REDUCED", "FULL", "MODPLAST", "URI", "SRI", "AURI", "0", "1", "2", "3",
+        ],
+    ),
+    (
+        "FCTN",
+        &[
+            "SMECH", "PFLUID", "FFLUID", "FLUID", "PORO", "SPORO", "FRIGID",
+        ],
+    ),
+];
+
 impl Builder<'_> {
     pub(super) fn solids(&mut self) {
         let cards = self.cards;
@@ -20,6 +41,16 @@ impl Builder<'_> {
             };
             ix.insert(id, self.model.solid_properties.len() as u32);
             let options = p.options.clone();
+            for (found, (field, known)) in options.iter().zip(OPTIONS) {
+                let expected = known.join(", ");
+                if let Some(found) = found.clone().filter(|w| !known.contains(&w.as_str())) {
+                    let kind = FaultKind::Unsupported {
+                        what: format!("`{found}` (not one of {expected})"),
+                        remedy: "write a word of the quick reference guide",
+                    };
+                    self.fault(format!("PSOLID {id}"), field, p.at, kind);
+                }
+            }
             self.model.solid_properties.push(SolidProperty {
                 id,
                 material,

@@ -99,13 +99,35 @@ fn mcid_is_projected_on_the_element_and_theta_is_in_degrees() {
 }
 
 #[test]
+fn fibre_distances_of_a_tapered_shell_are_local_unless_stated() {
+    let of = |corners: &str, z: &str| {
+        let deck = format!("{QUAD}CQUAD4,1,1,1,2,3,4\n,,,{corners}");
+        let deck = deck.replace("PSHELL,1,1,.01,1,,1", &format!("PSHELL,1,1,.01,1,,1{z}"));
+        let m = model(&deck).0;
+        m.fibres(&m.shells[0])
+    };
+    // a blank corner has T of the property, .01
+    let tapered = of(".02,.04,.06,", "");
+    let halves = [0.01, 0.02, 0.03, 0.005];
+    assert_eq!(tapered.corners, halves.map(|h| [-h, h]));
+    let [low, high] = tapered.centre;
+    assert!((low + 0.01625).abs() < 1e-15 && (high - 0.01625).abs() < 1e-15);
+    let stated = of(".02,.04,.06,", ",,,\n,-.1,.2");
+    assert_eq!(stated.corners, [[-0.1, 0.2]; 4]);
+    assert_eq!(stated.centre, [-0.1, 0.2]);
+}
+
+#[test]
 fn default_fibre_distances_are_half_the_thickness() {
     let (m, _) = model(&format!("{QUAD}CQUAD4,1,1,1,2,3,4"));
-    assert_eq!(m.shell_properties[0].z, [-0.005, 0.005]);
+    assert_eq!(m.fibres(&m.shells[0]).centre, [-0.005, 0.005]);
     let (m, _) = model("MAT1,1,2.+11,,.3\nPCOMP,1,,,,,,,SYM\n,1,.1,45.,,1,.2,0.");
     let p = &m.shell_properties[0];
     assert!(
-        (p.z[0] + 0.3).abs() < 1e-15 && (p.z[1] - 0.3).abs() < 1e-15,
+        p.fibres(9.0)
+            .iter()
+            .zip([-0.3, 0.3])
+            .all(|(z, right)| (z - right).abs() < 1e-15),
         "{:?}",
         p.z
     );

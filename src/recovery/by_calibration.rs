@@ -26,13 +26,18 @@ pub(super) fn recover(
         true => handling,
         false => Handling::AsMeasured,
     };
-    let (mut findings, readings) =
-        misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives));
+    // Where nothing was learnt of the scatter, what a gauge deviates by is compared with nothing.
+    let (mut findings, readings) = match known.is_tested {
+        true => misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives)),
+        false => (vec![untested()], readings.to_vec()),
+    };
     let mut runs: Vec<RunEstimate> = readings
         .par_iter()
         .map(|r| estimate(s, r, errors, known))
         .collect();
-    findings.extend(unlike::check(&s.gauges, &runs, known));
+    if known.is_tested {
+        findings.extend(unlike::check(&s.gauges, &runs, known));
+    }
     for (run, r) in runs.iter_mut().zip(&readings) {
         if unlike::is_unlike(run, known) {
             *run = unlike::estimate_loosely(s, r, errors, known);
@@ -50,4 +55,15 @@ pub(super) fn recover(
         )
     }));
     (runs, findings)
+}
+
+/// The finding on a calibration whose intervals no run tested.
+pub fn untested() -> Finding {
+    Finding::new(
+        Severity::Error,
+        "coverage-not-tested",
+        "calibration",
+        "S was calibrated with runs of which each one was needed to determine it: nothing is known of the scatter of runs, and the intervals do not include it",
+        "calibrate with further runs; repeats of one loading are the cheapest",
+    )
 }

@@ -4,7 +4,7 @@ use super::errors::ErrorModel;
 use super::types::{Shift, ShiftKind, Widening};
 use crate::estimate::{LinearEstimate, LinearGaussian, ReadingErrors};
 use crate::linalg::Matrix;
-use crate::sensitivity::{Sensitivity, Uncertainty};
+use crate::sensitivity::{LoadForms, Sensitivity, Uncertainty};
 
 /// `f = gain y` for readings `y` of the gauges [`Self::used`], weighed for the model's error at typical loads.
 ///
@@ -31,8 +31,8 @@ pub struct Gain {
     /// Loads and factors behind every row of `gain`: itself, or a sum of loads.
     rows: Vec<Vec<(usize, f64)>>,
     errors: ErrorModel,
-    /// Of a calibrated S, for the gauges used; and a matrix a row of `gain`, by rows: its variance at the loads `f` of S is `f' B f`.
-    calibrated: Option<(Uncertainty, Vec<f64>)>,
+    /// Of a calibrated S, for the gauges used; and the variance of each row of `gain` as a function of the loads of S.
+    calibrated: Option<(Uncertainty, LoadForms)>,
 }
 
 impl Gain {
@@ -238,26 +238,32 @@ impl Gain {
             .iter()
             .map(|c| c[l] * c[l])
             .sum();
-        let own = 2.0 * self.base[(l, l)] + self.model_part(l, change);
+        let calibrated = self.calibrated.as_ref().map_or(0.0, |(_, forms)| {
+            forms.variance_of_change(l, self.of_s(change))
+        });
+        let own = 2.0 * self.base[(l, l)] + self.stated_part(l, change) + calibrated;
         (widening.variance_factor * own + shifts).sqrt()
     }
 
     fn model_part(&self, l: usize, f: &[f64]) -> f64 {
+        self.stated_part(l, f) + self.calibrated_part(l, f)
+    }
+
+    /// Variance of load `l` at loads `f` that the stated error of a model makes.
+    fn stated_part(&self, l: usize, f: &[f64]) -> f64 {
         let row = self.model_variance.row(l);
-        let stated: f64 = row.iter().zip(f).map(|(b, v)| b * v * v).sum();
-        stated + self.calibrated_part(l, f)
+        row.iter().zip(f).map(|(b, v)| b * v * v).sum()
     }
 
     /// Variance of load `l` at loads `f` that the uncertainty of a calibrated S and the scatter of repeats make.
     fn calibrated_part(&self, l: usize, f: &[f64]) -> f64 {
-        // Sums of loads stand behind the loads.
-        let (k, Some((_, forms))) = (self.s.ncols(), &self.calibrated) else {
-            return 0.0;
-        };
-        let form = forms.get(l * k * k..(l + 1) * k * k).unwrap_or(&[]);
-        let rows = form.chunks_exact(k.max(1)).zip(f);
-        rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(b, fm)| b * fm).sum::<f64>())
-            .sum()
+        let forms = self.calibrated.as_ref().map(|c| &c.1);
+        forms.map_or(0.0, |forms| forms.variance(l, self.of_s(f)))
+    }
+
+    /// Loads of S among loads that sums stand behind.
+    fn of_s<'f>(&self, f: &'f [f64]) -> &'f [f64] {
+        f.get(..self.s.ncols()).unwrap_or(f)
     }
 
     /// `scale^2 gain Cov(eps | f) gain'` of a calibrated S, by rows; empty without one.
@@ -266,8 +272,7 @@ impl Gain {
             return Vec::new();
         };
         let n = self.used.len();
-        let loads = f.get(..self.s.ncols()).unwrap_or(f);
-        let strain = Matrix::from_row_slice(n, n, &known.strain_covariance(n, loads));
+        let strain = Matrix::from_row_slice(n, n, &known.strain_covariance(n, self.of_s(f)));
         let loads = &self.gain * strain * self.gain.transpose() * (known.scale * known.scale);
         loads.iter().copied().collect()
     }

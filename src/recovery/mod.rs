@@ -7,7 +7,7 @@
 //! [`calibrated`] is the same for a calibrated S, [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates
 //! into those at rest.
 
-mod by_calibration;
+pub mod by_calibration;
 pub mod calibrated;
 pub mod clock;
 mod determined;
@@ -20,6 +20,7 @@ mod misfit;
 mod missing;
 pub mod net;
 mod outlier;
+pub mod outside_calibration;
 pub mod plausible;
 pub mod residuals;
 mod runs;

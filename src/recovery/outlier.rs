@@ -38,9 +38,10 @@ pub(super) struct Suspects {
     pub shifts: Vec<Shift>,
 }
 
-/// The gauge whose gain or zero error stands out most, where chance doesn't make it so: an error where it shifts a wanted load by more
-/// than the half width of its interval, else a warning, or a note where chance is not quite ruled out. Either way the intervals are widened
-/// by what it does.
+/// Returns the gauge whose gain or zero error stands out most, where chance doesn't make it so.
+///
+/// It is an error where the interval of its size does not contain zero and where it shifts a wanted load by more than the half width of its
+/// interval. Else it is a warning, or a note where chance is not quite ruled out. Either way the intervals are widened by what it does.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
@@ -72,26 +73,29 @@ pub(super) fn check(
     let name = s.gauges.get(test.gauge).map_or("", String::as_str);
     // Stated errors, or what is left without this gauge where that is more.
     let wider = suspect.half_width();
-    let half = wider * (test.size / test.t).abs();
+    let by_others = match test.kind {
+        ShiftKind::Gain => by_others(s, readings, solved, errors, test.gauge),
+        ShiftKind::Offset => None,
+    };
+    let [size, half] = match by_others {
+        Some([size, sigma]) => [size, wider * sigma],
+        None => [test.size, wider * (test.size / test.t).abs()],
+    };
+    // An interval that contains zero refutes no gauge, however rare its residuals are.
+    let is_off = size.abs() > half;
     let size = match test.kind {
-        ShiftKind::Gain => {
-            let [size, half] = match by_others(s, readings, solved, errors, test.gauge) {
-                Some([size, sigma]) => [size, wider * sigma],
-                None => [test.size, half],
-            };
-            format!(
-                "{:+.1} % (+- {:.1} %) of the strain that the others make of it",
-                100.0 * size,
-                100.0 * half
-            )
-        }
+        ShiftKind::Gain => format!(
+            "{:+.1} % (+- {:.1} %) of the strain that the others make of it",
+            100.0 * size,
+            100.0 * half
+        ),
         ShiftKind::Offset => format!(
             "{:+.1} (+- {:.1}) microstrain from what the others make of it",
-            test.size / MICROSTRAIN,
+            size / MICROSTRAIN,
             half / MICROSTRAIN
         ),
     };
-    let (severity, then) = if p < ALARM && ratio > 1.0 {
+    let (severity, then) = if p < ALARM && ratio > 1.0 && is_off {
         let then = format!(
             "that shifts load `{load}` by {ratio:.1} times the half width of its 95 % interval"
         );

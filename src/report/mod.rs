@@ -1,6 +1,7 @@
 //! From plain results to bytes: text, json, csv, html, pdf, spreadsheets. Nothing is computed here.
 
 pub mod command;
+pub mod console;
 mod covariance;
 mod csv_cell;
 mod drawing;

@@ -235,8 +235,8 @@ fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) ->
         if shell.shape != shape {
             continue;
         }
-        let z = model.shell_properties[shell.property.us()].z;
-        let mut push = |at: u32, strain: &[[f64; 3]; 2]| {
+        let fibres = model.fibres(shell);
+        let mut push = |at: u32, z: [f64; 2], strain: &[[f64; 3]; 2]| {
             for layer in 0..2 {
                 rows.ids.push(RowId {
                     entity: shell.id,
@@ -247,12 +247,13 @@ fn shells(model: &Model, case: &CaseResult, shape: ShellShape, corners: bool) ->
                 rows.values.extend(with_invariants(strain[layer]));
             }
         };
-        push(0, centre);
-        for (g, strain) in shell.grids[..shape.n_corners()]
+        push(0, fibres.centre, centre);
+        for ((g, z), strain) in shell.grids[..shape.n_corners()]
             .iter()
+            .zip(fibres.corners)
             .zip(corner_field.get(i).into_iter().flatten())
         {
-            push(model.grids[g.us()].id, strain);
+            push(model.grids[g.us()].id, z, strain);
         }
     }
     rows

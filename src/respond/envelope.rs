@@ -27,7 +27,7 @@ pub enum Spread {
 
 impl Spread {
     /// Standard deviation of `g . loads`.
-    fn along(&self, g: &[f64]) -> f64 {
+    pub(super) fn along(&self, g: &[f64]) -> f64 {
         let k = g.len();
         match self {
             Self::Covariance(c) => (0..k)

@@ -65,3 +65,70 @@ fn units_change_the_raw_condition_number_and_not_the_scaled_one() {
     assert!((newton.condition_number_scaled() - millimetre.condition_number_scaled()).abs() < 1e-9);
     assert!(millimetre.condition_number() > 100.0 * newton.condition_number());
 }
+
+/// An uncertainty of two gauges and two loads with a center and a part at any load, by numbers without a pattern.
+fn uncertain() -> (Uncertainty, Matrix) {
+    let root = Matrix::from_fn(4, 4, |i, j| 0.3 + (1.7 * (i * 4 + j) as f64).sin());
+    let covariance = &root * root.transpose();
+    let known = Uncertainty {
+        covariance: covariance.iter().copied().collect(),
+        scatter: vec![0.04, 0.01, 0.01, 0.09],
+        mean_square: vec![2.0, 0.5, 0.5, 1.0],
+        scale: 1.5,
+        dof: 8.0,
+        dof_outside: 8.0,
+        one_by_one: false,
+        additive: vec![0.5, 0.1, 0.1, 0.7],
+        center: vec![2.0, -1.0],
+        is_tested: true,
+    };
+    (known, covariance)
+}
+
+/// `Cov(eps | f) = q^2 C + A + sum h_j h_k Cov(S_.j, S_.k)`, `h = f - center`, written out; a filter passes it on.
+#[test]
+fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
+    let (known, covariance) = uncertain();
+    let f = [3.0, 1.5];
+    let h = [1.0, 2.5];
+    let q2 = 2.0 * 9.0 + 2.0 * 0.5 * 4.5 + 2.25;
+    let found = known.strain_covariance(2, &f);
+    for g in 0..2 {
+        for i in 0..2 {
+            let of_s: f64 = (0..4)
+                .map(|at| h[at / 2] * h[at % 2] * covariance[(g * 2 + at / 2, i * 2 + at % 2)])
+                .sum();
+            let expected = q2 * known.scatter[g * 2 + i] + known.additive[g * 2 + i] + of_s;
+            assert!((found[g * 2 + i] - expected).abs() < 1e-12);
+        }
+    }
+    let gain = Matrix::from_row_slice(1, 2, &[0.6, -0.2]);
+    let strain = Matrix::from_row_slice(2, 2, &found);
+    let passed = (&gain * strain * gain.transpose())[(0, 0)] * 1.5 * 1.5;
+    let forms = known.load_forms(&gain);
+    assert!((forms.variance(0, &f) - passed).abs() < 1e-12);
+    // From one state to another, what does not depend on the loads is the same: as if the change were counted from its center.
+    let plain = Uncertainty {
+        additive: Vec::new(),
+        center: Vec::new(),
+        ..known.clone()
+    };
+    let change = plain.load_forms(&gain).variance(0, &f);
+    assert!((forms.variance_of_change(0, &f) - change).abs() < 1e-12);
+}
+
+/// `relative^2 s s'` on top: the standard deviation of strain along S itself grows by it alone.
+#[test]
+fn a_common_scale_adds_its_share_of_the_strain() {
+    let s = Matrix::from_row_slice(2, 2, &[1.0, 2.0, 3.0, -1.0]);
+    let (mut known, _) = uncertain();
+    known.center = Vec::new();
+    let before = known.strain_covariance(2, &[1.0, 2.0]);
+    known.add_common_scale(&s, 0.03);
+    let after = known.strain_covariance(2, &[1.0, 2.0]);
+    let strain = [5.0, 1.0];
+    for i in 0..4 {
+        let added = (0.03 / 1.5_f64).powi(2) * strain[i / 2] * strain[i % 2];
+        assert!((after[i] - before[i] - added).abs() < 1e-12);
+    }
+}

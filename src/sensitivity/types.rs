@@ -1,6 +1,7 @@
 //! The matrix with its names and scales.
 
 use super::Uncertainty;
+use crate::estimate::student_95;
 use crate::linalg::{Matrix, dense};
 use crate::units::Quantity;
 
@@ -64,6 +65,17 @@ impl Sensitivity {
         } else {
             0.0
         }
+    }
+
+    /// Half widths of the 95 % intervals of the entries, `n x k`; zeros where S is taken as exact.
+    pub fn half_widths(&self) -> Matrix {
+        let (n, k) = self.values.shape();
+        let Some(u) = &self.uncertainty else {
+            return Matrix::zeros(n, k);
+        };
+        let factor = u.scale * student_95(u.dof);
+        let variance = |e: usize| u.covariance.get(e * (n * k + 1)).copied().unwrap_or(0.0);
+        Matrix::from_fn(n, k, |g, l| factor * variance(g * k + l).max(0.0).sqrt())
     }
 
     /// Column scales: `expected` where every load states it, else 1 over the column's norm (1 for a zero column).

@@ -2,7 +2,7 @@
 
 use crate::linalg::Matrix;
 
-/// What stands behind the interval of a load besides noise: `Cov(eps | f) = q(f)^2 C + sum_jk f_j f_k Cov(S_.j, S_.k)`.
+/// What stands behind the interval of a load besides noise: `Cov(eps | f) = q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k) + A`, `h = f - center`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Covariance of the entries of S, `(n k) x (n k)` by rows, entry `g k + l` for gauge `g` and load `l`; strain^2 per load^2.
@@ -21,6 +21,12 @@ pub struct Uncertainty {
     pub dof_outside: f64,
     /// Whether runs of one load alone, without a model, are all that taught it.
     pub one_by_one: bool,
+    /// `A`, `n x n` by rows: covariance of the readings at any load, from a common zero or from what a straight line leaves; empty: zero.
+    pub additive: Vec<f64>,
+    /// Loads at which the errors of S do not count, because the strain there is what the runs determine; empty: no load.
+    pub center: Vec<f64>,
+    /// Whether runs that were left out tested the intervals; `false` where each run was needed to determine S.
+    pub is_tested: bool,
 }
 
 impl Uncertainty {
@@ -52,21 +58,58 @@ impl Uncertainty {
             dof: f64::INFINITY,
             dof_outside: f64::INFINITY,
             one_by_one: false,
+            additive: Vec::new(),
+            center: Vec::new(),
+            is_tested: true,
+        }
+    }
+
+    /// Adds the error of a scale that all known loads of S share, relative, 1 sd: `Cov(S_gl, S_hm) += sd^2 S_gl S_hm`. The factor that runs left
+    /// out show does not apply to it: they were weighed on the same scale.
+    pub fn add_common_scale(&mut self, s: &Matrix, sd: f64) {
+        if sd == 0.0 {
+            return;
+        }
+        let (n, k) = s.shape();
+        let share = (sd / self.scale).powi(2);
+        for (e, row) in self.covariance.chunks_exact_mut((n * k).max(1)).enumerate() {
+            let own = share * s[(e / k, e % k)];
+            for (f, v) in row.iter_mut().enumerate() {
+                *v += own * s[(f / k, f % k)];
+            }
         }
     }
 
     /// Covariance of the strain that loads `f` cause, `n x n` by rows, noise and `scale` left out.
     pub fn strain_covariance(&self, n: usize, f: &[f64]) -> Vec<f64> {
+        let mut out = match self.center.is_empty() {
+            true => self.change_covariance(n, (f, f)),
+            false => self.change_covariance(n, (f, &self.off_center(f))),
+        };
+        out.iter_mut()
+            .zip(&self.additive)
+            .for_each(|(v, a)| *v += a);
+        out
+    }
+
+    /// `f - center`.
+    pub fn off_center(&self, f: &[f64]) -> Vec<f64> {
+        let center = self.center.iter().copied().chain(std::iter::repeat(0.0));
+        f.iter().zip(center).map(|(f, c)| f - c).collect()
+    }
+
+    /// `q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k)`, `h` the loads `from` the center.
+    fn change_covariance(&self, n: usize, (f, from): (&[f64], &[f64])) -> Vec<f64> {
         let k = f.len();
         let q2 = self.mean_square_of(f);
         let mut out = vec![0.0; n * n];
         for g in 0..n {
             for h in 0..=g {
                 let mut sum = q2 * self.scatter.get(g * n + h).copied().unwrap_or(0.0);
-                for (j, fj) in f.iter().enumerate() {
+                for (j, hj) in from.iter().enumerate() {
                     let row = (g * k + j) * n * k + h * k;
                     let entries = self.covariance.get(row..row + k).unwrap_or(&[]);
-                    sum += fj * entries.iter().zip(f).map(|(c, fk)| c * fk).sum::<f64>();
+                    sum += hj * entries.iter().zip(from).map(|(c, hk)| c * hk).sum::<f64>();
                 }
                 out[g * n + h] = sum;
                 out[h * n + g] = sum;
@@ -75,47 +118,73 @@ impl Uncertainty {
         out
     }
 
+    /// The same without a center: what the errors of S make of it is in the additive part, larger than before at loads beyond the half of it.
+    fn without_center(&self) -> Self {
+        if self.center.is_empty() {
+            return self.clone();
+        }
+        let n = (self.scatter.len() as f64).sqrt().round() as usize;
+        let none = vec![0.0; self.center.len()];
+        Self {
+            additive: self.strain_covariance(n, &none),
+            center: Vec::new(),
+            ..self.clone()
+        }
+    }
+
     /// Mean of the covariance of the strain over loads of standard deviations `scales` that are independent of each other, `n x n` by rows,
     /// noise left out, `scale` in.
     pub fn expected_covariance(&self, n: usize, scales: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; n * n];
+        let none = vec![0.0; scales.len()];
+        let mut out = match self.additive.is_empty() && self.center.is_empty() {
+            true => vec![0.0; n * n],
+            false => self.strain_covariance(n, &none),
+        };
+        out.iter_mut().for_each(|v| *v *= self.scale * self.scale);
         for l in 0..scales.len() {
-            let mut one = vec![0.0; scales.len()];
+            let mut one = none.clone();
             one[l] = self.scale * scales[l];
-            let of_load = self.strain_covariance(n, &one);
+            let of_load = self.change_covariance(n, (&one, &one));
             out.iter_mut().zip(of_load).for_each(|(a, b)| *a += b);
         }
         out
     }
 
-    /// Quadratic forms of a filter `G eps`: for each of its rows, a load or a sum of loads, the `k x k` matrix `B` with `f' B f` its variance for
-    /// the `k` loads `f` of S; `gain` has a column a gauge.
-    pub fn load_forms(&self, gain: &Matrix) -> Vec<f64> {
+    /// Variance of what a filter `G eps` gives, for each of its rows, a load or a sum of loads; `gain` has a column a gauge.
+    pub fn load_forms(&self, gain: &Matrix) -> LoadForms {
         let (rows, n) = gain.shape();
         let k = (self.mean_square.len() as f64).sqrt().round() as usize;
         let scale2 = self.scale * self.scale;
-        let mut out = Vec::with_capacity(rows * k * k);
+        let through = |l: usize, of: &dyn Fn(usize, usize) -> f64| -> f64 {
+            let pairs = (0..n).flat_map(|g| (0..n).map(move |h| (g, h)));
+            pairs
+                .map(|(g, h)| gain[(l, g)] * gain[(l, h)] * of(g, h))
+                .sum()
+        };
+        let entry = |of: &[f64], at: usize| of.get(at).copied().unwrap_or(0.0);
+        let mut out = LoadForms {
+            center: self.center.clone(),
+            ..LoadForms::default()
+        };
         for l in 0..rows {
-            let mut own = 0.0;
-            for g in 0..n {
-                for h in 0..n {
-                    own += gain[(l, g)]
-                        * gain[(l, h)]
-                        * self.scatter.get(g * n + h).copied().unwrap_or(0.0);
-                }
+            let own = through(l, &|g, h| entry(&self.scatter, g * n + h));
+            if !self.additive.is_empty() {
+                let additive = through(l, &|g, h| entry(&self.additive, g * n + h));
+                out.constant.push(scale2 * additive);
             }
             for j in 0..k {
                 for m in 0..k {
-                    let mut sum = own * self.mean_square.get(j * k + m).copied().unwrap_or(0.0);
-                    for g in 0..n {
-                        for h in 0..n {
-                            let at = (g * k + j) * n * k + h * k + m;
-                            sum += gain[(l, g)]
-                                * gain[(l, h)]
-                                * self.covariance.get(at).copied().unwrap_or(0.0);
+                    let scatter = own * entry(&self.mean_square, j * k + m);
+                    let of_entries = through(l, &|g, h| {
+                        entry(&self.covariance, (g * k + j) * n * k + h * k + m)
+                    });
+                    match self.center.is_empty() {
+                        true => out.loads.push(scale2 * (scatter + of_entries)),
+                        false => {
+                            out.loads.push(scale2 * scatter);
+                            out.from_center.push(scale2 * of_entries);
                         }
                     }
-                    out.push(scale2 * sum);
                 }
             }
         }
@@ -140,11 +209,20 @@ impl Uncertainty {
             dof: self.dof,
             dof_outside: self.dof_outside,
             one_by_one: self.one_by_one,
+            additive: match self.additive.is_empty() {
+                true => Vec::new(),
+                false => picked(&self.additive, n, &gauges),
+            },
+            center: self.center.clone(),
+            is_tested: self.is_tested,
         }
     }
 
     /// The same for some of the loads, each in another unit: `loads` has their numbers, and the old units in a new one.
     pub fn of_loads(&self, loads: &[(usize, f64)]) -> Self {
+        if !self.center.is_empty() {
+            return self.without_center().of_loads(loads);
+        }
         let k = (self.mean_square.len() as f64).sqrt().round() as usize;
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let of_gauge = |g: usize| loads.iter().map(move |&(l, unit)| (g * k + l, unit));
@@ -157,20 +235,28 @@ impl Uncertainty {
             dof: self.dof,
             dof_outside: self.dof_outside,
             one_by_one: self.one_by_one,
+            additive: self.additive.clone(),
+            center: Vec::new(),
+            is_tested: self.is_tested,
         }
     }
 
     /// Of one load that is a sum of these, `f` of each: the column `S f`.
     pub fn along(&self, f: &[f64]) -> Self {
+        if !self.center.is_empty() {
+            return self.without_center().along(f);
+        }
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let of_entries = Self {
             scatter: Vec::new(),
             ..self.clone()
         };
         Self {
-            covariance: of_entries.strain_covariance(n, f),
+            covariance: of_entries.change_covariance(n, (f, f)),
             scatter: self.scatter.clone(),
             mean_square: vec![self.mean_square_of(f)],
+            additive: self.additive.clone(),
+            center: Vec::new(),
             ..*self
         }
     }
@@ -188,6 +274,46 @@ impl Uncertainty {
         rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(a, fk)| a * fk).sum::<f64>())
             .sum()
     }
+}
+
+/// Variance of filtered readings as a function of the loads `f`, a part for each row of the filter.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct LoadForms {
+    /// `k x k` matrix `B` by rows a row of the filter: `f' B f`.
+    loads: Vec<f64>,
+    /// The same for the loads less `center`; empty without a center.
+    from_center: Vec<f64>,
+    /// See [`Uncertainty::center`].
+    center: Vec<f64>,
+    /// Part at any load; empty: zero.
+    constant: Vec<f64>,
+}
+
+impl LoadForms {
+    /// Variance of row `l` at loads `f`.
+    pub fn variance(&self, l: usize, f: &[f64]) -> f64 {
+        let constant = self.constant.get(l).copied().unwrap_or(0.0);
+        let own = constant + form(&self.loads, l, f);
+        if self.from_center.is_empty() {
+            return own;
+        }
+        let off: Vec<f64> = f.iter().zip(&self.center).map(|(f, c)| f - c).collect();
+        own + form(&self.from_center, l, &off)
+    }
+
+    /// Variance of the change of row `l` when the loads change by `f`: what does not depend on the loads is the same before and after.
+    pub fn variance_of_change(&self, l: usize, f: &[f64]) -> f64 {
+        form(&self.loads, l, f) + form(&self.from_center, l, f)
+    }
+}
+
+/// `f' B f` with matrix number `l` of a list.
+fn form(all: &[f64], l: usize, f: &[f64]) -> f64 {
+    let k = f.len();
+    let one = all.get(l * k * k..(l + 1) * k * k).unwrap_or(&[]);
+    let rows = one.chunks_exact(k.max(1)).zip(f);
+    rows.map(|(row, fj)| fj * row.iter().zip(f).map(|(b, fm)| b * fm).sum::<f64>())
+        .sum()
 }
 
 /// Some rows and columns of a square matrix of `order`, each times its factor.

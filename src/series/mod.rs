@@ -19,6 +19,7 @@
 //! - [`content`]: up to which frequency a signal has content
 //! - [`align`]: shifting by a part of a sample
 //! - [`resample`]: samples between samples
+//! - [`shift`]: the time shift between two recordings of the same signals
 //! - [`rainflow`]: cycles and pseudo-damage
 
 pub mod align;
@@ -40,6 +41,7 @@ pub mod rainflow;
 pub mod record;
 pub mod resample;
 pub mod rpc;
+pub mod shift;
 pub mod spectrum;
 pub mod still;
 pub mod welch;

@@ -141,4 +141,48 @@ mod tests {
         assert_eq!(read.list[0].samples, [7.0, f64::from(u32::MAX)]);
         assert_eq!(read.list[1].samples, [7.0, -1.0]);
     }
+
+    #[test]
+    fn columns_of_a_type_that_is_not_read_are_named_with_it() {
+        let schema = "message m { required int32 time (DATE); required fixed_len_byte_array(8) P1 (DECIMAL(12,2)); required int32 P2; }";
+        let schema = std::sync::Arc::new(parse_message_type(schema).unwrap());
+        let mut bytes = Vec::new();
+        let mut file = SerializedFileWriter::new(&mut bytes, schema, Default::default()).unwrap();
+        let mut group = file.next_row_group().unwrap();
+        for is_decimal in [false, true, false] {
+            let mut column = group.next_column().unwrap().unwrap();
+            if is_decimal {
+                let value = parquet::data_type::FixedLenByteArray::from(vec![0; 8]);
+                let typed = column.typed::<parquet::data_type::FixedLenByteArrayType>();
+                typed.write_batch(&[value], None, None).unwrap();
+            } else {
+                let typed = column.typed::<parquet::data_type::Int32Type>();
+                typed.write_batch(&[1], None, None).unwrap();
+            }
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+        file.close().unwrap();
+        let open = |wanted: &str, declared_hz| {
+            let options = Options {
+                declared_hz,
+                wanted: vec![wanted.to_owned()],
+                ..Options::default()
+            };
+            open_record(Arc::new(bytes.clone()), &options)
+                .err()
+                .map(|e| e.to_string())
+        };
+        let time = open("P2", None).unwrap();
+        assert!(
+            time.contains("`time` contains dates without a time of day"),
+            "{time}"
+        );
+        let decimal = open("P1", Some(1.0)).unwrap();
+        assert!(
+            decimal.contains("`P1` contains decimal numbers as bytes"),
+            "{decimal}"
+        );
+        assert_eq!(open("P2", Some(1.0)), None);
+    }
 }

@@ -77,6 +77,26 @@ impl Fourier {
         }
     }
 
+    /// Returns `sum of a(i + lag) b(i)` for the signals of two spectra of one length: lags from 0 on, negative ones from the end.
+    pub fn correlation(&mut self, a: &Spectrum, b: &Spectrum) -> Vec<f64> {
+        let plan = inverse(a.n_padded);
+        let mut bins: Vec<Complex64> = a
+            .bins
+            .iter()
+            .zip(&b.bins)
+            .map(|(a, b)| a * b.conj())
+            .collect();
+        for at in [0, a.n_padded / 2] {
+            bins[at].im = 0.0;
+        }
+        let mut out = plan.make_output_vec();
+        let done = plan.process(&mut bins, &mut out);
+        debug_assert!(done.is_ok());
+        let scale = 1.0 / a.n_padded as f64;
+        out.iter_mut().for_each(|v| *v *= scale);
+        out
+    }
+
     /// Every `keep_every`-th sample of the signal of a spectrum (a power of two; frequencies above the new half rate are cut off).
     pub fn samples(&mut self, s: &Spectrum, keep_every: usize) -> Vec<f64> {
         let n = s.n_thinned(keep_every);

@@ -2,7 +2,7 @@
 //!
 //! Eight bytes `SBCALIB1`, the length of a JSON header (u32), the header (names of gauges and loads, scale, degrees of freedom, whether
 //! loads were taught one by one), then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by
-//! rows; mean squares of S.
+//! rows; mean squares of S; where the header states `additive`, the covariance of readings at any load by rows.
 
 use crate::host::fault::{Fault, Faults};
 use crate::sensitivity::{Sensitivity, Uncertainty};
@@ -21,6 +21,17 @@ struct Header {
     dof_outside: Option<f64>,
     #[serde(default)]
     one_by_one: bool,
+    /// Loads at which errors of S do not count; with it, or where strain errs at any load, a further `n x n` block of numbers ends the file.
+    #[serde(default)]
+    center: Vec<f64>,
+    #[serde(default)]
+    additive: bool,
+    #[serde(default = "yes")]
+    is_tested: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// The file of a calibrated S; `None` where it has no uncertainty.
@@ -33,12 +44,16 @@ pub fn covariance_bytes(s: &Sensitivity) -> Option<Vec<u8>> {
         dof: u.dof.is_finite().then_some(u.dof),
         dof_outside: u.dof_outside.is_finite().then_some(u.dof_outside),
         one_by_one: u.one_by_one,
+        center: u.center.clone(),
+        additive: !u.additive.is_empty(),
+        is_tested: u.is_tested,
     };
     let header = serde_json::to_vec(&header).ok()?;
     let mut out = MAGIC.to_vec();
     out.extend(u32::try_from(header.len()).ok()?.to_le_bytes());
     out.extend(header);
     let numbers = u.covariance.iter().chain(&u.scatter).chain(&u.mean_square);
+    let numbers = numbers.chain(&u.additive);
     numbers.for_each(|v| out.extend(v.to_le_bytes()));
     Some(out)
 }
@@ -72,7 +87,11 @@ pub fn read_covariance(
     let (n, k) = (header.gauges.len(), header.loads.len());
     let sizes = n
         .checked_mul(k)
-        .and_then(|nk| Some([nk.checked_mul(nk)?, n.checked_mul(n)?, k.checked_mul(k)?]))
+        .and_then(|nk| {
+            let n2 = n.checked_mul(n)?;
+            let additive = if header.additive { n2 } else { 0 };
+            Some([nk.checked_mul(nk)?, n2, k.checked_mul(k)?, additive])
+        })
         .ok_or_else(broken)?;
     let numbers: Vec<f64> = rest[length..]
         .chunks_exact(8)
@@ -82,6 +101,7 @@ pub fn read_covariance(
         || !(rest.len() - length).is_multiple_of(8)
         || numbers.iter().any(|v| !v.is_finite())
         || !header.scale.is_finite()
+        || !(header.center.is_empty() || header.center.len() == k)
     {
         return Err(broken());
     }
@@ -106,7 +126,8 @@ pub fn read_covariance(
         ));
     }
     let (covariance, numbers) = numbers.split_at(sizes[0]);
-    let (scatter, squares) = numbers.split_at(sizes[1]);
+    let (scatter, rest) = numbers.split_at(sizes[1]);
+    let (squares, additive) = rest.split_at(sizes[2]);
     let all = Uncertainty {
         covariance: covariance.to_vec(),
         scatter: scatter.to_vec(),
@@ -115,6 +136,9 @@ pub fn read_covariance(
         dof: header.dof.unwrap_or(f64::INFINITY),
         dof_outside: header.dof_outside.or(header.dof).unwrap_or(f64::INFINITY),
         one_by_one: header.one_by_one,
+        additive: additive.to_vec(),
+        center: header.center,
+        is_tested: header.is_tested,
     };
     let order: Vec<usize> = places.into_iter().flatten().collect();
     Ok(all.of_gauges(&order))

@@ -24,6 +24,8 @@ pub struct DeckModel {
     pub files: Vec<PathBuf>,
     /// Everything that is wrong: in cards, then in the model.
     pub faults: FaultList,
+    /// Those of [`Self::faults`] that come of cards that are not carried: `check` warns of the cards (`card-not-solved`).
+    pub not_carried: FaultList,
     /// What is worth knowing.
     pub findings: Vec<Finding>,
 }
@@ -87,7 +89,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     let mut faults = deck_faults(&deck);
     let mut findings = notes_of(&deck, given);
     let file_of = |f: &ModelFault| deck.path(f.at).to_owned();
-    sort_out(&model_faults, &file_of, &mut faults, &mut findings, given);
+    let not_carried = sort_out(&model_faults, &file_of, &mut faults, &mut findings, given);
     faults.extend(mass_beyond(&model, given));
     findings.extend(not_solved(&deck, &model, given));
     DeckModel {
@@ -96,6 +98,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
         model,
         files,
         faults,
+        not_carried,
         findings,
     }
 }
@@ -146,7 +149,7 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
             )
         })
         .collect();
-    sort_out(
+    let not_carried = sort_out(
         &model_faults,
         &|_| given.to_owned(),
         &mut faults,
@@ -160,6 +163,7 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
         model,
         files: Vec::new(),
         faults,
+        not_carried,
         findings,
     })
 }
@@ -189,6 +193,9 @@ fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
     let field = match (f.card.as_str(), f.field) {
         ("", _) => "deck".to_owned(),
         (card, None) => card.to_owned(),
+        (card, Some(field)) if matches!(f.what, nastran::bdf::Wrong::NoSuchField { .. }) => {
+            format!("{card} field {}", field.number)
+        }
         (card, Some(field)) => format!("{card} {}", field.name),
     };
     Fault::at(
@@ -233,25 +240,30 @@ impl DeckModel {
     }
 }
 
-/// Errors become faults; notes become findings, one a kind.
+/// Errors become faults; notes become findings, one a kind. Returns the faults that come of cards that are not carried.
 fn sort_out(
     model_faults: &[ModelFault],
     file_of: &dyn Fn(&ModelFault) -> String,
     faults: &mut FaultList,
     findings: &mut Vec<Finding>,
     given: &str,
-) {
+) -> FaultList {
+    let mut not_carried = FaultList::new();
     for f in model_faults
         .iter()
-        .filter(|f| f.weight() == FaultWeight::Error)
+        .filter(|f| f.weight() != FaultWeight::Note)
     {
-        faults.push(Fault::at(
+        let fault = Fault::at(
             file_of(f),
             f.at.line,
             format!("{} {}", f.card, f.field),
             f.kind.to_string(),
             f.remedy(),
-        ));
+        );
+        if f.weight() == FaultWeight::NotCarried {
+            not_carried.push(fault.clone());
+        }
+        faults.push(fault);
     }
     let notes = |pick: fn(&FaultKind) -> bool| -> Vec<&ModelFault> {
         model_faults
@@ -269,6 +281,10 @@ fn sort_out(
             notes(|k| matches!(k, FaultKind::SharedId { .. })),
         ),
         (
+            "card-repeated",
+            notes(|k| matches!(k, FaultKind::Repeated { .. })),
+        ),
+        (
             "set-missing",
             notes(|k| matches!(k, FaultKind::Missing { what: "set", .. })),
         ),
@@ -284,6 +300,7 @@ fn sort_out(
         finding.measured = Some(list.len() as f64);
         findings.push(finding);
     }
+    not_carried
 }
 
 /// Young's modulus by material id, and density times WTMASS, for the plausibility of units.

@@ -77,6 +77,16 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         });
     }
     check_wanted(job, given.line, &table, &loads, &mut faults);
+    let is_load = |name: &&String| loads.iter().any(|l| l.name == **name);
+    for name in given.range.keys().filter(|n| !is_load(n)) {
+        faults.push(Fault::at(
+            &*job.file,
+            given.line,
+            "sensitivity.range",
+            format!("`{name}` is not a load of `{}`", table.file),
+            suggest::remedy(name, loads.iter().map(|l| l.name.as_str())),
+        ));
+    }
     let is_read = |c: usize| c == key || at.iter().any(|a| a.0 == c);
     let lacking = job.loads.iter().map(|l| l.name.as_str());
     let lacking = lacking.filter(|n| loads.iter().all(|l| l.name != *n));

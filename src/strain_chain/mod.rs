@@ -15,19 +15,21 @@ pub(crate) mod named_results;
 pub(crate) mod not_solved;
 pub(crate) mod solved;
 mod specs;
+mod stated_points;
 mod unit_loads;
 mod units;
 
 pub use alternative_rows::{alternative_rows, alternatives_of};
 pub use covariance::{covariance_bytes, read_covariance};
 pub use fields::{Beside, Fields, read_fields, read_fields_beside};
-pub use gauges::{lay_gauges, not_laid, off_their_elements, without_strain};
+pub use gauges::{lay_gauges, not_laid, without_strain};
 pub use given::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
     mesh_errors, refined_mesh,
 };
 pub use specs::corrected_spec_of;
+pub use stated_points::point_findings;
 pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
 

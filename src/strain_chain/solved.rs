@@ -477,11 +477,18 @@ pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
         .faults()
         .into_iter()
         .map(|f| {
-            let file = match f.at.line {
-                0 => read.given.clone(),
-                _ => read.deck.path(f.at).to_owned(),
+            let at = match error {
+                FeError::MissingSet { kind, subcase, .. } => {
+                    let stated = read.deck.case_control.place_of(kind, Some(*subcase));
+                    stated.unwrap_or(f.at)
+                }
+                _ => f.at,
             };
-            Fault::at(file, f.at.line, f.card, f.reason, f.remedy)
+            let file = match at.line {
+                0 => read.given.clone(),
+                _ => read.deck.path(at).to_owned(),
+            };
+            Fault::at(file, at.line, f.card, f.reason, f.remedy)
         })
         .collect();
     let unknown = Fault::of(&*read.given, "solve", error.to_string(), "correct the deck");

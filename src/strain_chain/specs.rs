@@ -1,10 +1,11 @@
 //! The job's gauges with their ids resolved on the model.
 
-use crate::gauge::{GaugePlace, GaugeSpec, Pair, centre};
+use super::stated_points::side_of;
+use crate::gauge::{GaugePlace, GaugeSpec, Pair, away_from, centre, opposite};
 use crate::host::fault::Fault;
 use crate::job::correct::turned_by;
 use crate::job::readings::readings_of;
-use crate::job::{Job, JobGauge, StatedPlace};
+use crate::job::{Job, JobGauge, SAME_SIDE, SAME_SIDE_REMEDY, StatedPlace};
 use crate::model::{Frame, Mat3, Model, Vec3};
 use nastran::cards::CoordKind;
 
@@ -85,10 +86,35 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         None => Ok(Mat3::identity()),
     };
     let axes = axes_at(place)?;
+    let side = side_of(model, g);
+    let across = || {
+        fault(
+            "surface2",
+            format!(
+                "gauge `{}`: `element2` is not parallel to `element`, so that no side of it is the opposite one",
+                g.name
+            ),
+            "state `surface2`",
+        )
+    };
     let pair = match g.pair {
-        Some((id, surface)) => {
+        Some((id, stated)) => {
             let ix = shell(id, "element2")?;
             let turn = axes_at(GaugePlace::Shell(ix))?.tr_mul(&axes);
+            let surface = match (stated, place) {
+                (Some(surface), _) => surface,
+                (None, GaugePlace::Shell(own)) => {
+                    away_from(model, (own, side), ix).ok_or_else(across)?
+                }
+                (None, _) => opposite(side),
+            };
+            if place == GaugePlace::Shell(ix) && surface == side {
+                return Err(fault(
+                    "surface2",
+                    format!("gauge `{}`: {SAME_SIDE}", g.name),
+                    SAME_SIDE_REMEDY,
+                ));
+            }
             Some(Pair {
                 turn,
                 ..Pair::parallel(ix, surface)
@@ -99,7 +125,10 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
     Ok(GaugeSpec {
         name: g.name.clone(),
         place,
-        surface: g.surface_stated.then_some(g.surface),
+        surface: match place {
+            GaugePlace::Shell(_) => Some(side),
+            _ => g.surface_stated.then_some(g.surface),
+        },
         direction: g.direction.map(|d| axes.tr_mul(&Vec3::from(d))),
         angle_rad: g.angle_deg.to_radians(),
         bridge: g.bridge,

@@ -30,6 +30,13 @@ pub struct LoadSigma {
     pub unit: String,
 }
 
+impl LoadSigma {
+    /// Returns the standard deviation that a reader can count on: as glued where the job states tolerances.
+    pub fn sigma(&self) -> f64 {
+        self.sigma_as_glued.unwrap_or(self.sigma)
+    }
+}
+
 /// Units by load, in job order. A load that only a given S names is a moment where its name says so (`.M`, `_M`, leading `M`).
 pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
     names

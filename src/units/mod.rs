@@ -2,6 +2,7 @@
 //!
 //! Inside, a model keeps the units of its deck; a number is converted once on reading and once in a report.
 
+mod interval;
 mod number;
 mod plausible;
 mod report;
@@ -12,6 +13,7 @@ mod unit;
 #[cfg(test)]
 mod tests;
 
+pub use interval::{half_width, plus_minus};
 pub use number::{fixed, number};
 pub use plausible::*;
 pub use report::*;

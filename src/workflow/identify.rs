@@ -3,11 +3,13 @@
 use crate::host::context::Context;
 use crate::host::fault::Faults;
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::series::channels::Channels;
 use crate::series::detrend::rms;
 use crate::strain_chain::named_results::check_tables;
+use crate::units::number;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::chassis::{ChassisForce, chassis_forces};
 use crate::vehicle::checks::MassClosure;
@@ -62,6 +64,28 @@ pub struct Identified {
 
 impl Answer for Identified {
     const COMMAND: &'static str = "identify";
+    const RESULT: &'static str = "The parameters";
+
+    fn verdict(&self) -> String {
+        let asked = || self.parameters.iter().filter(|p| !p.known);
+        let worst = self
+            .fit
+            .iter()
+            .max_by(|a, b| a.relative_rms.total_cmp(&b.relative_rms));
+        let fit = worst.map_or_else(String::new, |f| {
+            format!(
+                ", largest residual {} % of {} ({})",
+                number(100.0 * f.relative_rms),
+                f.channel,
+                f.on
+            )
+        });
+        format!(
+            "{} of {} identified{fit}.",
+            asked().filter(|p| p.identifiable).count(),
+            counted(asked().count(), "parameter")
+        )
+    }
 }
 
 /// A record with the wheel forces recovered from it.

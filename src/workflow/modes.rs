@@ -7,6 +7,7 @@ use crate::gauge::{CornerRows, build, reading};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::Model;
@@ -15,7 +16,7 @@ use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::named_results::{Absent, check_named};
 use crate::strain_chain::solved::{faults_of, support_of_job};
 use crate::strain_chain::{corrected_spec_of, not_laid};
-use crate::units::{MICROSTRAIN, UnitSystem};
+use crate::units::{MICROSTRAIN, UnitSystem, number};
 use serde::{Serialize, Serializer};
 use std::path::Path;
 
@@ -78,6 +79,22 @@ pub struct Modes {
 
 impl Answer for Modes {
     const COMMAND: &'static str = "modes";
+    const RESULT: &'static str = "The modes";
+
+    fn verdict(&self) -> String {
+        let n = counted(self.modes.len(), "elastic mode");
+        let (Some(first), Some(last)) = (self.modes.first(), self.modes.last()) else {
+            return format!("{n}; the structure is {}.", self.support);
+        };
+        let error = self.modes.iter().map(|m| m.frequency_error);
+        format!(
+            "{n} from {} to {} Hz, frequencies exact to {:.0e}; the structure is {}.",
+            number(first.hz),
+            number(last.hz),
+            error.fold(0.0, f64::max),
+            self.support
+        )
+    }
 }
 
 /// The lowest `count` elastic modes of a job's structure on the job's support, with the strain of its gauges.

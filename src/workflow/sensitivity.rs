@@ -4,6 +4,7 @@ use crate::gauge::{Gauge, GaugeSpec, build};
 use crate::host::context::Context;
 use crate::host::fault::Faults;
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::{AngleStep, Job};
 use crate::sensitivity::{check_separability, common_shells, from_cases};
@@ -12,6 +13,7 @@ use crate::strain_chain::{
     Conditioning, GaugeMeshError, Prepared, WantedAt, lay_gauges, load_units, mesh_errors, prepare,
     read_fields, without_strain,
 };
+use crate::units::number;
 use crate::workflow::place::allowed_sites;
 use serde::Serialize;
 
@@ -40,6 +42,21 @@ pub struct Sensed {
 
 impl Answer for Sensed {
     const COMMAND: &'static str = "sensitivity";
+    const RESULT: &'static str = "The sensitivities";
+
+    fn verdict(&self) -> String {
+        let c = &self.conditioning;
+        let scaled = c.condition_number_scaled.map_or_else(
+            || "the loads are not separable".to_owned(),
+            |n| format!("scaled condition number {}", number(n)),
+        );
+        format!(
+            "Sensitivities of {} to {}: rank {}, {scaled}.",
+            counted(self.gauges, "gauge"),
+            counted(self.loads.len(), "load"),
+            c.rank
+        )
+    }
 }
 
 /// S of the job's gauges, or of each allowed surface at each angle of the grid where it has none.
@@ -83,6 +100,7 @@ pub(crate) fn prepared(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
 /// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).
 fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let fields = read_fields(work, job, WantedAt::Anywhere)?;
+    let job = &job.with_property_ids(&fields.model().property_names)?;
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);

@@ -8,6 +8,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::linalg::sparse::OrderingMethod;
@@ -21,7 +22,7 @@ use crate::strain_chain::solved::{
     cases_of_job, faults_of, is_combination, refuse_repeated_subcases, relief_of_job, solve_kept,
     static_case, support_of_job,
 };
-use crate::units::UnitSystem;
+use crate::units::{UnitSystem, number};
 use nastran::bdf::Request;
 use nastran::cards::ShellShape;
 use serde::Serialize;
@@ -87,6 +88,21 @@ pub struct MassAndCentre {
 
 impl Answer for SolvedCases {
     const COMMAND: &'static str = "solve";
+    const RESULT: &'static str = "The solution";
+
+    fn verdict(&self) -> String {
+        let first = self.elastic_modes_hz.first();
+        let first = first.map_or_else(String::new, |hz| {
+            format!(", first elastic mode {} Hz", number(*hz))
+        });
+        let support = self.support.as_ref();
+        let support = support.map_or_else(String::new, |s| format!("; the structure is {s}"));
+        format!(
+            "{} solved on {}{first}{support}.",
+            counted(self.solution.cases.len(), "load case"),
+            counted(self.grids, "grid")
+        )
+    }
 }
 
 /// What is to be solved.
@@ -226,8 +242,9 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
     Faults::check(read.faults.clone())?;
     refuse_repeated_subcases(&read)?;
     refuse(&read.model, &[]).map_err(|e| faults_of(&e, &read))?;
-    work.findings
-        .extend(suport_without_inrel(&read.model, read.deck.sol));
+    let suport = suport_without_inrel(&read.model, read.deck.sol);
+    let explained = suport.is_some();
+    work.findings.extend(suport);
     work.findings.extend(other_sequence(&read));
     let mut left_out = Vec::new();
     let mut cases = Vec::new();
@@ -263,7 +280,9 @@ fn of_deck(work: &mut Work, path: &Path) -> Result<Task, Faults> {
             Relief::None => return None,
             _ => Support::free(&read.model),
         };
-        relief_finding(&read.model, support, SupportChoice::Deck)
+        // SUPORT without PARAM,INREL is already reported, with what is assumed.
+        let new = |f: &Finding| !explained || f.code != "inertia-relief-assumed";
+        relief_finding(&read.model, support, SupportChoice::Deck).filter(new)
     }));
     if cases.is_empty() {
         return Err(Faults::from(Fault::of(

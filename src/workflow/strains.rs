@@ -8,6 +8,7 @@ use crate::host::context::Context;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::FileBytes;
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::model::Model;
 use crate::strain_chain::deck::{looks_like_op2, read_model};
@@ -38,6 +39,16 @@ pub struct Strains {
 
 impl Answer for Strains {
     const COMMAND: &'static str = "strains";
+    const RESULT: &'static str = "The strain";
+
+    fn verdict(&self) -> String {
+        format!(
+            "{} of strain in {}, from {}.",
+            counted(self.rows, "row"),
+            counted(self.subcases, "static subcase"),
+            self.solution.source
+        )
+    }
 }
 
 /// Shell and bar strain of every static subcase, for `strains.csv`.

@@ -6,6 +6,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::files::Input;
 use crate::host::manifest::Manifest;
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use serde::Serialize;
 use serde_json::Value;
@@ -26,6 +27,18 @@ pub struct Verified {
 
 impl Answer for Verified {
     const COMMAND: &'static str = "verify";
+    const RESULT: &'static str = "The result folder";
+
+    fn verdict(&self) -> String {
+        format!(
+            "{} the same as the inputs give now, {}.",
+            match self.same.len() {
+                1 => "1 file is".to_owned(),
+                n => format!("{n} files are"),
+            },
+            counted(self.differs.len(), "difference")
+        )
+    }
 }
 
 /// A difference between what stands in the folder and what its inputs give now.

@@ -633,8 +633,11 @@ fn what_failed_is_tried_again() {
             .args(["fleet", "job.toml", "T1_1.csv", "--out", "out"])
             .output()
             .unwrap();
-        let words = String::from_utf8(done.stdout).unwrap();
-        assert!(words.contains("0 kept from before"), "{words}");
+        let said = String::from_utf8(done.stderr).unwrap();
+        assert!(
+            said.contains("0 results kept from an earlier run"),
+            "{said}"
+        );
     }
 }
 

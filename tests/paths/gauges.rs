@@ -169,9 +169,9 @@ fn the_second_side_left_out_is_the_opposite_one() {
     let job = |rows: &str| Job::read("job.toml", &table(rows)).unwrap();
     let pair = |rows: &str| job(rows).gauges[0].pair.unwrap();
     use strainbridge::fe::strain_tensor::Surface::{Bottom, Top};
-    assert_eq!(pair("g,6,bottom,half,7,\n"), (7, Top));
-    assert_eq!(pair("g,6,,half,7,\n"), (7, Bottom));
-    assert_eq!(pair("g,6,bottom,half,,top\n"), (6, Top));
+    assert_eq!(pair("g,6,bottom,half,7,\n"), (7, None));
+    assert_eq!(pair("g,6,,half,7,bottom\n"), (7, Some(Bottom)));
+    assert_eq!(pair("g,6,bottom,half,,top\n"), (6, Some(Top)));
     assert!(refused(&table("g,6,bottom,,,top\n")).contains("g.csv:2: element2"));
 }
 

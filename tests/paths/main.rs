@@ -3,14 +3,18 @@
 mod cases;
 mod combinations;
 mod command;
+mod deck_rules;
 mod first_hour;
 mod frame;
 mod gauges;
 mod misread;
+mod named_properties;
 mod names;
 mod op2_mesh;
 mod placement;
+mod sides;
 mod sites;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;
+mod thickness;
 mod wing;

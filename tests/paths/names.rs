@@ -183,7 +183,7 @@ fn misspelt_names_of_bulk_data_are_refused_by_name_and_line() {
 }
 
 #[test]
-fn misspelt_words_of_case_control_are_refused_or_noted() {
+fn misspelt_words_of_case_control_are_refused() {
     let known: Vec<&str> = all_words().map(|w| w.0).collect();
     let mut refused = 0;
     for word in misspelt(&known, 20, 300) {
@@ -199,17 +199,11 @@ fn misspelt_words_of_case_control_are_refused_or_noted() {
                 assert!(t.solved.is_err(), "{word}");
                 refused += 1;
             }
-            Some(read) if read.misspelt => {
-                let note = format!("`{word}` is read as {}", read.name);
-                let noted = t.findings.iter().any(|f| f.message.contains(&note));
-                // A misspelt statement of executive control has no place here.
-                assert!(noted || !t.faults.is_empty(), "{word}: {:?}", t.findings);
-            }
-            // The beginning of another word: an abbreviation.
+            // The beginning of another word: an abbreviation. Or the plural of an output request.
             Some(_) => {}
         }
     }
-    assert!(refused > 100, "{refused}");
+    assert!(refused > 200, "{refused}");
 }
 
 #[test]

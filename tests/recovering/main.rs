@@ -3,6 +3,7 @@
 //! Two loads A and B, four gauges; strain is made here from S, so every expected load is known.
 
 mod calibrated;
+mod compared;
 #[path = "../drawn/mod.rs"]
 mod drawn;
 mod dynamic;

@@ -230,6 +230,23 @@ fn a_stated_place_that_the_strain_refutes_is_named_and_a_right_one_is_not() {
     assert_eq!(of(&right), Vec::<String>::new(), "{right:?}");
     let wrong = weighed(at_the_grid, only(["R05", "R06"]), |t| t);
     assert_eq!(of(&wrong).len(), 1, "{wrong:?}");
+    // The runs file states the place of each run, in metres, at the grid or away from it: only a wrong one is named.
+    let known = |job: String| {
+        let job = job.replace("\"free\"", "\"known\"");
+        job.replace("support = \"known\"", "support = \"free\"")
+            .replace("\"strain\", \"reactions\"", "\"strain\"")
+    };
+    let own = weighed(known, |t| t, |t| t);
+    assert_eq!(of(&own), Vec::<String>::new(), "{own:?}");
+    let moved = |text: String| -> String {
+        let change = |line: &str| match line.strip_prefix("R03,900,2.100,") {
+            Some(rest) => format!("R03,900,2.800,{rest}\n"),
+            None => line.to_owned() + "\n",
+        };
+        text.lines().map(change).collect()
+    };
+    let wrong = weighed(known, |t| t, moved);
+    assert_eq!(of(&wrong), ["R03"], "{wrong:?}");
 }
 
 #[test]

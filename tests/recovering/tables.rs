@@ -259,3 +259,106 @@ fn columns_of_a_table_of_loads_that_nothing_reads_are_named() {
     let list = found.findings.to_vec();
     assert!(unread(&list)[0].message.ends_with("`Q`"), "{list:?}");
 }
+
+/// The same loads as a table, as a binary record and in RPC III give the same stress; the 16 bits of RPC III are a step of 1/32,000 of the largest.
+#[test]
+fn loads_of_every_record_format_give_the_stress_of_their_table() {
+    let loads = [1.0, -12.5, 40.0, 25.0, 0.0];
+    let mut table = "time,P\n".to_owned();
+    let mut binary = Vec::new();
+    strainbridge::series::binary::write_header(
+        &mut binary,
+        &["P [kN]".to_owned()],
+        5,
+        0.0,
+        0.1,
+        1.0,
+    )
+    .unwrap();
+    for (i, v) in loads.iter().enumerate() {
+        let _ = writeln!(table, "{},{v}", i as f64 * 0.1);
+        binary.extend_from_slice(&((v / 1000.0) as f32).to_le_bytes());
+    }
+    let target = strainbridge::series::rpc::Target {
+        name: "P".to_owned(),
+        unit: "N".to_owned(),
+        min: -12.5,
+        max: 40.0,
+    };
+    let mut rpc = Vec::new();
+    let next = |from: usize, to: usize, out: &mut Vec<f64>| out.extend(&loads[from..to]);
+    strainbridge::series::rpc::write_rpc(&mut rpc, &[target], 0.1, 5, next).unwrap();
+    let answer = |name: &str, bytes: &[u8]| {
+        let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+        let job = format!(
+            "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+             [respond]\nloads = \"{name}\"\n"
+        );
+        let files = files.with("job.toml", job).with(name, bytes);
+        let job = Job::read("job.toml", &files).unwrap();
+        let found = respond(&job, &Context::new(&files)).unwrap();
+        (
+            found.states,
+            found.elements[0].max_von_mises,
+            found.elements[0].at.clone(),
+        )
+    };
+    let (states, stress, at) = answer("loads.csv", table.as_bytes());
+    assert_eq!((states, at.as_deref()), (5, Some("0.2")));
+    for (name, bytes, digits) in [
+        ("loads.bin", &binary, 1e-6),
+        ("loads.rsp", &rpc, 1.0 / 32_000.0),
+    ] {
+        let (n, found, at) = answer(name, bytes);
+        assert_eq!((n, at), (states, Some("0.2".to_owned())), "{name}");
+        assert!(
+            (found / stress - 1.0).abs() < digits,
+            "{name}: {found} {stress}"
+        );
+    }
+    // A record without the load is refused.
+    let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+    let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"Q\"\ngrid = 2\ncomponent = \"FY\"\n\
+               [respond]\nloads = \"loads.bin\"\n";
+    let files = files.with("job.toml", job).with("loads.bin", binary);
+    let job = Job::read("job.toml", &files).unwrap();
+    let faults = respond(&job, &Context::new(&files))
+        .map(|_| ())
+        .unwrap_err();
+    assert!(
+        faults
+            .to_string()
+            .contains("no column is named after a load"),
+        "{faults}"
+    );
+}
+
+/// Damage of twice the loads is `2^m` times the damage, with intervals of the loads it has one, and runs make no cycles.
+#[test]
+fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
+    let answer = |key: &str, factor: f64| {
+        let mut table = format!("{key},P,P.low,P.high\n");
+        for (i, v) in [1.0, -12.5, 40.0, 25.0, 30.0, 0.0].iter().enumerate() {
+            let v = v * factor;
+            let _ = writeln!(table, "{i},{v},{},{}", v - 0.5, v + 0.5);
+        }
+        let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+        let job = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+                   [respond]\nloads = \"loads.csv\"\nslope = 4.0\n";
+        let files = files.with("job.toml", job).with("loads.csv", table);
+        let job = Job::read("job.toml", &files).unwrap();
+        respond(&job, &Context::new(&files)).map(|o| o.answer.fatigue)
+    };
+    let [once, twice] = [1.0, 2.0].map(|factor| answer("time", factor).unwrap());
+    assert!(!once.is_empty() && once.len() == twice.len());
+    for (a, b) in once.iter().zip(&twice) {
+        assert!((b.damage / a.damage - 16.0).abs() < 1e-9, "{a:?} {b:?}");
+        assert!(a.damage_low < a.damage && a.damage < a.damage_high, "{a:?}");
+        assert_eq!(a.angle_deg, b.angle_deg);
+    }
+    let said = answer("run", 1.0).map(|_| ()).unwrap_err().to_string();
+    assert!(
+        said.contains("respond.slope") && said.contains("make no cycles"),
+        "{said}"
+    );
+}

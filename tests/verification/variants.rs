@@ -24,7 +24,7 @@ fn thicker(model: &Model, factor: f64) -> Model {
         if let ShellKind::Homogeneous { t, .. } = &mut p.kind {
             *t *= factor;
         }
-        p.z = p.z.map(|z| z * factor);
+        p.z = p.z.map(|z| z.map(|z| z * factor));
     }
     for s in out.shells.iter_mut().step_by(3) {
         s.thickness = s.thickness.map(|t| t * factor);

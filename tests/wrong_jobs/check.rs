@@ -18,7 +18,8 @@ fn ask(command: &str, job: &Path) -> (i32, String) {
     }
     let done = asked.output().unwrap();
     let said = [done.stdout, done.stderr].concat();
-    let said = String::from_utf8_lossy(&said).into_owned();
+    // Later lines of a finding are indented.
+    let said = String::from_utf8_lossy(&said).replace("\n    ", " ");
     (done.status.code().unwrap(), said)
 }
 

@@ -13,7 +13,8 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
         .current_dir(folder)
         .output()
         .unwrap();
-    let error = String::from_utf8_lossy(&done.stderr).into_owned();
+    // Later lines of a finding are indented.
+    let error = String::from_utf8_lossy(&done.stderr).replace("\n    ", " ");
     (done.status.code().unwrap_or(-1), error)
 }
 
@@ -265,7 +266,9 @@ fn a_record_of_no_number_is_refused_without_one() {
         .unwrap();
     let said = String::from_utf8_lossy(&done.stdout);
     assert_eq!(done.status.code(), Some(1), "{said}");
-    assert!(said.contains("R03: N.FZ not known, "), "{said}");
+    let row = said.lines().find(|l| l.starts_with("R03"));
+    let row: Vec<&str> = row.unwrap_or("").split_whitespace().collect();
+    assert_eq!(row.get(1), Some(&"-"), "{said}");
     assert!(!said.contains("NaN") && !said.contains("inf "), "{said}");
 }
 

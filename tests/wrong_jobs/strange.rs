@@ -12,7 +12,8 @@ fn call(folder: &Path, arguments: &[&str]) -> (i32, String) {
         .output()
         .unwrap();
     let said = [done.stdout, done.stderr].concat();
-    let said = String::from_utf8_lossy(&said).into_owned();
+    // Later lines of a finding are indented.
+    let said = String::from_utf8_lossy(&said).replace("\n    ", " ");
     (done.status.code().unwrap_or(-1), said)
 }
 

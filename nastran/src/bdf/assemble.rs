@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::continuation_name::{Claimed, asks, bare, claim};
+use super::continuation_name::{Claimed, asks, bare, claim, is_marked, key};
 use super::emit::emit;
 use super::fault::{Fault, Wrong};
 use super::fields::{excerpt, note_fault};
@@ -28,7 +28,7 @@ enum Open {
 pub(super) struct Assembler<'a, 'b> {
     source: SourceIx,
     budget: &'b AtomicUsize,
-    /// Names of continuations that belong to cards elsewhere in the deck.
+    /// Names of continuations that the card above them does not ask for.
     claimed: &'b Claimed,
     pub part: Part,
     open: Open,
@@ -44,8 +44,6 @@ pub(super) struct Assembler<'a, 'b> {
     before: Vec<&'a [u8]>,
     template: Option<Template>,
     names: NameReader,
-    /// The deferred card that the next orphan follows.
-    last_deferred: Option<usize>,
 }
 
 impl<'a, 'b> Assembler<'a, 'b> {
@@ -65,7 +63,6 @@ impl<'a, 'b> Assembler<'a, 'b> {
             before: Vec::with_capacity(64),
             template: None,
             names: NameReader::default(),
-            last_deferred: None,
         }
     }
 
@@ -172,7 +169,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
     /// Whether the open card takes a continuation of another name: neither it nor the name asks for others.
     fn takes(&self, wanted: &[u8]) -> bool {
         let is_free = !matches!(self.label, [b'+' | b'*', ..]) || bare(self.label).is_empty();
-        is_free && !self.claimed.contains(wanted)
+        is_free && (self.claimed.is_empty() || !self.claimed.contains(&key(wanted)))
     }
 
     /// Appends a continuation to the card that is open.
@@ -196,22 +193,17 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 
     fn orphan(&mut self, cut: &Cut<'a>, line: &Line) {
-        let follows = if self.open == Open::Card {
-            Some(())
-        } else {
-            None
-        };
         self.finish();
-        let follows = follows.and(self.last_deferred.take());
-        let label = bare(cut.head).to_vec();
+        let label = key(bare(cut.head));
         let mut scratch = Vec::new();
         self.label = cut.fields(&mut scratch);
-        let next = bare(self.label).to_vec();
+        let next = key(bare(self.label));
+        let asks = is_marked(self.label);
         self.part.orphans.push(Orphan {
             label,
             next,
+            asks,
             lines: vec![self.span(line)],
-            follows,
             used: false,
         });
         self.open = Open::Orphan;
@@ -223,7 +215,8 @@ impl<'a, 'b> Assembler<'a, 'b> {
         let span = self.span(line);
         if let Some(orphan) = self.part.orphans.last_mut() {
             orphan.lines.push(span);
-            orphan.next = bare(self.label).to_vec();
+            orphan.next = key(bare(self.label));
+            orphan.asks = is_marked(self.label);
         }
     }
 
@@ -281,13 +274,11 @@ impl<'a, 'b> Assembler<'a, 'b> {
             Open::Nothing | Open::Orphan => {}
             Open::Card => {
                 if let Some(label) = claim(self.label, self.claimed) {
-                    self.last_deferred = Some(self.part.deferred.len());
                     self.part.deferred.push(Deferred {
-                        label: label.to_vec(),
+                        label: key(label),
                         lines: self.spans.clone(),
                     });
                 } else {
-                    self.last_deferred = None;
                     self.emit();
                 }
                 self.before_name = self.name;

@@ -8,7 +8,7 @@ use super::source::{Chunk, Source};
 use super::split::{Lead, cut};
 use crate::place::{Place, SourceIx};
 
-/// Names that a card asks for whose continuation stands below another card.
+/// Names in upper case that a card asks for whose continuation is below another card.
 pub(super) type Claimed = HashSet<Vec<u8>>;
 
 /// Returns the name without the marks of columns 1 and 73, which are no part of it. MSC Nastran writes names that begin with `+`.
@@ -19,6 +19,11 @@ pub(super) fn bare(label: &[u8]) -> &[u8] {
     }
 }
 
+/// Whether a mark in column 73 says that the name behind it is of a continuation.
+pub(super) fn is_marked(label: &[u8]) -> bool {
+    matches!(label, [b'+' | b'*', ..]) && !bare(label).is_empty()
+}
+
 /// Returns the name in field 10 where column 73 holds another mark than `+` or `*`.
 fn behind_mark(label: &[u8]) -> &[u8] {
     match label {
@@ -27,9 +32,15 @@ fn behind_mark(label: &[u8]) -> &[u8] {
     }
 }
 
+/// Returns the name in upper case: letters of both cases count as equal.
+pub(super) fn key(name: &[u8]) -> Vec<u8> {
+    name.to_ascii_uppercase()
+}
+
 /// Whether field 10 asks for the continuation of this name.
 pub(super) fn asks(label: &[u8], wanted: &[u8]) -> bool {
-    !wanted.is_empty() && (bare(label) == wanted || behind_mark(label) == wanted)
+    let is = |name: &[u8]| name.eq_ignore_ascii_case(wanted);
+    !wanted.is_empty() && (is(bare(label)) || is(behind_mark(label)))
 }
 
 /// Returns the name of the continuation that a finished card still asks for: one after `+` or `*`, or any that is claimed.
@@ -42,8 +53,11 @@ pub(super) fn claim<'a>(label: &'a [u8], claimed: &Claimed) -> Option<&'a [u8]> 
     if name.is_empty() || name.len() < label.len() {
         return Some(name).filter(|n| !n.is_empty());
     }
+    if claimed.is_empty() {
+        return None;
+    }
     let names = [name, behind_mark(label)];
-    names.into_iter().find(|n| claimed.contains(*n))
+    names.into_iter().find(|n| claimed.contains(&key(n)))
 }
 
 /// A line that names a continuation in field 10.
@@ -77,17 +91,18 @@ pub(super) fn askers(names: &Claimed, chunks: &[Chunk], sources: &[Source]) -> V
             if waits
                 && cut.lead == Lead::Continuation
                 && let Some(asker) = found.last_mut()
-                && bare(cut.head) == asker.name
+                && bare(cut.head).eq_ignore_ascii_case(&asker.name)
             {
                 asker.continuation = Some(at);
             }
             fields.clear();
             let label = cut.fields(&mut fields);
             let asked = [bare(label), behind_mark(label)];
-            let name = asked.into_iter().find(|n| names.contains(*n));
+            let named = asked.into_iter().filter(|n| !n.is_empty());
+            let name = named.map(key).find(|n| names.contains(n));
             waits = name.is_some();
             found.extend(name.map(|name| Asker {
-                name: name.to_vec(),
+                name,
                 at,
                 continuation: None,
             }));
@@ -96,19 +111,11 @@ pub(super) fn askers(names: &Claimed, chunks: &[Chunk], sources: &[Source]) -> V
     found
 }
 
-/// Returns the names of these continuations that cards elsewhere ask for in vain.
-pub(super) fn claimed_elsewhere(loose: &[Span], chunks: &[Chunk], sources: &[Source]) -> Claimed {
+/// Returns the names of continuations that the card above them does not ask for.
+pub(super) fn unasked(loose: &[Span], sources: &[Source]) -> Claimed {
     let name = |span: &Span| {
         let text = span.text(sources);
-        bare(cut(without_comment(text)).head).to_vec()
+        key(bare(cut(without_comment(text)).head))
     };
-    if loose.is_empty() {
-        return Claimed::default();
-    }
-    let names: Claimed = loose.iter().map(name).collect();
-    let askers = askers(&names, chunks, sources).into_iter();
-    askers
-        .filter(|a| a.continuation.is_none())
-        .map(|a| a.name)
-        .collect()
+    loose.iter().map(name).collect()
 }

@@ -54,6 +54,14 @@ pub enum Wrong {
         found: String,
         allowed: &'static str,
     },
+    /// A value where the card has no field.
+    NoSuchField {
+        found: String,
+    },
+    /// A card that asks for a continuation which is nowhere.
+    NoContinuation {
+        label: String,
+    },
     /// A line that is neither a card nor a continuation.
     NotACard {
         found: String,
@@ -127,6 +135,8 @@ impl Wrong {
             | Self::NotDofs { .. }
             | Self::OutOfRange { .. }
             | Self::NotOneOf { .. }
+            | Self::NoSuchField { .. }
+            | Self::NoContinuation { .. }
             | Self::NotACard { .. }
             | Self::Orphan { .. }
             | Self::Ambiguous { .. }
@@ -146,11 +156,14 @@ impl Wrong {
             | Self::NotDofs { found }
             | Self::OutOfRange { found, .. }
             | Self::NotOneOf { found, .. }
+            | Self::NoSuchField { found }
             | Self::NotACard { found }
             | Self::Replication { found, .. }
             | Self::IncludeName { found }
             | Self::Statement { found, .. } => Some(found),
-            Self::Orphan { label } | Self::Ambiguous { label, .. } => Some(label),
+            Self::Orphan { label }
+            | Self::Ambiguous { label, .. }
+            | Self::NoContinuation { label } => Some(label),
             Self::IncludeNotFound { name, .. } | Self::IncludeCycle { name } => Some(name),
             Self::Missing
             | Self::CutShort
@@ -179,6 +192,12 @@ impl Wrong {
             }
             Self::NotOneOf { found, allowed } => {
                 format!("one of {allowed} is needed, found: {found}")
+            }
+            Self::NoSuchField { found } => {
+                format!("the card has no such field, found: {found}")
+            }
+            Self::NoContinuation { label } => {
+                format!("the card asks for a continuation that no line has: {label}")
             }
             Self::NotACard { found } if found.is_empty() => {
                 "the line is neither a card nor a continuation".to_owned()
@@ -236,15 +255,21 @@ impl Wrong {
         match self {
             Self::Missing => "fill in the field",
             Self::NotInteger { .. } => {
-                "write an integer without point or exponent, and check that fields start in columns 1, 9, 17 .."
+                "write an integer without point or exponent, and check that the value is in its own field: between commas, or in columns 9, 17, 25 .. on"
             }
             Self::NotReal { .. } => {
-                "write a number such as 1.5 or 1.5-3, and check that fields start in columns 1, 9, 17 .."
+                "write a number such as 1.5 or 1.5-3, and check that the value is in its own field: between commas, or in columns 9, 17, 25 .. on"
             }
             Self::IntegerForReal { .. } => "write the number with a decimal point",
             Self::NotDofs { .. } => "write digits 1 to 6 without blanks, such as 123",
             Self::OutOfRange { .. } => "correct the number",
             Self::NotOneOf { .. } => "write one of the allowed words",
+            Self::NoSuchField { .. } => {
+                "delete the value, or check that no field before it is missing and that the line belongs to this card"
+            }
+            Self::NoContinuation { .. } => {
+                "add the continuation with this name in columns 1-8, or delete the name in columns 73-80"
+            }
             Self::NotACard { .. } => "begin cards with a name in column 1, comments with $",
             Self::Orphan { .. } => {
                 "put the continuation below its card, or give both the same name in columns 73-80 and 1-8"

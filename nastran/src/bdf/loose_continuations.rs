@@ -9,7 +9,7 @@ use super::fault::{Fault, Wrong};
 use super::fields::note_fault;
 use super::line::{Line, text_of};
 use super::part::{Deferred, Orphan, Part, Span};
-use super::source::{Chunk, Note, Source};
+use super::source::{Chunk, Source};
 use crate::place::Place;
 
 /// Cards that wait for continuations, continuations that wait for cards, and where both are.
@@ -22,8 +22,8 @@ pub(super) struct Loose<'a> {
 
 /// Joins deferred cards with their continuations and reads them.
 ///
-/// A continuation goes to the card that names it, within a file before others, else (with a note) to the card directly above it. A name that
-/// stands twice is a fault.
+/// A continuation goes to the card that names it, within a file before others. A name that is there twice, or that no card has, is a fault.
+/// So is a card that asks for a name which no continuation has.
 pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
     let Loose {
         deferred,
@@ -43,6 +43,7 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
         let mut lines = card.lines.clone();
         let mut label = card.label.clone();
         let mut any = false;
+        let mut asks = true;
         while !ambiguous.contains(&label)
             && let Some(i) = by_label
                 .get_mut(&label)
@@ -51,8 +52,14 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
         {
             orphan.used = true;
             any = true;
+            asks = orphan.asks;
             lines.extend_from_slice(&orphan.lines);
             label.clone_from(&orphan.next);
+        }
+        if any && asks && !label.is_empty() && !ambiguous.contains(&label) {
+            let at = lines.last().map_or(Place::default(), |s| s.at);
+            let label = text_of(&label);
+            refuse(&mut rest, at, Wrong::NoContinuation { label });
         }
         chains.push(lines);
         found.push(any);
@@ -60,30 +67,19 @@ pub(super) fn resolve(loose: Loose<'_>, budget: &AtomicUsize) -> Part {
     let unused = |o: &&mut Orphan| !o.used && !ambiguous.contains(&o.label);
     for orphan in orphans.iter_mut().filter(unused) {
         let at = orphan.lines.first().map_or(Place::default(), |s| s.at);
-        match orphan.follows {
-            Some(card) if found.get(card) == Some(&false) => {
-                if let Some(chain) = chains.get_mut(card) {
-                    chain.extend_from_slice(&orphan.lines);
-                }
-                let text = format!(
-                    "the continuation `{}` does not bear the name its card asks for",
-                    text_of(&orphan.label)
-                );
-                rest.notes.push(Note { at, text });
-            }
-            _ => {
-                let label = text_of(&orphan.label);
-                refuse(&mut rest, at, Wrong::Orphan { label });
-            }
+        let label = text_of(&orphan.label);
+        refuse(&mut rest, at, Wrong::Orphan { label });
+    }
+    let names = deferred.iter().map(|d| &d.label);
+    let names: Claimed = names.filter(|l| !ambiguous.contains(*l)).cloned().collect();
+    let shared = refuse_shared(&names, chunks, sources, &mut rest);
+    let known = |label: &Vec<u8>| ambiguous.contains(label) || shared.contains(label);
+    for (card, _) in deferred.iter().zip(&found).filter(|(_, found)| !**found) {
+        if let Some(line) = card.lines.last().filter(|_| !known(&card.label)) {
+            let label = text_of(&card.label);
+            refuse(&mut rest, line.at, Wrong::NoContinuation { label });
         }
     }
-    let left: Claimed = deferred
-        .iter()
-        .zip(&found)
-        .filter(|(d, found)| !**found && !ambiguous.contains(&d.label))
-        .map(|(d, _)| d.label.clone())
-        .collect();
-    refuse_shared(&left, chunks, sources, &mut rest);
     for chain in &chains {
         let part = read_chain(chain, sources, budget);
         super::merge::append(&mut rest, part);
@@ -142,10 +138,16 @@ fn refuse_ambiguous(
     ambiguous
 }
 
-/// Refuses a continuation below its card that another card of the same file names, too.
-fn refuse_shared(names: &Claimed, chunks: &[Chunk], sources: &[Source], rest: &mut Part) {
+/// Refuses a continuation below its card that another card of the same file names, too. Returns the names.
+fn refuse_shared(
+    names: &Claimed,
+    chunks: &[Chunk],
+    sources: &[Source],
+    rest: &mut Part,
+) -> HashSet<Vec<u8>> {
+    let mut shared = HashSet::new();
     if names.is_empty() {
-        return;
+        return shared;
     }
     let all = askers(names, chunks, sources);
     for waiting in all.iter().filter(|a| a.continuation.is_none()) {
@@ -164,8 +166,10 @@ fn refuse_shared(names: &Claimed, chunks: &[Chunk], sources: &[Source], rest: &m
             let why = format!("{both} both name it");
             let label = text_of(&waiting.name);
             refuse(rest, at, Wrong::Ambiguous { label, why });
+            shared.insert(waiting.name.clone());
         }
     }
+    shared
 }
 
 /// Returns two lines in words, with the file where it is not that of the continuation.

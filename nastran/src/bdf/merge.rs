@@ -19,12 +19,8 @@ pub(super) fn append(to: &mut Part, from: Part) {
     to.notes.extend(from.notes);
     to.labels.extend(from.labels);
     to.loose.extend(from.loose);
-    let offset = to.deferred.len();
     to.deferred.extend(from.deferred);
-    to.orphans.extend(from.orphans.into_iter().map(|mut o| {
-        o.follows = o.follows.map(|i| i + offset);
-        o
-    }));
+    to.orphans.extend(from.orphans);
 }
 
 /// Joins the fields of two [`Cards`]: of `one` the later counts, of `many` the lists are put together. A field that is not listed does

@@ -16,6 +16,7 @@ mod include_statement;
 mod line;
 mod loose_continuations;
 mod merge;
+mod missing_sections;
 mod names;
 mod number;
 mod part;

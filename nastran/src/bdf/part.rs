@@ -44,7 +44,7 @@ pub(super) struct Part {
     pub labels: Vec<Label>,
     pub deferred: Vec<Deferred>,
     pub orphans: Vec<Orphan>,
-    /// Named continuations that were appended to the card above, which does not ask for them.
+    /// Named continuations below a card that does not ask for them: they belong to cards elsewhere, or to none.
     pub loose: Vec<Span>,
 }
 
@@ -95,9 +95,9 @@ pub(super) struct Orphan {
     pub label: Vec<u8>,
     /// Name in field 10 of the last line.
     pub next: Vec<u8>,
+    /// Whether a mark says that this name is of a continuation.
+    pub asks: bool,
     pub lines: Vec<Span>,
-    /// The deferred card of the same part that stands directly above.
-    pub follows: Option<usize>,
     pub used: bool,
 }
 

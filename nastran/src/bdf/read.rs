@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicUsize;
 use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
-use super::continuation_name::{Claimed, claimed_elsewhere};
+use super::continuation_name::{Claimed, unasked};
 use super::deck::Deck;
 use super::fault::{Fault, Wrong};
 use super::fields::MAX_FAULTS;
@@ -81,6 +81,7 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     deck.notes.extend(sections.notes);
     deck.notes.extend(notes);
     check_names(&mut deck);
+    refuse_several_defaults(&mut deck);
     if deck.faults.len() >= MAX_FAULTS {
         let text = format!("only {MAX_FAULTS} faults are listed, there are more");
         deck.notes.push(Note {
@@ -90,6 +91,30 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     }
     deck.sources = sections.sources;
     deck
+}
+
+/// Refuses several cards of defaults, of which a deck may have one.
+fn refuse_several_defaults(deck: &mut Deck) {
+    let cards = &deck.cards;
+    let places = [
+        ("GRDSET", cards.grdset.as_ref().map(|c| c.at)),
+        ("BAROR", cards.baror.as_ref().map(|c| c.at)),
+        ("BEAMOR", cards.beamor.as_ref().map(|c| c.at)),
+    ];
+    for (name, at) in places {
+        let n = deck.counts.get(name).copied().unwrap_or(0);
+        if let Some(at) = at.filter(|_| n > 1) {
+            deck.faults.push(Fault {
+                at,
+                card: name.to_owned(),
+                field: None,
+                what: Wrong::Statement {
+                    found: format!("{n} cards"),
+                    why: "a deck may have one card of this name",
+                },
+            });
+        }
+    }
 }
 
 /// Returns the statements that change the solution sequence or start from an earlier run.
@@ -107,8 +132,8 @@ fn program_changes(statements: &[Statement]) -> Vec<Note> {
 fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     let mut budget = AtomicUsize::new(BUDGET);
     let mut part = read_chunks(chunks, sources, &budget, &Claimed::default());
-    let claimed = claimed_elsewhere(&part.loose, chunks, sources);
-    if !claimed.is_empty() {
+    if !part.loose.is_empty() {
+        let claimed = unasked(&part.loose, sources);
         budget = AtomicUsize::new(BUDGET);
         part = read_chunks(chunks, sources, &budget, &claimed);
     }

@@ -8,6 +8,7 @@ use super::fields::note_fault;
 use super::include::{IncludeRequest, Loaded, Loader};
 use super::include_statement::include_name;
 use super::line::{Lines, text_of, without_comment};
+use super::missing_sections::{PARTS, is_bulk_entry, missing};
 use super::source::{Chunk, Note, Position, SectionBounds, Source};
 use crate::place::{Place, SourceIx};
 
@@ -89,6 +90,7 @@ pub(super) fn read_sections<'l>(
         done: false,
     };
     sections.file(0);
+    sections.refuse_cards_above_bulk();
     sections.note_missing_end();
     sections
 }
@@ -111,6 +113,21 @@ impl Sections<'_> {
                 what,
             },
         );
+    }
+
+    /// Refuses bulk data in case control: BEGIN BULK is missing. One fault, at the first entry; what is below is not read.
+    fn refuse_cards_above_bulk(&mut self) {
+        if self.bounds.bulk_line.is_some() || !self.parts.is_empty() || !self.chunks.is_empty() {
+            return;
+        }
+        if let Some(first) = self.case.iter().position(|s| is_bulk_entry(&s.text)) {
+            let why = "BEGIN BULK, which ends case control, is missing above";
+            let entry = self.case.split_off(first);
+            let fault = entry
+                .first()
+                .map(|s| missing("BEGIN BULK", s.at, &s.text, why));
+            self.faults.extend(fault);
+        }
     }
 
     /// Bulk data that no ENDDATA closes: a fault where the file ends within a line, for then it is cut; else a note.
@@ -237,16 +254,25 @@ impl Sections<'_> {
             .filter(|w| !w.is_empty())
             .nth(1)
             .unwrap_or("BULK");
-        let number_is_zero = upper.rsplit('=').next().is_some_and(|n| n.trim() == "0");
-        if what == "BULK" && !upper.contains('=') || number_is_zero {
-            self.section = Section::Bulk;
-            return true;
-        }
-        self.section = Section::Part;
         let at = Place {
             source: SourceIx(source),
             line: number,
         };
+        if self.section == Section::Executive {
+            let why = "CEND, which ends executive control, is missing above";
+            note_fault(&mut self.faults, missing("CEND", at, text, why));
+        }
+        let is_known = PARTS.contains(&what);
+        if !is_known {
+            let why = "no part of bulk data has this name, BEGIN BULK is needed";
+            note_fault(&mut self.faults, missing("BEGIN", at, text, why));
+        }
+        let number_is_zero = upper.rsplit('=').next().is_some_and(|n| n.trim() == "0");
+        if what == "BULK" && !upper.contains('=') || number_is_zero || !is_known {
+            self.section = Section::Bulk;
+            return true;
+        }
+        self.section = Section::Part;
         let text = text.trim();
         self.notes.push(Note {
             at,

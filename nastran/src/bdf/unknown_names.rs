@@ -10,8 +10,7 @@ use super::vocabulary::{
 use crate::place::SourceIx;
 use std::collections::BTreeSet;
 
-/// Adds a fault for each unknown name of bulk data and each unknown word of case control. Adds a note for each misspelt word that is
-/// read by its first four letters, and for each misspelt parameter.
+/// Adds a fault for each unknown name of bulk data and each unknown word of case control, and a note for each misspelt parameter.
 pub(super) fn check_names(deck: &mut Deck) {
     check_words(deck);
     note_parameters(deck);
@@ -70,11 +69,6 @@ fn check_words(deck: &mut Deck) {
                     found: line.name.clone(),
                     why: "executive control ends at CEND",
                 }
-            }
-            Some(word) if word.misspelt => {
-                let text = format!("`{}` is read as {}", line.name, word.name);
-                deck.notes.push(Note { at: line.at, text });
-                continue;
             }
             Some(_) => continue,
             None => Wrong::UnknownName {

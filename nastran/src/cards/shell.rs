@@ -74,6 +74,15 @@ pub struct Shell {
     pub thickness: [Option<f64>; 4],
 }
 
+impl Shell {
+    /// Returns the card with the thicknesses that it states times `factor`; `None` where it states none, or as shares of that of its property.
+    pub fn with_thickness_times(&self, factor: f64) -> Option<Shell> {
+        let stated = !self.tflag && self.thickness.iter().any(Option::is_some);
+        let thickness = self.thickness.map(|t| t.map(|t| t * factor));
+        stated.then(|| Shell { thickness, ..*self })
+    }
+}
+
 /// CSHEAR.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]

@@ -108,6 +108,8 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
         model: None,
         runs: teach.iter().map(known).collect(),
         sums: vec![vec![1.0; k]],
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

@@ -73,6 +73,8 @@ fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
             uncertainty_rel: OFF,
         }),
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

@@ -155,6 +155,8 @@ fn trial(seed: u64) -> Trial {
         }),
         runs: runs.collect(),
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     };
     let tolerance = GlueTolerance {
         position: POSITION,

@@ -49,6 +49,8 @@ fn lanes(times: usize, scatter: f64, seed: u64) -> Task {
         model: None,
         runs,
         sums: vec![vec![1.0; 3]],
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

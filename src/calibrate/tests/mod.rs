@@ -1,3 +1,4 @@
+mod assumptions;
 mod bridges;
 mod cause;
 mod glued;

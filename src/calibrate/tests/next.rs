@@ -41,6 +41,8 @@ fn calibrated() -> Calibration {
             uncertainty_rel: 0.1,
         }),
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     };
     calibrate(&task).unwrap()
 }
@@ -155,6 +157,8 @@ fn repeated() -> Task {
             uncertainty_rel: 0.1,
         }),
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 
@@ -200,7 +204,7 @@ fn with_repeats_that_scatter_the_next_load_buys_what_a_refit_with_it_has() {
             (run.information / gained - 1.0).abs() < 1e-6,
             "{run:?} {gained}"
         );
-        let after = sensitivity_of(&task, &state.scales, &refit, &state.scatter, 1.0);
+        let after = sensitivity_of(&task, (&state.scales[..], &refit, &state.scatter), 1.0, &[]);
         let sigma = |s: &Sensitivity| sigma_of(s, &sizes, run.load);
         assert!((run.sigma_before / sigma(s) - 1.0).abs() < 1e-6, "{run:?}");
         assert!(

@@ -28,6 +28,8 @@ pub(super) fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> 
         model,
         runs,
         sums: vec![vec![1.0; k]],
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

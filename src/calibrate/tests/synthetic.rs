@@ -64,6 +64,8 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
         }),
         runs: runs.clone(),
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     };
     let f = draw(&mut random);
     let readings = Readings {

@@ -36,6 +36,8 @@ fn task(more: &[[f64; 2]]) -> Task {
         noise: NOISE,
         model: None,
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

@@ -68,6 +68,8 @@ fn task(times: usize, seed: u64) -> Task {
         }),
         runs: runs.collect(),
         sums: vec![vec![1.0; 3]],
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

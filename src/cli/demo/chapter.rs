@@ -20,8 +20,8 @@ pub(super) struct Chapter {
 pub(super) struct Step {
     /// The answer as `result.json` has it.
     pub result: Value,
-    /// What the command said.
-    pub text: String,
+    /// Sentence that states the result of the command.
+    pub summary: String,
     pub findings: Findings,
     pub seconds: f64,
 }

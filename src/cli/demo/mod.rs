@@ -17,12 +17,12 @@ use crate::host::output::Output;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::report::command::{Report, save, write_page};
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;
-use crate::units::UnitSystem;
+use crate::units::{UnitSystem, number};
 use crate::workflow;
 use chapter::{Chapter, DECK, Step};
 use serde::Serialize;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// What the story writes for its commands to read is listed under this.
@@ -80,6 +80,20 @@ struct BeforeAfter {
 
 impl Answer for Story {
     const COMMAND: &'static str = "demo";
+    const RESULT: &'static str = "The story";
+
+    fn verdict(&self) -> String {
+        let found = match self.named.contains(&self.hidden) {
+            true => format!("The hidden effect {} is found", self.hidden),
+            false => format!("The hidden effect {} is not found", self.hidden),
+        };
+        let percent = |share: f64| number(100.0 * share);
+        format!(
+            "{found}: with it in the model, the error of the wheel loads falls from {} % to {} % (rms).",
+            percent(self.wheel_force_error.before),
+            percent(self.wheel_force_error.after)
+        )
+    }
 }
 
 impl Report for Outcome<Story> {
@@ -91,15 +105,15 @@ impl Report for Outcome<Story> {
         Some(page::page(&self.chapters))
     }
 
-    fn words(&self) -> String {
-        let mut text = String::new();
-        for c in &self.chapters {
-            let (folder, seconds, words) = (c.folder, c.step.seconds, &c.words);
-            let _ = writeln!(text, "{folder:<16} {seconds:>6.1} s  {words}");
-        }
+    fn console(&self) -> Console {
+        let row = |c: &Chapter| {
+            let seconds = format!("{:.1} s", c.step.seconds);
+            vec![c.folder.to_owned(), seconds, c.words.clone()]
+        };
+        let rows = self.chapters.iter().map(row).collect();
         let page = self.folder.join("report.html");
-        let _ = writeln!(text, "open {}", page.display());
-        text
+        Console::new(ConsoleTable::new("", &[], rows), None)
+            .next(format!("open {} in a browser", page.display()))
     }
 }
 
@@ -316,7 +330,7 @@ where
 {
     Step {
         result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
-        text: outcome.words(),
+        summary: outcome.summary(),
         findings: outcome.findings.clone(),
         seconds: outcome.seconds.total(),
     }

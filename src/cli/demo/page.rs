@@ -18,6 +18,7 @@ fn section(c: &Chapter) -> Section {
     let link = |words: &str, file: &str| (words.to_owned(), format!("{}/{file}", c.folder));
     let mut blocks = vec![
         Block::Text(c.words.to_owned()),
+        Block::Text(c.step.summary.clone()),
         Block::Links(vec![
             link("report", "report.html"),
             link("result.json", "result.json"),
@@ -27,9 +28,5 @@ fn section(c: &Chapter) -> Section {
     let serious = c.step.findings.iter();
     let serious = serious.filter(|f| f.severity >= Severity::Warning).take(4);
     blocks.extend(serious.map(|f| Block::Note(format!("{}: {}", f.code, f.message))));
-    if !c.step.text.is_empty() {
-        let lines: Vec<&str> = c.step.text.lines().take(14).collect();
-        blocks.push(Block::Lines(lines.join("\n")));
-    }
     Section::new(c.folder, blocks)
 }

@@ -14,13 +14,11 @@ mod merge;
 mod read;
 mod repeated;
 mod shells;
-mod surface_z;
 mod tally;
 
 pub use merge::complete;
 pub use read::{Displacements, ReadOptions, solution_from_file, solution_from_results};
 pub use repeated::{HOLD_ONCE, Repeated, repeated};
-pub use surface_z::surface_z;
 
 #[cfg(test)]
 mod tests;

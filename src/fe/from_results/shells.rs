@@ -1,11 +1,10 @@
 //! Shell rows of one subcase.
 
 use super::ids::Ids;
-use super::surface_z::surface_z;
 use super::tally::{Met, Tally};
 use crate::fe::strain_tensor::{strain_from_curvature, strain_from_stress};
 use crate::fe::{PlaneStrain, ShellField};
-use crate::model::{MaterialKind, Model, Shell, ShellIx, ShellKind};
+use crate::model::{Fibres, MaterialKind, Model, Shell, ShellIx, ShellKind};
 use nastran::results::{Block, Quantity, Rows, ShellForm, columns};
 use std::sync::Arc;
 
@@ -74,7 +73,7 @@ impl<'m> ShellCollector<'m> {
                 }
             };
             let Some(target) = target else { continue };
-            self.put(target, first.at, target.strain(&fibres), tally);
+            self.put(target, first.at, &fibres, tally);
         }
     }
 
@@ -87,7 +86,7 @@ impl<'m> ShellCollector<'m> {
         tally: &mut Tally,
     ) -> Option<Target> {
         let shell = self.model.shells.get(ix)?;
-        let z = surface_z(self.model, shell);
+        let z = self.model.fibres(shell);
         let law = match block.quantity {
             Quantity::Stress => {
                 let law = isotropic(self.model, shell);
@@ -105,8 +104,11 @@ impl<'m> ShellCollector<'m> {
             _ => Law::Fibre,
         };
         if !matches!(law, Law::Curvature(_)) {
+            let z = z.centre;
             let thickness = (z[1] - z[0]).abs();
-            for (fibre, z) in fibres.iter().zip(z) {
+            // The distances of a property that is not carried are not known.
+            let known = thickness > 0.0;
+            for (fibre, z) in fibres.iter().zip(z).filter(|_| known) {
                 if (fibre[0] - z).abs() > FIBRE_TOLERANCE * thickness {
                     tally.add_measured(Met::OtherFibres, shell.id, fibre[0], z);
                     break;
@@ -127,10 +129,10 @@ impl<'m> ShellCollector<'m> {
         })
     }
 
-    fn put(&mut self, target: Target, at: u32, strain: [PlaneStrain; 2], tally: &mut Tally) {
+    fn put(&mut self, target: Target, at: u32, fibres: &[[f64; 4]; 2], tally: &mut Tally) {
         if at == 0 {
             if let Some(centre) = self.centre.get_mut(target.slot) {
-                *centre = strain;
+                *centre = target.strain(fibres, None);
             }
             return;
         }
@@ -156,7 +158,7 @@ impl<'m> ShellCollector<'m> {
                     .get_mut(target.slot)
                     .and_then(|c| c.get_mut(corner))
                 {
-                    *place = strain;
+                    *place = target.strain(fibres, Some(corner));
                 }
             }
             None => tally.add(Met::ForeignCorner, shell.id),
@@ -219,18 +221,20 @@ struct Target {
 #[derive(Clone, Copy)]
 enum Law {
     Fibre,
-    Curvature([f64; 2]),
+    Curvature(Fibres),
     /// E, G, nu.
     Stress([f64; 3]),
 }
 
 impl Target {
-    /// Strain at the surfaces from rows of fibre distance and three components.
-    fn strain(self, fibres: &[[f64; 4]; 2]) -> [PlaneStrain; 2] {
+    /// Strain at the surfaces, at a corner or the centre, from rows of fibre distance and three components.
+    fn strain(self, fibres: &[[f64; 4]; 2], corner: Option<usize>) -> [PlaneStrain; 2] {
         let values = fibres.map(|[_, x, y, xy]| [x, y, xy]);
         match self.law {
             Law::Fibre => values,
-            Law::Curvature(z) => z.map(|z| strain_from_curvature(values[0], values[1], z)),
+            Law::Curvature(z) => z
+                .at(corner)
+                .map(|z| strain_from_curvature(values[0], values[1], z)),
             Law::Stress([e, g, nu]) => values.map(|s| strain_from_stress(s, e, g, nu)),
         }
     }

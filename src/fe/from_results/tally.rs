@@ -85,7 +85,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
         .map(u32::to_string)
         .collect::<Vec<_>>()
         .join(", ");
-    if n > entry.ids.len() {
+    if n > entry.ids.len() && entry.ids.len() >= LISTED {
         ids += ", ..";
     }
     use Severity::{Info, Warning};

@@ -161,9 +161,10 @@ fn a_grid_over_a_step_of_thickness_stays_on_the_same_skin() {
     // Fibres at 1 and 2.5: pure bending strains each by its distance; half of the grid is on each.
     let mut m = plate(2, 1, 0);
     let mut thick = m.shell_properties[0].clone();
-    (thick.id, thick.z) = (2, [-2.5, 2.5]);
+    (thick.id, thick.z) = (2, [Some(-2.5), Some(2.5)]);
     m.shell_properties.push(thick);
     m.shells[1].property = ShellPropertyIx(1);
+    m.shells[1].thickness = [5.0; 4];
     let mut case = field(&m, CornerRows::Absent, |_, z| [1e-6 * z, 0.0, 0.0]);
     case.shells.centre[1]
         .iter_mut()
@@ -315,4 +316,18 @@ fn a_grid_on_a_bar_is_no_longer_than_the_straight_bars_along_it() {
         let got = build(&m, &spec, CornerRows::Absent);
         assert_eq!(got.is_ok(), fits, "{length}: {got:?}");
     }
+}
+
+#[test]
+fn only_shells_that_are_about_parallel_have_an_opposite_side() {
+    let mut web = plate(1, 1, 0);
+    for g in &mut web.grids {
+        g.x = Vec3::new(g.x.x, 5.0, g.x.y);
+    }
+    let m = with_plate(plate(1, 1, 0), web, Vec3::zeros());
+    let from = (ShellIx(0), Surface::Top);
+    assert_eq!(away_from(&m, from, ShellIx(1)), None);
+    assert_eq!(away_from(&m, from, ShellIx(0)), Some(Surface::Bottom));
+    let m = with_plate(plate(1, 1, 0), flipped(plate(1, 1, 0), &[0]), Vec3::z());
+    assert_eq!(away_from(&m, from, ShellIx(1)), Some(Surface::Top));
 }

@@ -54,6 +54,7 @@ impl Folder {
     /// # Errors
     /// The first that can't be removed.
     pub fn clean(&self) -> std::io::Result<(usize, u64)> {
+        half_written::remove_stale(&self.0);
         let (mut n, mut bytes) = (0, 0);
         for (_, size, path) in self.kept() {
             std::fs::remove_file(path)?;
@@ -119,7 +120,9 @@ impl SolutionStore for Folder {
         let write = || -> std::io::Result<()> {
             std::fs::create_dir_all(&self.0)?;
             let file = self.file(key);
-            let part = file.with_extension(format!("{}.part", std::process::id()));
+            half_written::remove_stale(&self.0);
+            let name = format!("{}.solution", key.name());
+            let part = self.0.join(half_written::name_of_part(&name, 0));
             half_written::note(&part);
             let done = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, &file));
             if done.is_err() {

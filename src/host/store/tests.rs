@@ -1,8 +1,9 @@
-use super::Key;
 use super::solution_file::{decode, encode};
+use super::{Folder, Key, SolutionStore};
 use crate::fe::{Balance, MassProperties, Reaction, Reactions, SolveReport, Solved};
 use crate::finding::explain::codes;
 use crate::finding::{Finding, Severity};
+use crate::host::half_written::name_of_part;
 use crate::linalg::Matrix6;
 use crate::linalg::sparse::OrderingMethod;
 use crate::model::Vec3;
@@ -85,4 +86,23 @@ fn a_file_with_any_byte_changed_or_cut_off_is_no_solution() {
     );
     assert!(decode(&bytes, &hash, 8, 3).is_none(), "another model");
     assert!(decode(&bytes, &hash, 7, 2).is_none(), "other cases");
+}
+
+#[test]
+fn a_solution_half_written_by_a_killed_run_goes_when_another_is_kept() {
+    if !std::path::Path::new("/proc/self/ns/pid").exists() {
+        return;
+    }
+    let path = std::env::temp_dir().join(format!("strainbridge-store-{}", std::process::id()));
+    std::fs::create_dir_all(&path).unwrap();
+    // No process has the largest number.
+    let own = format!("-{}-", std::process::id());
+    let dead = name_of_part("0.solution", 0).replace(&own, &format!("-{}-", u32::MAX));
+    std::fs::write(path.join(&dead), "half").unwrap();
+    let store = Folder::at(&path);
+    store.write(&Key([7; 32]), b"whole".to_vec()).unwrap();
+    assert!(!path.join(&dead).exists());
+    assert_eq!(store.read(&Key([7; 32])), Ok(Some(b"whole".to_vec())));
+    assert_eq!(store.clean().unwrap(), (1, 5));
+    assert!(!path.exists());
 }

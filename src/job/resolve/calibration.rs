@@ -1,9 +1,9 @@
 //! `[calibration]`.
 
 use super::super::faults::Collector;
-use super::super::raw::RawCalibration;
+use super::super::raw::{RawCalibration, S};
 use super::super::spanned::Spanned;
-use super::super::types::CalibrationKeys;
+use super::super::types::{CalibrationKeys, Terms};
 
 /// Relative error of a model's S where the job says nothing: models are off by 1 to 10 %, nobody knows where.
 const DEFAULT_MODEL_UNCERTAINTY_REL: f64 = 0.1;
@@ -19,6 +19,9 @@ pub(super) fn calibration(
         model_uncertainty_rel: DEFAULT_MODEL_UNCERTAINTY_REL,
         position_tolerance: 0.0,
         angle_tolerance_deg: 0.0,
+        scale_sd: 0.0,
+        terms: Terms::Linear,
+        check: Vec::new(),
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -35,6 +38,9 @@ pub(super) fn calibration(
     {
         out.model_uncertainty_rel = rel;
     }
+    out.scale_sd = (c.fraction(&raw.scale_sd, "calibration.scale_sd")).unwrap_or(0.0);
+    out.terms = terms(c, &raw.terms);
+    out.check = raw.check.as_ref().map(words).unwrap_or_default();
     for (raw, key, out) in [
         (
             &raw.position_tolerance,
@@ -51,4 +57,20 @@ pub(super) fn calibration(
     }
     out.line = c.line(section);
     out
+}
+
+/// `terms`. A quadratic model would need loads that are solved for by iteration in every sample of a record, which `recover` does not do.
+fn terms(c: &mut Collector, word: &S<String>) -> Terms {
+    let key = "calibration.terms";
+    if let Some(word) = word.as_ref().filter(|w| w.value() == "quadratic") {
+        c.fault(
+            word,
+            key,
+            "`quadratic` is not available: loads are recovered by a linear model",
+            "write terms = \"linear\" or \"intercept\"; the finding `lack-of-fit` reports what squares of loads change, and intervals include it",
+        );
+        return Terms::Linear;
+    }
+    let choices = [("linear", Terms::Linear), ("intercept", Terms::Intercept)];
+    c.choose(word, key, &choices, Terms::Linear)
 }

@@ -15,7 +15,15 @@ const ROUNDED_IN_SUM: f64 = 0.01;
 /// Keys of the section that damage is held against: no record is counted otherwise for them.
 const OF_MERGE: [&str; 4] = ["reference", "target", "mission", "mission_hours"];
 /// What no record is counted by: the title, and sections that other commands alone ask.
-const OF_OTHERS: [&str; 5] = ["title", "ballast", "reconcile", "respond", "study"];
+const OF_OTHERS: [&str; 7] = [
+    "title",
+    "ballast",
+    "compare",
+    "reconcile",
+    "respond",
+    "section",
+    "study",
+];
 
 /// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still a number.
 const LARGEST_KNEE: f64 = 1e12;

@@ -5,7 +5,7 @@ use super::super::raw::{RawGauge, RawGauges};
 use super::super::spanned::Spanned;
 use super::super::types::{JobGauge, NamedFile, StatedPlace};
 use crate::fe::strain_tensor::Surface;
-use crate::gauge::{Bridge, Rosette, opposite};
+use crate::gauge::{Bridge, Rosette};
 use crate::host::fault::{Fault, FaultList};
 use crate::placement::Role;
 
@@ -101,6 +101,16 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
         ));
     }
     let position = raw.position.as_ref().map(|p| *p.value());
+    if let (Some(stated), None, Some(_)) = (&raw.point, &raw.element, position) {
+        let line = c.line(stated);
+        c.faults.push(Fault::at(
+            c.file,
+            line,
+            "gauge.point",
+            POINT_ALONE,
+            ELEMENT_STATED,
+        ));
+    }
     let place = match (number(&raw.element), position) {
         (Some(element), _) => match point {
             Some(point) => StatedPlace::BeamPoint {
@@ -165,7 +175,12 @@ fn gauge(c: &mut Collector, section: &Spanned<RawGauge>) -> Option<JobGauge> {
     Some(gauge)
 }
 
-/// Returns the gauge with its second pair. The default of `surface2` is the opposite of `surface`; the default of `element2`, where `surface2` is
+/// Both pairs of a bridge at one place.
+pub const SAME_SIDE: &str = "both pairs are on the same side of the same element";
+/// Remedy of [`SAME_SIDE`].
+pub const SAME_SIDE_REMEDY: &str = "give the opposite side as `surface2`, or another `element2`";
+
+/// Returns the gauge with its second pair. The default of `surface2` is found on the model; the default of `element2`, where `surface2` is
 /// stated, is the element of the gauge.
 pub(crate) fn with_pair(
     gauge: JobGauge,
@@ -177,10 +192,9 @@ pub(crate) fn with_pair(
         StatedPlace::Element(id) => Some(id),
         _ => None,
     };
-    let side = surface2.unwrap_or(opposite(gauge.surface));
     let pair = match (element2, surface2, own) {
-        (Some(id), ..) => Some((id, side)),
-        (None, Some(_), Some(id)) => Some((id, side)),
+        (Some(id), ..) => Some((id, surface2)),
+        (None, Some(_), Some(id)) => Some((id, surface2)),
         (None, ..) => None,
     };
     let mut fault = |wrong: &str, remedy: &str| {
@@ -199,11 +213,10 @@ pub(crate) fn with_pair(
             "give `element2`, or drop `surface2`: the second pair is then on the opposite side",
         );
     }
-    if own.is_some() && pair == own.map(|id| (id, gauge.surface)) {
-        fault(
-            "both pairs are on the same side of the same element",
-            "give the opposite side as `surface2`, or another `element2`",
-        );
+    // Without a stated side a stated point may determine it.
+    let by_point = !gauge.surface_stated && gauge.position.is_some();
+    if own.is_some() && !by_point && pair == own.map(|id| (id, Some(gauge.surface))) {
+        fault(SAME_SIDE, SAME_SIDE_REMEDY);
     }
     JobGauge { pair, ..gauge }
 }
@@ -214,6 +227,13 @@ pub(in crate::job) const STATION_ALONE: &str =
 /// Remedy of [`STATION_ALONE`].
 pub(in crate::job) const POINT_STATED: &str =
     "state `point` (C, D, E or F) of a bar or beam, or leave `station` out";
+
+/// Fault of a recovery point at a position.
+pub(in crate::job) const POINT_ALONE: &str =
+    "a recovery point is on a bar or beam, and the gauge states a position without its `element`";
+/// Remedy of [`POINT_ALONE`].
+pub(in crate::job) const ELEMENT_STATED: &str =
+    "state `element`, a bar or beam; on a shell leave `point` out";
 
 /// Shares of a bar's length.
 const STATION: &str = "0 (end A) to 1 (end B)";

@@ -100,13 +100,16 @@ pub(super) fn measured(
             .fraction(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
             .unwrap_or(0.0),
         hold_out,
-        time_unit_s: raw.time_unit.as_ref().and_then(|word| {
-            let units = ["s", "ms", "us", "min", "h", "d"];
-            let units = units.map(|unit| (unit, seconds_in(unit).unwrap_or(1.0)));
-            c.choose_at(word, "measured.time_unit", &units)
-        }),
+        time_unit_s: time_unit(c, &raw.time_unit, "measured.time_unit"),
         line: c.line(section),
     })
+}
+
+/// Seconds in one of the unit of time that a key states.
+pub(super) fn time_unit(c: &mut Collector, raw: &S<String>, key: &str) -> Option<f64> {
+    let units = ["s", "ms", "us", "min", "h", "d"];
+    let units = units.map(|unit| (unit, seconds_in(unit).unwrap_or(1.0)));
+    c.choose_at(raw.as_ref()?, key, &units)
 }
 
 pub(super) fn runs(
@@ -146,6 +149,7 @@ pub(super) fn runs(
     }
     Some(Runs {
         file: c.named(&raw.file, "runs.file")?,
+        section: "runs",
         columns: raw
             .columns
             .iter()
@@ -262,6 +266,7 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
         elements: None,
         hottest: DEFAULT_HOTTEST,
         loads: None,
+        slope: None,
         line: 0,
     };
     let Some(section) = raw else { return out };
@@ -271,8 +276,16 @@ pub(super) fn respond(c: &mut Collector, raw: Option<&Spanned<RawRespond>>) -> R
         .count(&raw.hottest, "respond.hottest")
         .unwrap_or(DEFAULT_HOTTEST);
     out.loads = c.named(&raw.loads, "respond.loads");
+    out.slope = slope_of(c, &raw.slope, "respond.slope");
     out.line = c.line(section);
     out
+}
+
+/// Power of a range in pseudo-damage.
+fn slope_of(c: &mut Collector, raw: &S<f64>, key: &str) -> Option<f64> {
+    c.number(raw, key, "a number from 1 to 20", |x| {
+        (1.0..=20.0).contains(&x)
+    })
 }
 
 pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> Recover {
@@ -283,13 +296,13 @@ pub(super) fn recover(c: &mut Collector, raw: Option<&Spanned<RawRecover>>) -> R
             .filter_map(|w| c.choose_at(w, "recover.files", &LoadFile::ALL))
             .collect()
     });
-    let slope = raw.and_then(|r| {
-        c.number(&r.slope, "recover.slope", "a number from 1 to 20", |x| {
-            (1.0..=20.0).contains(&x)
-        })
-    });
+    let slope = raw.and_then(|r| slope_of(c, &r.slope, "recover.slope"));
     Recover {
         files,
         slope: slope.unwrap_or(DEFAULT_SLOPE),
+        csv_every: raw
+            .and_then(|r| c.count(&r.csv_every, "recover.csv_every"))
+            .unwrap_or(1)
+            .max(1),
     }
 }

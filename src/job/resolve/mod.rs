@@ -2,20 +2,23 @@
 
 mod calibration;
 mod channel;
+mod compare;
 mod dynamic;
 mod fleet;
 mod gauge;
 mod load;
 mod measured;
 mod placement;
+mod section;
 mod units;
 mod vehicle;
 
 pub(super) use channel::check_names as check_named;
 pub(super) use gauge::{
-    POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from, role_from, rosette_from,
-    surface_from, with_pair,
+    ELEMENT_STATED, POINT_ALONE, POINT_STATED, STATION_ALONE, bridge_from, check_gauge, point_from,
+    role_from, rosette_from, surface_from, with_pair,
 };
+pub use gauge::{SAME_SIDE, SAME_SIDE_REMEDY};
 
 use super::faults::Collector;
 use super::raw::{RawCandidates, RawJob};
@@ -80,6 +83,8 @@ pub(super) fn resolve_job(
         ),
         measured,
         runs: measured::runs(&mut c, raw.runs.as_ref(), report_units),
+        compare: compare::compare(&mut c, raw.compare.as_ref(), report_units),
+        sections: section::sections(&mut c, &raw.section),
         ballast: measured::ballast(&mut c, raw.ballast.as_ref()),
         payload: measured::payload(&mut c, raw.payload.as_ref()),
         fleet: fleet::fleet(&mut c, raw.fleet.as_ref()),

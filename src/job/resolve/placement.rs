@@ -113,7 +113,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         .and_then(|r| c.choose_at(r, "candidates.rosette", &ROSETTES));
     let ids = |s: &Option<Spanned<Ids>>| s.as_ref().map(|v| v.value().clone());
     out.sets = ids(&raw.sets);
-    out.exclude_properties = ids(&raw.exclude_properties);
+    out.exclude_properties = raw.exclude_properties.as_ref().map(|p| p.value().clone());
     out.exclude_elements = ids(&raw.exclude_elements);
     out.wanted_elements = ids(&raw.wanted_elements);
     out.file = c.named(&raw.file, "candidates.file");

@@ -409,6 +409,31 @@ pub(super) fn sensitivity(
             .collect(),
         signatures,
         covariance: c.named(&raw.covariance, "sensitivity.covariance"),
+        common_zero: c.named(&raw.common_zero, "sensitivity.common_zero"),
+        range: ranges(c, &raw.range, "sensitivity.range"),
+        strain_range: ranges(c, &raw.strain_range, "sensitivity.strain_range"),
         line: c.line(section),
     })
+}
+
+/// Ranges by name; a fault for each that is not two finite ascending numbers.
+fn ranges(
+    c: &mut Collector,
+    raw: &BTreeMap<Spanned<String>, [f64; 2]>,
+    key: &str,
+) -> BTreeMap<String, [f64; 2]> {
+    let mut out = BTreeMap::new();
+    for (name, [low, high]) in raw {
+        if low.is_finite() && high.is_finite() && low <= high {
+            out.insert(name.value().clone(), [*low, *high]);
+        } else {
+            c.fault(
+                name,
+                key,
+                format!("[{low}, {high}] is not a range"),
+                "write the smallest and the largest value of the calibration: [0, 12]",
+            );
+        }
+    }
+    out
 }

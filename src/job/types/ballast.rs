@@ -1,7 +1,7 @@
 //! `[ballast]`.
 
 use super::region::Region;
-use crate::job::shapes::Ids;
+use crate::job::shapes::PropertyIds;
 
 /// `[ballast]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -11,7 +11,7 @@ pub struct Ballast {
     /// Where they may sit.
     pub region: Option<Region>,
     /// Properties whose grids may carry them; `None`: all shells (bars where there are none).
-    pub properties: Option<Ids>,
+    pub properties: Option<PropertyIds>,
     /// The largest one.
     pub max_mass: Option<f64>,
     /// Run whose reactions count; default the first.

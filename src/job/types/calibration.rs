@@ -1,5 +1,15 @@
 //! `[calibration]`.
 
+/// Terms of the strain of a gauge as a function of the loads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Terms {
+    /// `eps = S f`.
+    #[default]
+    Linear,
+    /// `eps = S f + z`, with the strain `z` that the gauges read without load.
+    Intercept,
+}
+
 /// `[calibration]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CalibrationKeys {
@@ -15,6 +25,12 @@ pub struct CalibrationKeys {
     pub position_tolerance: f64,
     /// How far it may be turned, 1 sd; 0: it is not.
     pub angle_tolerance_deg: f64,
+    /// Relative error that all known loads share, 1 sd; 0: none.
+    pub scale_sd: f64,
+    /// Terms of the model of the strain.
+    pub terms: Terms,
+    /// Runs of known load that are not calibrated with, but recovered and compared.
+    pub check: Vec<String>,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
 }

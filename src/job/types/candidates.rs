@@ -4,7 +4,7 @@ use super::named_file::NamedFile;
 use super::region::Region;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, Rosette};
-use crate::job::shapes::Ids;
+use crate::job::shapes::{Ids, PropertyIds};
 
 /// The angles of candidates as a job states them: a step, not the angles themselves ([`crate::placement::candidates::Angles`]).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,7 +19,7 @@ pub enum AngleStep {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
     /// Property ids; `None`: all shells.
-    pub properties: Option<Ids>,
+    pub properties: Option<PropertyIds>,
     /// Element ids; `None`: all.
     pub elements: Option<Ids>,
     /// Surfaces; default both.
@@ -35,7 +35,7 @@ pub struct Candidates {
     /// SETs of the deck's case control that name the elements; `None`: not limited so.
     pub sets: Option<Ids>,
     /// Properties left out.
-    pub exclude_properties: Option<Ids>,
+    pub exclude_properties: Option<PropertyIds>,
     /// Elements left out.
     pub exclude_elements: Option<Ids>,
     /// Elements of which each gets a gauge.

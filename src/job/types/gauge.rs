@@ -36,7 +36,7 @@ pub struct JobGauge {
     pub position: Option<[f64; 3]>,
     /// Surface.
     pub surface: Surface,
-    /// Whether the job states the surface (else it is `top`, or the nearest for a position).
+    /// Whether the job states the surface (else it is `top`, or the one nearest to the stated point).
     pub surface_stated: bool,
     /// Direction to be laid on the surface, basic frame or that of `cid`; `None`: the element x axis.
     pub direction: Option<[f64; 3]>,
@@ -50,8 +50,8 @@ pub struct JobGauge {
     pub bridge_factor: f64,
     /// Length over which strain is averaged; 0: at the point.
     pub grid_length: f64,
-    /// Element and surface of the other pair.
-    pub pair: Option<(u32, Surface)>,
+    /// Element and surface of the other pair; without a surface: the side that faces away from the first pair.
+    pub pair: Option<(u32, Option<Surface>)>,
     /// Three legs instead of one grid.
     pub rosette: Option<Rosette>,
     /// Transverse sensitivity Kt, a fraction.

@@ -3,6 +3,7 @@
 use super::ballast::Ballast;
 use super::calibration::CalibrationKeys;
 use super::candidates::Candidates;
+use super::compare::Compare;
 use super::correction::StrainCorrection;
 use super::dynamic::Dynamic;
 use super::fleet::Fleet;
@@ -17,6 +18,7 @@ use super::reconcile::Reconcile;
 use super::recover::Recover;
 use super::respond::Respond;
 use super::runs::Runs;
+use super::section::RecordSection;
 use super::sensitivity::GivenSensitivity;
 use super::study::Study;
 use super::vehicle::Vehicle;
@@ -64,6 +66,10 @@ pub struct Job {
     pub measured: Option<Measured>,
     /// `[runs]`.
     pub runs: Option<Runs>,
+    /// `[compare]`.
+    pub compare: Option<Compare>,
+    /// `[[section]]`, in job order.
+    pub sections: Vec<RecordSection>,
     /// `[ballast]`.
     pub ballast: Option<Ballast>,
     /// `[payload]`.

@@ -1,7 +1,7 @@
 //! `[reconcile]` and `[[reconcile.effect]]`.
 
 use super::named_file::NamedFile;
-use crate::job::shapes::Ids;
+use crate::job::shapes::{Ids, PropertyIds};
 use std::collections::BTreeMap;
 
 /// Which world `reconcile` compares.
@@ -18,7 +18,7 @@ pub struct Reconcile {
     /// Static or dynamic.
     pub path: ReconcilePath,
     /// Zone to property ids.
-    pub zones: BTreeMap<String, Ids>,
+    pub zones: BTreeMap<String, PropertyIds>,
     /// Place to grid id.
     pub places: BTreeMap<String, u32>,
     /// Apparent strain per degree by bridge name.

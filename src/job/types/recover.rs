@@ -35,4 +35,6 @@ pub struct Recover {
     pub files: Option<Vec<LoadFile>>,
     /// Power of the load range in pseudo-damage.
     pub slope: f64,
+    /// Every how many samples `loads.csv` has a row; default 1.
+    pub csv_every: usize,
 }

@@ -12,6 +12,8 @@ pub struct Respond {
     pub hottest: usize,
     /// Load histories; `None`: recovered from `[measured]`.
     pub loads: Option<NamedFile>,
+    /// Power of the stress range in pseudo-damage; `None`: no damage.
+    pub slope: Option<f64>,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
 }

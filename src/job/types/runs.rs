@@ -1,4 +1,4 @@
-//! `[runs]`.
+//! `[runs]`, and recorded loads of `[compare]`, which are read as those of `[runs]`.
 
 use super::named_file::NamedFile;
 use crate::reconcile::strain::WheelForces;
@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 pub struct Runs {
     /// The file.
     pub file: NamedFile,
+    /// Section of the job that names it: `runs`, `compare`, or `respond`.
+    pub section: &'static str,
     /// Load name or `payload_force`, `payload_mass`, `payload_x`, `payload_y` to the column's name.
     pub columns: BTreeMap<String, String>,
     /// Units of the file; the report units where not stated.
@@ -24,6 +26,23 @@ pub struct Runs {
     pub ground: Option<f64>,
     /// Line of the job.
     pub line: u32,
+}
+
+impl Runs {
+    /// Returns a file of loads in report units, with columns named after the loads.
+    pub fn in_report_units(file: NamedFile, section: &'static str, units: ReportUnits) -> Self {
+        Self {
+            line: file.line,
+            file,
+            section,
+            columns: BTreeMap::new(),
+            units,
+            stated_units: Vec::new(),
+            noise: RunNoise::default(),
+            wheel_forces: WheelForces::Measured,
+            ground: None,
+        }
+    }
 }
 
 /// Noise of the runs file, 1 sd, in its units; `None` where not stated.

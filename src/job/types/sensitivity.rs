@@ -17,6 +17,12 @@ pub struct GivenSensitivity {
     pub signatures: Signatures,
     /// Covariance of S, as `calibrate` writes it.
     pub covariance: Option<NamedFile>,
+    /// Strain that the gauges read without load, as `calibrate` writes it with `terms = "intercept"`.
+    pub common_zero: Option<NamedFile>,
+    /// Smallest and largest load of the calibration by name, in the units of [`Self::per`].
+    pub range: BTreeMap<String, [f64; 2]>,
+    /// Smallest and largest reading of the calibration by gauge, microstrain.
+    pub strain_range: BTreeMap<String, [f64; 2]>,
     /// Line of the job.
     pub line: u32,
 }

@@ -111,7 +111,9 @@ impl Builder<'_> {
                     direction,
                 }),
                 None => {
-                    let found = format!("G1 {:?}, G3 or G4 {:?}", p.face[0], p.face[1]);
+                    let word = |g: Option<u32>| g.map_or("blank".to_owned(), |g| g.to_string());
+                    let [first, other] = p.face.map(word);
+                    let found = format!("G1 {first}, G3 or G4 {other}");
                     let kind = FaultKind::Word {
                         found,
                         expected: "corners that tell a face of the element",

@@ -12,8 +12,8 @@ pub struct ShellProperty {
     pub kind: ShellKind,
     /// Non-structural mass per area.
     pub nsm: f64,
-    /// Fibre distances Z1 (bottom), Z2 (top), from the reference plane.
-    pub z: [f64; 2],
+    /// Stated fibre distances Z1 (bottom), Z2 (top) from the reference plane; `None`: half the local thickness ([`ShellProperty::fibres`]).
+    pub z: [Option<f64>; 2],
     /// Where it stands.
     pub at: Place,
 }

@@ -301,6 +301,9 @@ fn by_a_calibrated_s_a_record_has_the_intervals_of_a_run_with_and_without_sums()
             dof: 9.0,
             dof_outside: 9.0,
             one_by_one: false,
+            additive: Vec::new(),
+            center: Vec::new(),
+            is_tested: true,
         }),
         values,
     };

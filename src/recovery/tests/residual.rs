@@ -2,7 +2,7 @@
 
 use super::super::*;
 use super::{KN, frame, gaussian};
-use crate::finding::Severity;
+use crate::finding::{Finding, Severity};
 use crate::linalg::Matrix;
 use crate::sensitivity::{Load, Sensitivity};
 use rand::SeedableRng;
@@ -216,16 +216,15 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
             let said = got.findings.iter().find(|f| {
                 f.code == GAUGE_SUSPECT && f.subject == "G3" && f.message.contains("% (+- ")
             });
+            // An error has an interval without zero, whichever gauge it is of.
+            let errors = got.findings.iter().filter(|f| {
+                f.severity == Severity::Error && f.code == GAUGE_SUSPECT && f.subject != "all"
+            });
+            for [size, half] in errors.filter_map(size_and_half) {
+                assert!(size.abs() > half, "{seed}: {size} {half}");
+            }
             let Some(said) = said else { continue };
-            let (size, rest) = said
-                .message
-                .split_once("off by ")
-                .unwrap()
-                .1
-                .split_once(" % (+- ")
-                .unwrap();
-            let half = rest.split_once(" %").unwrap().0;
-            let [size, half] = [size, half].map(|v| v.parse::<f64>().unwrap());
+            let [size, half] = size_and_half(said).unwrap();
             covered += i32::from((size + 30.0).abs() <= half);
             of += 1;
         }
@@ -237,4 +236,15 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
             "{model_rel}: {share} of {of}"
         );
     }
+}
+
+/// Size and half width, percent, that a finding states of a gain.
+fn size_and_half(found: &Finding) -> Option<[f64; 2]> {
+    let (size, rest) = found
+        .message
+        .split_once("off by ")?
+        .1
+        .split_once(" % (+- ")?;
+    let half = rest.split_once(" %")?.0;
+    Some([size.parse().ok()?, half.parse().ok()?])
 }

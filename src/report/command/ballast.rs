@@ -4,11 +4,11 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::page::{Page, table_section};
 use crate::units::number;
-use crate::workflow::ballast::{Ballasted, HungMass};
-use std::fmt::Write;
+use crate::workflow::ballast::{Ballasted, HungMass, Reaction};
 
 /// Columns of masses.csv.
 const MASSES: [&str; 9] = [
@@ -68,24 +68,21 @@ impl Report for Outcome<Ballasted> {
         Some(page(self))
     }
 
-    fn words(&self) -> String {
-        let units = &self.job.report_units;
-        let mut text = String::new();
-        for r in &self.reactions {
-            let _ = writeln!(
-                text,
-                "{}: measured {:.3}, before {:.3}, after {:.3} {}",
-                r.name, r.measured, r.before, r.after, units.force.name
-            );
-        }
-        for m in &self.masses {
-            let _ = writeln!(
-                text,
-                "mass {:.4} {} at {:.4}, {:.4} {}",
-                m.mass, units.mass.name, m.position[0], m.position[1], units.length.name
-            );
-        }
-        text
+    fn console(&self) -> Console {
+        let force = self.job.report_units.force.name;
+        let row = |r: &Reaction| {
+            let numbers = [r.measured, r.before, r.after].map(number);
+            std::iter::once(r.name.clone()).chain(numbers).collect()
+        };
+        let table = ConsoleTable::new(
+            format!("Reactions of run {}, {force}", self.run),
+            &["wheel", "measured", "deck", "completed deck"],
+            self.reactions.iter().map(row).collect(),
+        );
+        Console::new(table, Some("reactions.csv")).next(format!(
+            "name `{}` as [model] deck of the job",
+            self.completed_deck
+        ))
     }
 }
 

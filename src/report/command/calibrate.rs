@@ -5,13 +5,13 @@ use super::{Report, mistake, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::page::Page;
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
 use crate::strain_chain::covariance_bytes;
-use crate::units::Quantity;
-use crate::workflow::calibrate::{Calibrated, calibrated_job};
-use std::fmt::Write as _;
+use crate::units::{MICROSTRAIN, Quantity, half_width, number};
+use crate::workflow::calibrate::{Calibrated, CheckLoad, LeftOutLoad, calibrated_job};
 
 /// The gauges where the runs say that they sit, as a table that a job can name.
 const GLUED: &str = "gauges_as_glued.csv";
@@ -24,6 +24,7 @@ impl Report for Outcome<Calibrated> {
         "calibration.bin",
         "calibrated.toml",
         "left_out.csv",
+        "coefficients.csv",
     ];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -68,6 +69,44 @@ impl Report for Outcome<Calibrated> {
             }
             Ok(())
         })?;
+        let halves = s.half_widths();
+        out.declare(
+            "coefficients.csv",
+            [
+                ("gauge", ""),
+                ("load", ""),
+                ("value", ""),
+                ("half_width", ""),
+                ("unit", ""),
+            ],
+        );
+        out.write("coefficients.csv", |w| {
+            writeln!(w, "gauge,load,value,half_width,unit")?;
+            for (g, gauge) in s.gauges.iter().enumerate() {
+                for (l, load) in s.loads.iter().enumerate() {
+                    let [value, half] = [s.values[(g, l)], halves[(g, l)]].map(|v| v / MICROSTRAIN);
+                    let (gauge, name) = (csv_cell(gauge), csv_cell(&load.name));
+                    writeln!(w, "{gauge},{name},{value},{half},microstrain per job unit")?;
+                }
+            }
+            Ok(())
+        })?;
+        if !self.found.common_zero.is_empty() {
+            out.declare(
+                "common_zero.csv",
+                [("gauge", ""), ("common_zero", "microstrain")],
+            );
+            out.write("common_zero.csv", |w| {
+                writeln!(w, "gauge,common_zero")?;
+                for (gauge, zero) in s.gauges.iter().zip(&self.found.common_zero) {
+                    writeln!(w, "{},{}", csv_cell(gauge), zero / MICROSTRAIN)?;
+                }
+                Ok(())
+            })?;
+        }
+        if !self.calibration.checks.is_empty() {
+            write_checks(out, &self.calibration.checks)?;
+        }
         if !self.glued.is_empty() {
             let length = self.job.units.unit(Quantity::Length).name;
             let unit = |u: &'static str| if u == "L" { length } else { u };
@@ -84,54 +123,64 @@ impl Report for Outcome<Calibrated> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let c = &self.calibration;
-        let prior = match c.prior {
-            "model" => "with the model's S",
-            _ => "without a model",
+    fn console(&self) -> Console {
+        let left_out = &self.calibration.left_out;
+        let first = left_out.first().map_or(&[][..], |r| &r.loads);
+        let row = |(l, load): (usize, &LeftOutLoad)| {
+            let of_load = || left_out.iter().filter_map(|r| r.loads.get(l));
+            let errors: Vec<f64> = of_load().filter_map(|o| Some(o.value - o.known?)).collect();
+            let mean = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64;
+            let half = of_load().map(|o| (o.high - o.low) / 2.0);
+            vec![
+                load.name.clone(),
+                number(mean.sqrt()),
+                half_width(half.fold(f64::NAN, f64::max)),
+                load.unit.clone(),
+            ]
         };
-        let mut text = format!(
-            "S of {} gauges and {} loads from {} runs, {prior}\n",
-            self.sensitivity.gauges.len(),
-            self.sensitivity.loads.len(),
-            c.runs
-        );
-        if let Some(scatter) = c.repeat_scatter_rel {
-            let _ = writeln!(
-                text,
-                "repeats scatter by {:.1} % of the strain, noise makes {:.2} %",
-                100.0 * scatter,
-                100.0 * c.noise_rel
-            );
-        }
-        let _ = writeln!(
-            text,
-            "left out one by one: {} of {} runs held, intervals times {:.2}",
-            c.coverage.held, c.coverage.of, c.coverage.factor
-        );
-        if !self.glued.is_empty() {
-            let _ = writeln!(
-                text,
-                "gauges as glued: {GLUED}, a table for [gauges] of a job"
-            );
-        }
-        if let Some(n) = &c.next_run {
-            let loads: Vec<String> = n
-                .loads
-                .iter()
-                .filter(|(_, v)| **v != 0.0)
-                .map(|(k, v)| format!("{k} {v:.4}"))
-                .collect();
-            let _ = writeln!(
-                text,
-                "next run worth making: {} ({}: sigma of {:.3} becomes {:.3} {})",
-                loads.join(", "),
-                n.load,
-                n.sigma_before,
-                n.sigma_after,
-                n.unit
-            );
-        }
-        text
+        let rows: Vec<Vec<String>> = first.iter().enumerate().map(row).collect();
+        let head = ["load", "error rms", "widest ± 95 %", "unit"];
+        let table = ConsoleTable::new("Loads of runs left out one by one", &head, rows);
+        let short = |row: &Vec<String>| {
+            let [name, error, half, unit] = row.as_slice() else {
+                return row.clone();
+            };
+            vec![name.clone(), format!("{error} {half} {unit}")]
+        };
+        let rows = table.rows.iter().map(short).collect();
+        let title =
+            "Loads of runs left out one by one: error rms ± half width of the 95 % interval";
+        let compact = ConsoleTable::new(title, &[], rows);
+        Console::new(table, Some("left_out.csv"))
+            .or(compact)
+            .next("run `strainbridge recover calibrated.toml` in the folder of this result")
     }
+}
+
+/// Check loads, a row each.
+fn write_checks(out: &mut Output, checks: &[CheckLoad]) -> Result<(), Faults> {
+    out.declare(
+        "check_loads.csv",
+        [
+            ("run", ""),
+            ("load", ""),
+            ("applied", ""),
+            ("recovered", ""),
+            ("low", ""),
+            ("high", ""),
+            ("unit", ""),
+            ("inside", ""),
+        ],
+    );
+    out.write("check_loads.csv", |w| {
+        writeln!(w, "run,load,applied,recovered,low,high,unit,inside")?;
+        for c in checks {
+            let names = [&c.run, &c.load, &c.unit].map(|n| csv_cell(n));
+            let [run, load, unit] = names;
+            let numbers = format!("{},{},{},{}", c.applied, c.recovered, c.low, c.high);
+            writeln!(w, "{run},{load},{numbers},{unit},{}", c.inside)?;
+        }
+        Ok(())
+    })?;
+    Ok(())
 }

@@ -4,8 +4,11 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;
+use crate::units::number;
 use crate::workflow::cases::UnitLoadDeck;
+use serde_json::Value;
 
 impl Report for Outcome<UnitLoadDeck> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -26,12 +29,18 @@ impl Report for Outcome<UnitLoadDeck> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let n = self.subcases.len();
-        format!(
-            "unit_loads.bdf: {n} subcase{}; the structure is {}\n",
-            if n == 1 { "" } else { "s" },
-            self.support
-        )
+    fn console(&self) -> Console {
+        let cell = |v: &Value| v.as_str().map_or_else(|| v.to_string(), str::to_owned);
+        let row = |s: &Value| {
+            let applied = s["applied"].as_f64().unwrap_or(f64::NAN);
+            vec![cell(&s["subcase"]), cell(&s["load"]), number(applied)]
+        };
+        let table = ConsoleTable::new(
+            "Subcases of unit_loads.bdf, applied loads in job units",
+            &["subcase", "load", "applied"],
+            self.subcases.iter().map(row).collect(),
+        );
+        Console::new(table, Some("unit_loads.bdf"))
+            .next("run unit_loads.bdf with Nastran and name its OP2 as [model] results of the job")
     }
 }

@@ -5,6 +5,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::model::Model;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Block, Page, Section};
 use crate::report::scene::{Places, scene_of_model, scene_section};
 use crate::workflow::check::Checked;
@@ -18,17 +19,26 @@ impl Report for Outcome<Checked> {
         Some(page(self))
     }
 
-    fn words(&self) -> String {
-        let mut text = String::new();
+    fn console(&self) -> Console {
         let decks = self.decks.iter().map(|d| d.text());
         let results = self.results.iter().map(|r| r.text());
         let records = self.records.iter().map(|r| r.text());
         let jobs = self.jobs.iter().cloned();
-        for line in jobs.chain(decks).chain(results).chain(records) {
-            text.push_str(&line);
-            text.push('\n');
+        let all = jobs.chain(decks).chain(results).chain(records);
+        let rows = all.flat_map(|text| {
+            let row = |line: &str| {
+                // Lines after the first go on under its text.
+                let kind = line.split_once(' ').filter(|_| !line.starts_with(' '));
+                let (kind, text) = kind.unwrap_or(("", line.trim_start()));
+                vec![kind.to_owned(), text.to_owned()]
+            };
+            text.lines().map(row).collect::<Vec<_>>()
+        });
+        let table = ConsoleTable::new("", &[], rows.collect());
+        Console {
+            next: self.next_step(),
+            ..Console::new(table, None)
         }
-        text
     }
 }
 

@@ -5,11 +5,12 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::page::Page;
 use crate::series::rainflow::Ratio;
 use crate::units::number;
-use crate::workflow::fleet::{Fleet, MissionAnswer};
+use crate::workflow::fleet::{Fleet, MissionAnswer, VehicleAnswer, VehicleLoadAnswer};
 use std::fmt::Write;
 
 impl Report for Outcome<Fleet> {
@@ -68,44 +69,41 @@ impl Report for Outcome<Fleet> {
         Some(page(self))
     }
 
-    fn words(&self) -> String {
-        let count = |status: &str| self.files.iter().filter(|f| f.status == status).count();
-        let doubtful = match self.files.iter().filter(|f| f.is_doubtful()).count() {
-            0 => String::new(),
-            n => format!(", {n} done whose loads can't be relied on"),
-        };
-        let mut text = format!(
-            "{} of {} files done ({} kept from before), {} failed, {} second copies{doubtful}\n",
-            count("done"),
-            self.files.len(),
-            self.reused,
-            count("failed"),
-            count("copy")
-        );
-        for (v, l) in self.rows() {
+    fn console(&self) -> Console {
+        let row = |(v, l): (&VehicleAnswer, &VehicleLoadAnswer)| {
+            let ends = [l.min, l.max].map(|v| number(v.unwrap_or(f64::NAN)));
+            let [min, max] = ends;
+            let damage = [l.damage, l.damage_low, l.damage_high].map(number);
+            let [damage, low, high] = damage;
             let doubtful = match l.doubtful_share {
-                share if share > 0.0 => {
-                    format!(
-                        ", {:.1} % of it by days whose loads can't be relied on",
-                        100.0 * share
-                    )
-                }
+                share if share > 0.0 => format!("{:.1} %", 100.0 * share),
                 _ => String::new(),
             };
-            let _ = writeln!(
-                text,
-                "{} {}: {} to {} {}, damage {} ({} to {}){doubtful}",
-                v.name,
-                l.load,
-                number(l.min.unwrap_or(f64::NAN)),
-                number(l.max.unwrap_or(f64::NAN)),
-                l.unit,
-                number(l.damage),
-                number(l.damage_low),
-                number(l.damage_high)
-            );
-        }
-        text
+            let unit = l.unit.clone();
+            let words = [v.name.clone(), l.load.clone(), min, max, unit];
+            let damage = [damage, format!("{low} to {high}"), doubtful];
+            words.into_iter().chain(damage).collect::<Vec<String>>()
+        };
+        let mut rows: Vec<Vec<String>> = self.rows().map(row).collect();
+        let head = [
+            "vehicle",
+            "load",
+            "smallest",
+            "largest",
+            "unit",
+            "damage",
+            "95 %",
+            "unreliable",
+        ];
+        // Most fleets have no day whose loads can't be relied on.
+        let shown = match rows.iter().all(|r| r.last().is_none_or(String::is_empty)) {
+            true => head.len() - 1,
+            false => head.len(),
+        };
+        rows.iter_mut().for_each(|r| r.truncate(shown));
+        let title = format!("Loads and pseudo-damage, slope {}", self.slope);
+        let table = ConsoleTable::new(title, head.get(..shown).unwrap_or(&head), rows);
+        Console::new(table, Some("fleet.csv"))
     }
 }
 

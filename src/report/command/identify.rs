@@ -6,17 +6,19 @@ use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;
 use crate::report::vehicle::{
     Curve, Curves, identify_page, restoring_curves, restoring_unit, write_chassis_forces,
     write_parameters, write_restoring_force, write_wheel_forces,
 };
 use crate::series::welch::cross_spectra;
+use crate::units::{number, plus_minus};
+use crate::vehicle::identify::Estimate;
 use crate::vehicle::loads::LoadHistory;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::term::UnitNames;
 use crate::workflow::identify::Identified;
-use std::fmt::Write;
 
 impl Report for Outcome<Identified> {
     const FILES: &'static [&'static str] = &[
@@ -69,36 +71,24 @@ impl Report for Outcome<Identified> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let mut text = String::new();
-        for p in &self.parameters {
-            let _ = match (p.value, p.sigma) {
-                (Some(v), Some(s)) => writeln!(
-                    text,
-                    "{:12} {v:>14.6e} +- {:.2e} {} (95 %)",
-                    p.name,
-                    NORMAL_95 * s,
-                    p.unit
-                ),
-                _ => writeln!(text, "{:12} {:>14} {}", p.name, "not told", p.unit),
+    fn console(&self) -> Console {
+        let row = |p: &Estimate| {
+            let value = match (p.value, p.sigma) {
+                (Some(v), Some(_)) if p.known => number(v) + " (known)",
+                (Some(v), Some(s)) => plus_minus(v, NORMAL_95 * s),
+                _ => "not identifiable".to_owned(),
             };
-        }
-        for sentence in &self.unidentifiable {
-            let _ = writeln!(text, "{sentence}");
-        }
-        for f in &self.fit {
-            let _ = writeln!(
-                text,
-                "{:12} left over {:.2} % ({})",
-                f.channel,
-                100.0 * f.relative_rms,
-                f.on
-            );
-        }
-        if let Some(ratio) = self.mass_closure {
-            let _ = writeln!(text, "identified mass / weighed mass: {ratio:.4}");
-        }
-        text
+            vec![p.name.clone(), value, p.unit.clone()]
+        };
+        let table = ConsoleTable::new(
+            "Parameters (± half width of the 95 % interval)",
+            &["parameter", "value", "unit"],
+            self.parameters.iter().map(row).collect(),
+        );
+        Console::new(table, Some("parameters.csv")).next(format!(
+            "run `strainbridge reconcile {}` to test the vehicle model",
+            self.job.file
+        ))
     }
 }
 

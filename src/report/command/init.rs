@@ -4,8 +4,9 @@ use super::Report;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Block, Page, Section};
-use crate::workflow::init::Proposal;
+use crate::workflow::init::{NotProposed, Proposal};
 
 /// Lines of a block: a notebook cuts longer ones.
 const LINES: usize = 30;
@@ -29,7 +30,7 @@ impl Report for Outcome<Proposal> {
 
     /// What a notebook shows; no file is written of it, for a job is read where it stands.
     fn page(&self) -> Option<Page> {
-        let mut proposed = vec![Block::Text(self.words().trim_end().to_owned())];
+        let mut proposed = vec![Block::Text(self.summary())];
         if !self.loads.is_empty() {
             proposed.push(Block::Stressed("Loads:".into(), self.loads.join(", ")));
         }
@@ -47,44 +48,27 @@ impl Report for Outcome<Proposal> {
         Some(Page::new(self.job, "", &self.findings, sections))
     }
 
-    fn words(&self) -> String {
+    fn console(&self) -> Console {
+        let row = |l: &NotProposed| vec![l.name.clone(), l.reason.clone()];
+        let rows = self.left_out.iter().map(row).collect();
+        let table = ConsoleTable::new("Left out of the job", &["load", "reason"], rows);
         let path = self.path.display();
-        if self.loads.is_empty() && !self.placeable && self.inputs.is_empty() {
-            let command = self.purpose.unwrap_or("check");
-            return format!(
-                "{}: read it, name your files in it, then run `{command} {path}`\n",
-                self.job
-            );
-        }
-        let n = self.loads.len();
-        let plural = if n == 1 { "" } else { "s" };
-        let what = format!("{}: {n} load{plural} proposed", self.job);
-        let mut words = match (self.placeable, self.purpose) {
-            (true, None) => {
-                format!("{what}; read it, correct units and loads, then run `place {path}`\n")
-            }
+        let step = match (self.placeable, self.purpose) {
             (_, Some(command)) => format!(
-                "{what}; read it, correct units and loads, name your files, then run `{command} {path}`\n"
+                "read {}, correct units and loads, name your files, then run `{command} {path}`",
+                self.job
             ),
-            (false, None) => {
-                format!("{what}; gauges can't be placed by it as it is: see the findings\n")
-            }
+            (true, None) => format!(
+                "read {}, correct units and loads, then run `place {path}`",
+                self.job
+            ),
+            (false, None) if self.loads.is_empty() && self.inputs.is_empty() => format!(
+                "read {}, name your files in it, then run `check {path}`",
+                self.job
+            ),
+            (false, None) => format!("correct {} as the findings state", self.job),
         };
-        for of_one in self.left_out.chunk_by(|a, b| a.reason == b.reason) {
-            /// Names listed at most: the job has all.
-            const MOST: usize = 5;
-            let names: Vec<&str> = of_one.iter().take(MOST).map(|l| l.name.as_str()).collect();
-            let more = match of_one.len().saturating_sub(MOST) {
-                0 => String::new(),
-                n => format!(" and {n} more"),
-            };
-            words.push_str(&format!(
-                "Left out: {}{more}: {}\n",
-                names.join(", "),
-                of_one[0].reason
-            ));
-        }
-        words
+        Console::new(table, Some(self.job)).next(step)
     }
 }
 
@@ -119,7 +103,7 @@ mod tests {
         let html = piece(&outcome);
         assert!(rows.iter().all(|r| html.contains(r.as_str())), "{html}");
         assert_eq!(html.matches("# check: by Young").count(), 2);
-        assert!(html.contains("LF.FZ, RF.FZ") && html.contains("2 loads proposed"));
+        assert!(html.contains("LF.FZ, RF.FZ") && html.contains("proposes 2 loads"));
         assert!(!html.contains("report.html"), "{html}");
     }
 }

@@ -1,4 +1,4 @@
-//! What each command writes and says of its outcome: one file a command.
+//! Files, page and terminal of each outcome: one file a command.
 
 mod ballast;
 mod calibrate;
@@ -23,6 +23,7 @@ mod recover;
 mod respond;
 mod respond_files;
 mod sensitivity;
+mod shown;
 mod solve;
 mod strains;
 mod study;
@@ -30,10 +31,12 @@ mod verify;
 
 pub use pages::{write_book, write_page};
 pub use recover::RecordFolder;
+pub use shown::{console_of, words};
 
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, Tables};
 use crate::host::output::Output;
+use crate::report::console::Console;
 use crate::report::page::Page;
 use std::path::Path;
 
@@ -51,8 +54,8 @@ pub trait Report {
     /// Its report; `None` where it has none.
     fn page(&self) -> Option<Page>;
 
-    /// What a person reads of it on a terminal; lines end in line feeds.
-    fn words(&self) -> String;
+    /// Content of a terminal: tables of the result, next step, main table of the folder.
+    fn console(&self) -> Console;
 }
 
 /// Refuses a folder where files of an outcome to come have the names of files that no command wrote.

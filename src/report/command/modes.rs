@@ -4,6 +4,8 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::host::words::counted;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::mode_blocks::rows_of_mode_block;
 use crate::report::page::{Block, Page, Section, number};
@@ -73,25 +75,23 @@ impl Report for Outcome<Modes> {
         Some(page(self))
     }
 
-    fn words(&self) -> String {
-        let mut text = format!(
-            "{} elastic modes of the structure, {}{}\n",
-            self.modes.len(),
-            self.support,
-            match self.rigid_motions {
-                0 => String::new(),
-                n => format!(", {n} rigid motions left out"),
-            }
-        );
-        for m in &self.modes {
-            text.push_str(&format!(
-                "  {:3}  {} Hz, sure to {:.1e}\n",
-                m.mode,
+    fn console(&self) -> Console {
+        let row = |m: &ModeRow| {
+            vec![
+                m.mode.to_string(),
                 number(m.hz),
-                m.frequency_error
-            ));
-        }
-        text
+                format!("{:.0e}", m.frequency_error),
+            ]
+        };
+        let table = ConsoleTable::new(
+            format!(
+                "Elastic modes, {} left out",
+                counted(self.rigid_motions, "rigid motion")
+            ),
+            &["mode", "Hz", "relative error"],
+            self.modes.iter().map(row).collect(),
+        );
+        Console::new(table, Some("modes.csv"))
     }
 }
 

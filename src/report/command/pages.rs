@@ -19,7 +19,7 @@ where
     let Some(page) = outcome.page() else {
         return Ok(());
     };
-    let page = page.beside(out.folder());
+    let page = page.with_summary(outcome.summary()).beside(out.folder());
     out.write_bytes("report.html", page.to_html().as_bytes())?;
     #[cfg(feature = "pdf")]
     if page.paper != crate::report::page::Paper::None {

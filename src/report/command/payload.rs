@@ -6,13 +6,13 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::payload::{WeighedRun, Weighing};
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
 use crate::report::page::{Page, Paper, Section, figure_section, table_section};
 use crate::report::scene::{scene_of_job, scene_section};
-use crate::units::{MICROSTRAIN, fixed, number};
+use crate::units::{MICROSTRAIN, number};
 use crate::workflow::payload::{Weighed, WeighedPayload};
-use std::fmt::Write;
 
 /// Columns of payload.csv with their quantity.
 const PAYLOAD: [(&str, &str); 10] = [
@@ -88,37 +88,32 @@ impl Report for Outcome<Weighed> {
         Some(page(self).on_paper(Paper::Signed))
     }
 
-    fn words(&self) -> String {
+    fn console(&self) -> Console {
         let units = &self.job.report_units;
-        let mut text = String::new();
-        for (p, r) in self.payload.iter().zip(&self.weighing.runs) {
-            let _ = match &p.refused {
-                Some(why) => writeln!(text, "{}: refused: {why}", p.run),
-                None => writeln!(
-                    text,
-                    "{}: {} ({} {}), at {}, {} {}",
-                    p.run,
-                    with_interval(r, units.force.name),
-                    number(plain(p.mass)),
-                    units.mass.name,
-                    fixed(plain(p.position[0]), 3),
-                    fixed(plain(p.position[1]), 3),
-                    units.length.name
-                ),
+        let row = |p: &WeighedPayload| {
+            let place = match &p.refused {
+                Some(why) => format!("refused: {why}"),
+                None => p.position.map(|x| number(plain(x))).join(", "),
             };
-        }
-        text
-    }
-}
-
-/// Weight with its 95 % interval, which is no half width where it ends at zero.
-fn with_interval(r: &WeighedRun, unit: &str) -> String {
-    let [low, high] = r.interval;
-    if low > 0.0 {
-        let half = (high - low) / 2.0;
-        format!("{:.3} +- {half:.3} {unit}, 95 %", r.force)
-    } else {
-        format!("{:.3} {unit}, 0 to {high:.3} with 95 %", r.force)
+            vec![
+                p.run.clone(),
+                p.weight(),
+                p.mass.map_or("-".into(), number),
+                place,
+            ]
+        };
+        let head = [
+            "run".to_owned(),
+            format!("weight, {}", units.force.name),
+            format!("mass, {}", units.mass.name),
+            format!("place, {}", units.length.name),
+        ];
+        let table = ConsoleTable::new(
+            "Payload (± half width of the 95 % interval)",
+            &head.each_ref().map(String::as_str),
+            self.payload.iter().map(row).collect(),
+        );
+        Console::new(table, Some("payload.csv"))
     }
 }
 

@@ -2,20 +2,21 @@
 
 use super::columns::declare_written;
 use super::{Report, write_book, write_page};
+use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::placement::Role;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::figure::CountPoint;
-use crate::report::page::{Page, Paper, number};
+use crate::report::page::{Page, Paper};
 use crate::report::scene::{Places, Pointing, placed_mark, scene_of};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
     HowMany, gauges_csv, gauges_vtu, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
 };
 use crate::strain_chain::LoadSigma;
+use crate::units::{half_width, number};
 use crate::workflow::place::{Installed, InstalledQuality, Placed};
-use std::fmt::Write;
 
 impl Report for Outcome<Placed> {
     const FILES: &'static [&'static str] = &[
@@ -74,71 +75,33 @@ impl Report for Outcome<Placed> {
         Some(page.on_paper(Paper::Signed))
     }
 
-    fn words(&self) -> String {
-        let mut text = format!(
-            "{} gauges, {} (log det {:.3}), condition number {:.2} scaled\n",
-            self.gauges.len(),
-            if self.proved {
-                "proved the best possible".to_owned()
-            } else {
-                format!(
-                    "at least {:.2} % of the best possible",
-                    100.0 * self.efficiency_bound
-                )
-            },
-            self.log_det,
-            self.sensitivity.condition_number_scaled()
-        );
-        if let Some(d) = installed(self).and_then(|q| q.log_det) {
-            let _ = writeln!(text, "installed gauges: log det {d:.3} with noise alone");
-        }
-        for p in &self.gauges {
-            let bridge = match p.bridge {
-                "quarter" => String::new(),
-                other => format!(", {other}"),
+    fn console(&self) -> Console {
+        let is_glued = self.load_sigma.iter().any(|l| l.sigma_as_glued.is_some());
+        let row = |l: &LoadSigma| {
+            let share = self.share_of_expected(l);
+            let share = share.map_or("-".into(), |s| format!("{} %", number(100.0 * s)));
+            let half = half_width(NORMAL_95 * l.sigma());
+            vec![l.name.clone(), half, l.unit.clone(), share]
+        };
+        let rows: Vec<Vec<String>> = self.load_sigma.iter().map(row).collect();
+        let title = match is_glued {
+            true => "Loads with these gauges, tolerances of gluing included",
+            false => "Loads with these gauges",
+        };
+        let short = |r: &Vec<String>| {
+            let [name, half, unit, _] = r.as_slice() else {
+                return r.clone();
             };
-            let role = match p.role {
-                Role::Estimate => "",
-                Role::Validation => ", for validation",
-            };
-            let _ = writeln!(
-                text,
-                "  {} element {} {} at {:.1} deg{bridge}{role}",
-                p.name, p.element, p.surface, p.angle_deg
-            );
-        }
-        for l in load_sigma(self) {
-            let glued = match l[2].as_str() {
-                "" => String::new(),
-                v => format!(" ({v} as glued)"),
-            };
-            let _ = writeln!(text, "  {} sigma {}{glued} {}", l[0], l[1], l[3]);
-        }
-        let worst = &self.worst_loss;
-        let _ = writeln!(
-            text,
-            "losing {} (leverage {:.2}) leaves {:.0} % of the efficiency",
-            worst.gauge,
-            worst.leverage,
-            100.0 * worst.efficiency_left
-        );
-        for p in &self.how_many {
-            let sigma: Vec<String> = p
-                .load_sigma
-                .iter()
-                .map(|s| format!("{} {} {}", s.name, number(s.sigma), s.unit))
-                .collect();
-            let _ = writeln!(
-                text,
-                "{} gauges: {:.2} % of the best, condition {:.2}, after the worst loss {:.0} %; sigma {}",
-                p.gauges,
-                100.0 * p.efficiency_bound,
-                p.condition_number_scaled.unwrap_or(f64::INFINITY),
-                100.0 * p.worst_loss,
-                sigma.join(", ")
-            );
-        }
-        text
+            vec![name.clone(), format!("{half} {unit}")]
+        };
+        let compact = rows.iter().map(short).collect();
+        let head = ["load", "± 95 %", "unit", "of its expected size"];
+        let table = ConsoleTable::new(title, &head, rows);
+        let compact = ConsoleTable::new(title, &["load", "± 95 %"], compact);
+        let job = &self.job.file;
+        Console::new(table, Some("gauges.csv")).or(compact).next(format!(
+            "glue by gluing_sheet.md, write readings to strain.csv, then run `strainbridge recover {job}`"
+        ))
     }
 }
 

@@ -1,17 +1,18 @@
 //! Files and words of `reconcile`.
 
 use super::reconcile_extended::write_extended;
-use super::reconcile_motion::{motion_page, simulated_words, write_motion};
+use super::reconcile_motion::{motion_page, write_motion};
 use super::reconcile_strain::{strain_page, write_strain};
 use super::{Report, write_page};
+use crate::finding::few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::reconcile::{CauseOutcome, CauseSet};
-use crate::report::page::{Page, Paper, table_section};
+use crate::report::console::{Console, ConsoleTable};
+use crate::report::page::{Page, Paper, number, table_section};
 use crate::vehicle::term::UnitNames;
 use crate::workflow::reconcile::{GapFound, Reconciled, effect_in_words};
-use std::fmt::Write as _;
 
 impl Report for Outcome<Reconciled> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -33,57 +34,68 @@ impl Report for Outcome<Reconciled> {
         Some(page.on_paper(Paper::Report))
     }
 
-    fn words(&self) -> String {
-        let mut text = format!("verdict: {}\n", self.verdict.word());
-        if let Some(causes) = &self.causes {
-            text.push_str(&causes_words(causes));
-        } else {
-            text.push_str(&effects_words(self));
-        }
-        if let Some(strain) = &self.strain {
-            let _ = writeln!(text, "where: {}", strain.sits);
-            let _ = writeln!(text, "left: {}", strain.outcome.remains);
-        }
-        if let Some(motion) = &self.motion {
-            let _ = writeln!(text, "where: {}", motion.sits);
-            text.push_str(&simulated_words(motion));
-            let _ = writeln!(text, "{}", motion.outcome.remains);
-        }
-        let _ = writeln!(text, "next measurement: {}", self.next_measurement);
-        text
+    fn console(&self) -> Console {
+        let table = match &self.causes {
+            Some(causes) => causes_table(causes),
+            None => ConsoleTable::of_fields("", &fields(self)),
+        };
+        Console::new(table, Some("gap.csv")).next(match &self.extended_model {
+            Some(extended) => format!(
+                "confirm the cause, then go on with the corrected job {}",
+                extended.name
+            ),
+            None => self.next_measurement.clone(),
+        })
     }
 }
 
-/// Effects, gap, and what can't be told apart.
-fn effects_words(found: &Reconciled) -> String {
-    let mut text = String::new();
-    for e in &found.effects {
-        let _ = writeln!(text, "  {}", effect_in_words(e));
-    }
+/// Effects, gap, certainty, and what would confirm them, as fields of a terminal.
+fn fields(found: &Outcome<Reconciled>) -> Vec<(&'static str, String)> {
+    let mut out: Vec<(&'static str, String)> = Vec::new();
+    out.extend(found.effects.iter().map(|e| ("effect", effect_in_words(e))));
     let gap = &found.gap;
-    let percent = |v: Option<f64>| 100.0 * v.unwrap_or(f64::NAN);
-    if !gap.before.is_finite() {
-        // What remains says why.
-        text.push_str("no gap can be stated\n");
-        return text;
-    }
-    let _ = writeln!(
-        text,
-        "gap on {}: {:.2} % before, {:.2} % after, floor {:.2} %, explained {:.0} %",
-        judged_on(gap),
-        100.0 * gap.before,
-        100.0 * gap.after,
-        percent(gap.floor),
-        percent(gap.explained_share)
-    );
-    for r in found.rivals.iter().filter(|r| r.indistinguishable) {
-        let _ = writeln!(
-            text,
-            "  can't be told from: {} (log evidence {:.1} behind)",
-            r.id, r.evidence_difference
+    let percent = |v: f64| format!("{} %", number(100.0 * v));
+    if gap.before.is_finite() {
+        let floor = gap.floor.filter(|f| f.is_finite());
+        let floor = floor.map_or_else(String::new, |f| format!(" (noise floor {})", percent(f)));
+        let words = format!(
+            "{} before, {} after{floor}, on {}",
+            percent(gap.before),
+            percent(gap.after),
+            judged_on(gap)
         );
+        out.push(("gap", words));
     }
-    text
+    out.extend(confidence(found).map(|words| ("confidence", words)));
+    let alike = found.rivals.iter().filter(|r| r.indistinguishable);
+    let alike: Vec<&str> = alike.map(|r| r.id.as_str()).collect();
+    if !alike.is_empty() {
+        out.push(("indistinguishable", few(&alike)));
+    }
+    if let Some(strain) = &found.strain {
+        out.push(("place of the gap", strain.sits.clone()));
+    }
+    if let Some(motion) = &found.motion {
+        out.push(("place of the gap", motion.sits.clone()));
+    }
+    out.extend(found.remains.clone().map(|r| ("residual", r)));
+    out.push(("to confirm", found.next_measurement.clone()));
+    let changes = found.added.iter();
+    out.extend(changes.map(|a| ("correction", format!("{}: {}", a.path, a.new))));
+    out
+}
+
+/// How sure the named set is: resampled runs, and the distance of the next explanation.
+fn confidence(found: &Reconciled) -> Option<String> {
+    let runs = found.strain.as_ref().filter(|_| !found.named.is_empty());
+    let runs = runs.map(|s| format!("{} of 100 resampled run sets agree", s.wins_of_100));
+    let next = found.rivals.iter().find(|r| !r.indistinguishable);
+    let next = next.map(|r| {
+        let behind = number(r.evidence_difference);
+        format!("next explanation {} is {behind} log units behind", r.id)
+    });
+    let parts: Vec<String> = runs.into_iter().chain(next).collect();
+    (!parts.is_empty()).then(|| parts.join("; "))
 }
 
 /// What the gap was judged on.
@@ -93,21 +105,17 @@ fn judged_on(gap: &GapFound) -> String {
     runs.or(record).unwrap_or_default()
 }
 
-fn causes_words(causes: &CauseOutcome) -> String {
-    let mut text = String::new();
-    for s in &causes.sets {
+fn causes_table(causes: &CauseOutcome) -> ConsoleTable {
+    let row = |s: &CauseSet| {
         let names = match s.names.is_empty() {
-            true => "nothing".to_owned(),
+            true => "no cause".to_owned(),
             false => s.names.join(" + "),
         };
-        let _ = writeln!(
-            text,
-            "  {names}: log evidence {:.1}, gap {:.2} %",
-            s.log_evidence,
-            100.0 * s.gap
-        );
-    }
-    text
+        let gap = format!("{} %", number(100.0 * s.gap));
+        vec![names, number(s.log_evidence), gap]
+    };
+    let rows = causes.sets.iter().map(row).collect();
+    ConsoleTable::new("Causes", &["cause", "log evidence", "gap"], rows)
 }
 
 fn causes_page(outcome: &Outcome<Reconciled>, causes: &CauseOutcome) -> Page {

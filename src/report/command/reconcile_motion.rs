@@ -2,6 +2,7 @@
 
 use super::columns::declare_written;
 use super::reconcile_strain::added_rows;
+use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
@@ -16,6 +17,7 @@ use crate::report::strain::ADDED;
 use crate::report::vehicle::{
     restoring_curves, restoring_section, restoring_unit, write_restoring_force,
 };
+use crate::units::plus_minus;
 use crate::vehicle::term::UnitNames;
 use crate::workflow::reconcile::{MotionPart, Reconciled, SimulationFound};
 use std::fmt::Write;
@@ -81,22 +83,6 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> 
         &outcome.findings,
         sections,
     )
-}
-
-/// What simulation leaves, a line a sensor.
-pub(super) fn simulated_words(found: &MotionPart) -> String {
-    let mut text = String::new();
-    for c in simulation(found).iter().flat_map(|s| &s.channels) {
-        let _ = writeln!(
-            text,
-            "simulated {}: error {} before, {} after, of {}",
-            c.channel,
-            number(c.before),
-            number(c.after),
-            number(c.measured_rms)
-        );
-    }
-    text
 }
 
 fn simulation(found: &MotionPart) -> Option<&SimulationFound> {
@@ -216,11 +202,11 @@ fn added_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
             .size
             .iter()
             .zip(&e.sigma)
-            .map(|(v, s)| format!("{v:.5e} +- {s:.1e}"))
+            .map(|(v, s)| plus_minus(*v, NORMAL_95 * s))
             .collect();
         vec![e.id.clone(), sizes.join(", "), e.unit.clone()]
     };
-    let head = ["effect", "size and its sigma", "unit"];
+    let head = ["effect", "size (± half width of the 95 % interval)", "unit"];
     let mut blocks = vec![Block::table(&head, attempt.iter().map(row).collect())];
     let added = added_rows(outcome);
     blocks.push(match (found.outcome.verdict, added.is_empty()) {

@@ -3,25 +3,22 @@
 use super::columns::declare_written;
 use super::respond_files::{arrays, histories};
 use super::{Report, write_page};
-use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::model::{Model, Vec3};
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{GaugePoints, agreement};
 use crate::report::page::{Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{Place, ResponseRow, von_mises_history};
-use crate::units::factor;
-use crate::workflow::respond::{Element, Responded, grids};
-use std::fmt::Write as _;
+use crate::units::{factor, plus_minus};
+use crate::workflow::respond::{Element, ElementFatigue, Responded, grids};
 
 /// Rows of a table on the page.
 const MOST_ROWS: usize = 60;
-/// Elements that are named on a terminal.
-const MOST_WORDS: usize = 5;
 /// Points a drawing takes.
 const MOST_POINTS: usize = 2000;
 
@@ -62,6 +59,10 @@ impl Report for Outcome<Responded> {
             }
             Ok(())
         })?;
+        if !self.fatigue.is_empty() {
+            out.declare("fatigue.csv", FATIGUE);
+            out.write("fatigue.csv", |w| fatigue_csv(w, &self.fatigue))?;
+        }
         out.write("histories.csv", |w| {
             histories(w, &f.rows, &f.order, &f.states, u)
         })?;
@@ -80,31 +81,78 @@ impl Report for Outcome<Responded> {
     }
 
     fn page(&self) -> Option<Page> {
-        let page = Page::new(
+        let mut page = Page::new(
             &self.job.title,
             "Stress from recovered loads",
             &self.findings,
             sections(self),
         );
+        if !self.fatigue.is_empty() {
+            let at = page.sections.len().min(1);
+            page.sections.insert(at, fatigue_section(&self.fatigue));
+        }
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let mut text = String::new();
-        for e in self.elements.iter().take(MOST_WORDS) {
-            let _ = writeln!(
-                text,
-                "element {} {}: {:.2} +- {:.2} {} (95 %) at {}",
-                e.element,
-                e.surface,
-                e.max_von_mises,
-                NORMAL_95 * e.sigma,
-                self.stress_unit,
-                e.at.as_deref().unwrap_or("")
-            );
-        }
-        text
+    fn console(&self) -> Console {
+        let row = |e: &Element| {
+            vec![
+                e.element.to_string(),
+                e.surface.clone(),
+                plus_minus(e.max_von_mises, e.half_width()),
+                e.at.clone().unwrap_or_default(),
+            ]
+        };
+        let unit = self.stress_unit;
+        let table = ConsoleTable::new(
+            format!("Largest von Mises stress, {unit} (± half width of the 95 % interval)"),
+            &["element", "surface", "stress", "at"],
+            self.elements.iter().map(row).collect(),
+        );
+        Console::new(table, Some("elements.csv")).next("open envelope.vtu in ParaView")
     }
+}
+
+const FATIGUE: [(&str, &str); 6] = [
+    ("element", ""),
+    ("surface", ""),
+    ("damage", "report stress to the power of the slope"),
+    ("damage_low", "report stress to the power of the slope"),
+    ("damage_high", "report stress to the power of the slope"),
+    ("angle_deg", "degree"),
+];
+
+fn fatigue_csv(w: &mut dyn std::io::Write, list: &[ElementFatigue]) -> std::io::Result<()> {
+    writeln!(w, "{}", FATIGUE.map(|c| c.0).join(","))?;
+    for f in list {
+        writeln!(
+            w,
+            "{},{},{},{},{},{}",
+            f.element, f.surface, f.damage, f.damage_low, f.damage_high, f.angle_deg
+        )?;
+    }
+    Ok(())
+}
+
+/// The table of fatigue on the page.
+fn fatigue_section(list: &[ElementFatigue]) -> Section {
+    let row = |f: &ElementFatigue| {
+        vec![
+            f.element.to_string(),
+            f.surface.clone(),
+            number(f.damage),
+            format!("{} to {}", number(f.damage_low), number(f.damage_high)),
+            number(f.angle_deg),
+        ]
+    };
+    let rows: Vec<Vec<String>> = list.iter().take(MOST_ROWS).map(row).collect();
+    let head = ["element", "side", "damage", "95 % interval", "plane, deg"];
+    table_section(
+        "Fatigue",
+        &head,
+        &rows,
+        "Pseudo-damage of the normal stress on the plane where it is largest; plane: its normal from the x axis of the element.",
+    )
 }
 
 /// The unit of a column of histories.csv: strains end in exx, eyy, gxy.
@@ -180,7 +228,7 @@ fn shown(list: &[Element]) -> Vec<Vec<String>> {
                 e.element.to_string(),
                 e.surface.clone(),
                 number(e.max_von_mises),
-                format!("± {}", number(NORMAL_95 * e.sigma)),
+                format!("± {}", number(e.half_width())),
                 e.at.clone().unwrap_or_default(),
             ]
         })
@@ -188,7 +236,7 @@ fn shown(list: &[Element]) -> Vec<Vec<String>> {
 }
 
 fn note(e: &Element, unit: &str) -> String {
-    let [value, half] = [e.max_von_mises, NORMAL_95 * e.sigma].map(number);
+    let [value, half] = [e.max_von_mises, e.half_width()].map(number);
     let at = e.at.as_deref().unwrap_or("");
     format!("{} {value} ± {half} {unit} in {at}", e.surface)
 }

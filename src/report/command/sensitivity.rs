@@ -4,12 +4,15 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::host::words::counted;
 use crate::job::Job;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;
 use crate::report::scene::scene_of_job;
 use crate::report::strain::{sensitivity_csv, sensitivity_page};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::load_units;
+use crate::units::{MICROSTRAIN, number};
 use crate::workflow::sensitivity::Sensed;
 
 impl Report for Outcome<Sensed> {
@@ -29,16 +32,34 @@ impl Report for Outcome<Sensed> {
         Some(page)
     }
 
-    fn words(&self) -> String {
+    fn console(&self) -> Console {
         let s = &self.prepared.sensitivity;
-        format!(
-            "S: {} gauges x {} loads, rank {}, condition number {:.4} in job units, {:.4} scaled\n",
-            s.gauges.len(),
-            s.loads.len(),
-            s.rank(),
-            s.condition_number(),
-            s.condition_number_scaled()
-        )
+        let units = columns(&self.job, s);
+        let row = |(l, (name, unit)): (usize, &(String, String))| {
+            let of_gauge = |g: usize| s.values[(g, l)];
+            let larger = |a: &usize, b: &usize| of_gauge(*a).abs().total_cmp(&of_gauge(*b).abs());
+            let most = (0..s.gauges.len()).max_by(larger);
+            let value = most.map_or(f64::NAN, of_gauge) / MICROSTRAIN;
+            let gauge = most.and_then(|g| s.gauges.get(g)).cloned();
+            let gauge = gauge.unwrap_or_default();
+            vec![name.clone(), number(value), unit.clone(), gauge]
+        };
+        // The first column names the gauge.
+        let rows: Vec<Vec<String>> = units.iter().skip(1).enumerate().map(row).collect();
+        let short = |r: &Vec<String>| r.iter().take(2).cloned().collect();
+        let compact = rows.iter().map(short).collect();
+        let head = ["load", "largest", "unit", "gauge"];
+        let table = ConsoleTable::new("Largest sensitivity to each load", &head, rows);
+        let title = "Largest sensitivity to each load, units in sensitivity.csv";
+        let compact = ConsoleTable::new(title, &["load", "largest"], compact);
+        let command = match self.job.measured {
+            Some(_) => "recover",
+            None => "place",
+        };
+        let next = format!("run `strainbridge {command} {}`", self.job.file);
+        Console::new(table, Some("sensitivity.csv"))
+            .or(compact)
+            .next(next)
     }
 }
 

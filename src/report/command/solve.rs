@@ -2,14 +2,18 @@
 
 use super::{Report, write_page};
 use crate::fe::Solution;
+use crate::finding::few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::host::words::counted;
 use crate::model::Model;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;
 use crate::report::scene::scene_of_solution;
 use crate::report::strain::solution_page;
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
+use crate::units::number;
 use crate::workflow::solve::SolvedCases;
 use nastran::op2::{EncodedBlock, Op2Writer, WriteError};
 use rayon::prelude::*;
@@ -42,24 +46,25 @@ impl Report for Outcome<SolvedCases> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let n = self.solution.cases.len();
-        let mut text = format!(
-            "{n} load case{} on {} grids, {} unknowns; factor of {} entries\n",
-            if n == 1 { "" } else { "s" },
-            self.grids,
-            self.dofs,
-            self.factor_nonzeros
-        );
-        if let Some(support) = &self.support {
-            text.push_str(&format!("the structure is {support}\n"));
+    fn console(&self) -> Console {
+        let balance = self.balance.iter().map(|b| b.residual);
+        let mut fields = vec![
+            ("unknowns", self.dofs.to_string()),
+            ("entries of the factor", self.factor_nonzeros.to_string()),
+            (
+                "largest unbalanced share",
+                format!("{:.0e}", balance.fold(0.0, f64::max)),
+            ),
+        ];
+        if self.balance.is_empty() {
+            fields.pop();
         }
-        if let Some(first) = self.elastic_modes_hz.first() {
-            text.push_str(&format!(
-                "first elastic mode: {first:.4} per unit of time\n"
-            ));
+        let modes: Vec<String> = self.elastic_modes_hz.iter().map(|hz| number(*hz)).collect();
+        if !modes.is_empty() {
+            fields.push(("elastic modes, Hz", few(&modes)));
         }
-        text
+        Console::new(ConsoleTable::of_fields("", &fields), Some("results.op2"))
+            .next("name results.op2 as [model] results of a job (`strainbridge init` writes one)")
     }
 }
 

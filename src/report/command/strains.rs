@@ -1,9 +1,11 @@
 //! Files and words of `strains`.
 
 use super::{Report, write_page};
+use crate::finding::few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;
 use crate::report::strain::strains_page;
 use crate::report::{strains_columns, write_strains};
@@ -26,13 +28,12 @@ impl Report for Outcome<Strains> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        format!(
-            "{} rows of strain in {} static subcase{}, from {}\n",
-            self.rows,
-            self.subcases,
-            if self.subcases == 1 { "" } else { "s" },
-            self.solution.source
-        )
+    fn console(&self) -> Console {
+        let fields = [
+            ("subcases", few(&self.subcase_ids)),
+            ("rows of strains.csv", self.rows.to_string()),
+        ];
+        Console::new(ConsoleTable::of_fields("", &fields), Some("strains.csv"))
+            .next(format!("run `strainbridge init {}` for a job", self.given))
     }
 }

@@ -5,11 +5,12 @@ use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::host::words::counted;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::page::{Page, table_section};
-use crate::units::number;
+use crate::units::{half_width, number, plus_minus};
 use crate::workflow::study::{Studied, StudiedLayout, StudiedLoad};
-use std::fmt::Write;
 
 impl Report for Outcome<Studied> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "study.csv"];
@@ -38,20 +39,60 @@ impl Report for Outcome<Studied> {
         Some(page(self))
     }
 
-    fn words(&self) -> String {
-        let mut text = String::new();
-        for row in &self.study {
-            let _ = writeln!(
-                text,
-                "{} {} gauges, {}: mean rms error {:.2} %, condition number {}",
-                row.layout,
-                row.gauges,
-                row.error,
-                100.0 * plain(row.mean_relative_rms),
-                number(plain(row.condition_number))
-            );
-        }
-        text
+    fn console(&self) -> Console {
+        let loads = self.study.first().map_or(&[][..], |row| &row.loads);
+        let wanted = |row: &'_ StudiedLayout| -> Vec<StudiedLoad> {
+            row.loads.iter().filter(|l| l.wanted).cloned().collect()
+        };
+        let half = |l: &StudiedLoad| NORMAL_95 * plain(l.sigma);
+        let row = |r: &StudiedLayout| {
+            let mut cells = vec![
+                r.layout.clone(),
+                r.gauges.to_string(),
+                r.error.clone(),
+                number(100.0 * plain(r.mean_relative_rms)),
+            ];
+            cells.extend(wanted(r).iter().map(|l| plus_minus(plain(l.bias), half(l))));
+            cells
+        };
+        let mut head = ["layout", "gauges", "error", "mean error, %"]
+            .map(str::to_owned)
+            .to_vec();
+        let heads = loads.iter().filter(|l| l.wanted);
+        head.extend(heads.map(|l| format!("{}, {}", l.name, l.unit)));
+        let title = "Error of the loads: bias ± half width of the 95 % interval";
+        let by_layout = ConsoleTable {
+            title: title.to_owned(),
+            head,
+            rows: self.study.iter().map(row).collect(),
+        };
+        // Of the best and the worst layout, where the loads have no column each.
+        let of_load = |load: &StudiedLoad| {
+            let all = self.study.iter().flat_map(|r| &r.loads);
+            let halves = all.filter(|l| l.name == load.name).map(half);
+            let halves: Vec<f64> = halves.filter(|h| h.is_finite()).collect();
+            let least = halves.iter().copied().fold(f64::NAN, f64::min);
+            let most = halves.iter().copied().fold(f64::NAN, f64::max);
+            let range = match self.study.len() {
+                1 => half_width(least),
+                _ => {
+                    let most = half_width(most);
+                    format!("{} to {}", half_width(least), most.trim_start_matches("± "))
+                }
+            };
+            vec![load.name.clone(), format!("{range} {}", load.unit)]
+        };
+        let rows = loads.iter().filter(|l| l.wanted).map(of_load).collect();
+        let layouts = counted(self.study.len(), "layout");
+        let title = format!("Error of each load in {layouts}: half width of the 95 % interval");
+        let by_load = ConsoleTable::new(title, &["load", "± 95 %"], rows);
+        let next = format!(
+            "choose a layout, then run `strainbridge place {}`",
+            self.job.file
+        );
+        Console::new(by_layout, Some("study.csv"))
+            .or(by_load)
+            .next(next)
     }
 }
 

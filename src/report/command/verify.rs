@@ -4,8 +4,9 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Block, Page, Section};
-use crate::workflow::verify::Verified;
+use crate::workflow::verify::{Difference, Verified};
 
 impl Report for Outcome<Verified> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -35,20 +36,16 @@ impl Report for Outcome<Verified> {
         Some(page)
     }
 
-    fn words(&self) -> String {
-        let mut text = format!(
-            "{} the same, {} differences\n",
-            self.same.len(),
-            self.differs.len()
+    fn console(&self) -> Console {
+        let row = |d: &Difference| {
+            let cells = [&d.file, &d.at, &d.was, &d.now];
+            cells.map(String::clone).to_vec()
+        };
+        let table = ConsoleTable::new(
+            "Differences",
+            &["file", "where", "in the folder", "now"],
+            self.differs.iter().map(row).collect(),
         );
-        for d in &self.differs {
-            let at = if d.at.is_empty() {
-                String::new()
-            } else {
-                format!(" {}", d.at)
-            };
-            text.push_str(&format!("{}{at}: was {}, is {}\n", d.file, d.was, d.now));
-        }
-        text
+        Console::new(table, None)
     }
 }

@@ -2,6 +2,7 @@
 
 mod agreement;
 mod chart;
+mod cross;
 mod curve;
 mod gap;
 mod heat_map;
@@ -14,6 +15,7 @@ mod script;
 pub use agreement::{GaugePoints, agreement};
 pub use chart::Figure;
 pub(in crate::report) use chart::embedded;
+pub use cross::{CrossPlot, cross};
 pub use curve::{CountPoint, curve};
 pub use gap::gap_by_channel;
 pub use heat_map::heat_map;

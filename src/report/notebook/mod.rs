@@ -2,7 +2,7 @@
 //!
 //! Figures are drawn as on paper. The model in three dimensions, long tables and what else would swell a notebook stay in `report.html`.
 
-use super::command::Report;
+use super::command::{Report, words};
 use super::drawing::picture::Picture;
 use super::drawing::{STROKES, pictures, to_svg, views};
 use super::figure::Figure;
@@ -25,11 +25,11 @@ where
     Outcome<A>: Report,
 {
     let page = outcome.page().unwrap_or_else(|| {
-        let words = Block::Lines(outcome.words());
+        let words = Block::Lines(words(outcome));
         let sections = vec![Section::new("Answer", vec![words])];
         Page::new(A::COMMAND, "", &outcome.findings, sections)
     });
-    piece_of(&page)
+    piece_of(&page.with_summary(outcome.summary()))
 }
 
 fn piece_of(page: &Page) -> String {
@@ -43,6 +43,7 @@ fn piece_of(page: &Page) -> String {
         div.strainbridge {
             style { (PreEscaped(STYLE)) }
             h3 { (page.title) }
+            @if !page.summary.is_empty() { p { b { (page.summary) } } }
             @if !page.lead.is_empty() { p.muted { (page.lead) } }
             (judged(&page.worst_first()))
             @for (title, blocks) in &sections {

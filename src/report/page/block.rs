@@ -11,6 +11,8 @@ use std::path::Path;
 pub struct Page {
     /// What it is about, as the user calls it.
     pub title: String,
+    /// Sentence that states the result.
+    pub summary: String,
     /// What kind of report it is.
     pub lead: String,
     /// In any order: the worst are shown first.
@@ -37,6 +39,7 @@ impl Page {
     pub fn new(title: &str, lead: &str, findings: &[Finding], sections: Vec<Section>) -> Self {
         Self {
             title: title.to_owned(),
+            summary: String::new(),
             lead: lead.to_owned(),
             findings: findings.to_vec(),
             sections,
@@ -47,6 +50,11 @@ impl Page {
     /// The same page, for paper too.
     pub fn on_paper(self, paper: Paper) -> Self {
         Self { paper, ..self }
+    }
+
+    /// The same page with the sentence that states the result.
+    pub fn with_summary(self, summary: String) -> Self {
+        Self { summary, ..self }
     }
 
     /// The page as it lies in `folder`: paths of linked files lead from there.

@@ -30,6 +30,7 @@ impl Page {
                 }
                 body {
                     h1 { (self.title) }
+                    @if !self.summary.is_empty() { p.summary { b { (self.summary) } } }
                     p.muted { (self.lead) }
                     h2 { "Findings" }
                     (judged(&findings))

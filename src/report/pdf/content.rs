@@ -44,6 +44,7 @@ pub(super) fn content(page: &Page, origin: &Origin) -> Value {
         "title": breakable(&page.title, IN_TEXT),
         "plain_title": printable(&page.title),
         "running": short_printable(&page.title, 80),
+        "summary": breakable(&page.summary, IN_TEXT),
         "lead": printable(&page.lead),
         "running_lead": short_printable(&page.lead, 50),
         "program": origin.program,

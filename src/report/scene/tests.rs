@@ -61,7 +61,7 @@ fn plate(n: u32, of_one: usize) -> Model {
                 shear_ratio: 0.833_333,
             },
             nsm: 0.0,
-            z: [-0.5, 0.5],
+            z: [None, None],
             at: Place::default(),
         });
     }

@@ -3,7 +3,7 @@
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
-use crate::job::{Candidates, Clearances, Ids};
+use crate::job::{Candidates, Clearances, Ids, PropertyIds};
 use crate::model::{Model, Vec3};
 
 /// All of it.
@@ -60,10 +60,14 @@ impl Default for Places {
 impl Places {
     /// What a job says of its candidates.
     pub fn of(candidates: &Candidates) -> Self {
+        let properties = |list: &Option<PropertyIds>| list.as_ref().map(|p| p.ids.clone());
         let lists = [
-            ("properties", &candidates.properties),
+            ("properties", &properties(&candidates.properties)),
             ("elements", &candidates.elements),
-            ("exclude_properties", &candidates.exclude_properties),
+            (
+                "exclude_properties",
+                &properties(&candidates.exclude_properties),
+            ),
             ("exclude_elements", &candidates.exclude_elements),
             ("wanted_elements", &candidates.wanted_elements),
         ];

@@ -4,11 +4,16 @@ use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::units::Quantity;
-use crate::workflow::calibrate::{Calibrated, CalibratedGauge, GlueSummary};
+use crate::workflow::calibrate::{
+    Calibrated, CalibratedGauge, CheckLoad, GlueSummary, LackOfFitSummary, LoadResidual,
+    NextRunSummary,
+};
 
 /// The page of `calibrate`: what was learnt, left-out runs against what is known, each gauge's model and calibrated row.
 pub fn calibrate_page(title: &str, answer: &Calibrated, findings: &[Finding]) -> Page {
-    let mut sections = vec![summary(answer), left_out(answer)];
+    let mut sections = vec![summary(answer)];
+    sections.extend(checks(answer));
+    sections.extend([residuals(answer), lack_of_fit(answer), left_out(answer)]);
     sections.extend(as_glued(answer));
     sections.push(gauges(answer));
     Page::new(
@@ -48,23 +53,116 @@ fn summary(answer: &Calibrated) -> Section {
         pairs.push(("Model off, entry by entry".to_owned(), percent(e.entry_rel)));
     }
     if let Some(n) = &c.next_run {
-        let loads: Vec<String> = n
-            .loads
-            .iter()
-            .filter(|(_, v)| **v != 0.0)
-            .map(|(k, v)| format!("{k} {}", number(*v)))
-            .collect();
-        let gain = format!(
-            "{}: sigma of {} {} becomes {} {}",
-            loads.join(", "),
-            n.load,
-            number(n.sigma_before),
-            number(n.sigma_after),
-            n.unit
-        );
+        let gain = next_words(n);
         pairs.push(("Next run worth making".to_owned(), gain));
     }
     Section::new("What was learnt", vec![Block::pairs(&pairs)])
+}
+
+/// Check loads, with the load that is worth applying next; `None` without check runs.
+fn checks(answer: &Calibrated) -> Option<Section> {
+    let c = &answer.calibration;
+    let row = |l: &CheckLoad| {
+        vec![
+            l.run.clone(),
+            l.load.clone(),
+            number(l.applied),
+            format!(
+                "{} ± {}",
+                number(l.recovered),
+                number((l.high - l.low) / 2.0)
+            ),
+            l.unit.clone(),
+            if l.inside { "inside" } else { "outside" }.to_owned(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = c.checks.iter().map(row).collect();
+    let next = c.next_run.as_ref().map_or(String::new(), |n| {
+        format!(" Calibration load worth applying next: {}.", next_words(n))
+    });
+    (!rows.is_empty()).then(|| {
+        table_section(
+            "Check loads",
+            &["run", "load", "applied", "recovered", "unit", "95 % interval"],
+            &rows,
+            &format!("Known loads that S was not calibrated with. The interval includes the stated error of the applied load.{next}"),
+        )
+    })
+}
+
+/// Range and residual of each load.
+fn residuals(answer: &Calibrated) -> Section {
+    let c = &answer.calibration;
+    let percent = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), number);
+    let row = |r: &LoadResidual| {
+        let [low, high] = c.range.get(&r.load).copied().unwrap_or([f64::NAN; 2]);
+        vec![
+            r.load.clone(),
+            format!("{} to {}", number(low), number(high)),
+            r.unit.clone(),
+            number(r.rms_percent),
+            number(r.max_percent),
+            percent(r.left_out_rms_percent),
+            percent(r.left_out_max_percent),
+            r.left_out_max_run.clone().unwrap_or_default(),
+        ]
+    };
+    let rows: Vec<Vec<String>> = c.residuals.iter().map(row).collect();
+    table_section(
+        "Range and residual by load",
+        &[
+            "load",
+            "calibrated range",
+            "unit",
+            "residual, rms",
+            "largest",
+            "left out, rms",
+            "largest",
+            "in run",
+        ],
+        &rows,
+        "Recovered less known load in percent of full scale, the largest known load. Left out: each run recovered with the other runs.",
+    )
+}
+
+/// Tests of further terms.
+fn lack_of_fit(answer: &Calibrated) -> Section {
+    let c = &answer.calibration;
+    let row = |t: &LackOfFitSummary| vec![t.test.to_owned(), format!("{:.1e}", t.p)];
+    let rows: Vec<Vec<String>> = c.lack_of_fit.iter().map(row).collect();
+    let held_out = match &c.held_out_error {
+        Some(h) => format!(
+            " Error of left-out runs by least squares: {} % of full scale with terms = \"linear\", {} % with \"intercept\". Used here: {}. Recommended: {}.",
+            number(h.linear_percent),
+            number(h.intercept_percent),
+            c.terms,
+            h.recommended
+        ),
+        None => String::new(),
+    };
+    table_section(
+        "Terms beyond the straight line",
+        &["terms", "chance without such a term"],
+        &rows,
+        &format!(
+            "The clearest term over all gauges; its chance is corrected for their number. A term is taken for one below 0.001.{held_out}"
+        ),
+    )
+}
+
+fn next_words(n: &NextRunSummary) -> String {
+    let loads: Vec<String> = (n.loads.iter())
+        .filter(|(_, v)| **v != 0.0)
+        .map(|(k, v)| format!("{k} {}", number(*v)))
+        .collect();
+    format!(
+        "{}: sigma of {} {} becomes {} {}",
+        loads.join(", "),
+        n.load,
+        number(n.sigma_before),
+        number(n.sigma_after),
+        n.unit
+    )
 }
 
 fn left_out(answer: &Calibrated) -> Section {
@@ -139,6 +237,7 @@ fn as_glued(answer: &Calibrated) -> Option<Section> {
 
 fn gauges(answer: &Calibrated) -> Section {
     let s = &answer.sensitivity;
+    let halves = s.half_widths();
     let mut head: Vec<String> = vec![
         "gauge".to_owned(),
         "looks like".to_owned(),
@@ -165,7 +264,8 @@ fn gauges(answer: &Calibrated) -> Section {
             ];
             for l in 0..s.loads.len() {
                 row.extend(answer.model.as_ref().map(|m| number(1e6 * m[(g, l)])));
-                row.push(number(1e6 * s.values[(g, l)]));
+                let [value, half] = [s.values[(g, l)], halves[(g, l)]].map(|v| number(1e6 * v));
+                row.push(format!("{value} ± {half}"));
             }
             row
         })
@@ -175,6 +275,6 @@ fn gauges(answer: &Calibrated) -> Section {
         "Gauges",
         &head,
         &rows,
-        "Rows of S in microstrain per job unit of the load.",
+        "Rows of S in microstrain per job unit of the load, with 95 % half widths.",
     )
 }

@@ -133,6 +133,7 @@ pub(super) fn clock_of(
             start_s,
             step_s,
             samples,
+            ..
         } => {
             let rate = if step_s > 0.0 && step_s.is_finite() {
                 declared_or(1.0 / step_s, declared_hz)?

@@ -68,7 +68,8 @@ impl Record {
                 epoch_s,
                 ..
             } => unit_stated || epoch_s.is_some(),
-            Times::Even { .. } | Times::None { .. } => true,
+            Times::Even { unit_stated, .. } => unit_stated,
+            Times::None { .. } => true,
         }
     }
 

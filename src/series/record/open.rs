@@ -51,7 +51,11 @@ pub fn open_source(source: Source, options: &Options) -> Result<Record, SeriesEr
         let begin = begin.get_mut(..known).unwrap_or_default();
         file.read_at(0, begin).map_err(unreadable)?;
         if is_read_in_parts(begin) {
-            return Record::new(parquet(source)?, options.declared_hz, options.time_unit_s);
+            return Record::new(
+                parquet(source, options)?,
+                options.declared_hz,
+                options.time_unit_s,
+            );
         }
     }
     open_record(source.whole().map_err(unreadable)?, options)
@@ -136,7 +140,7 @@ fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, S
     Ok(match format_of((*bytes).as_ref()) {
         Some(Format::Binary) => Box::new(Stored::binary(bytes)?),
         Some(Format::Rpc) => Box::new(Stored::rpc(bytes)?),
-        Some(Format::Parquet) => return parquet(Source::Memory(bytes)),
+        Some(Format::Parquet) => return parquet(Source::Memory(bytes), options),
         Some(Format::Feather) => return feather(bytes),
         Some(Format::Mdf) => return mdf(bytes, &options.wanted),
         Some(Format::Tdms) => Box::new(Tdms::new(bytes, &options.wanted)?),
@@ -146,12 +150,14 @@ fn reader_of(bytes: Bytes, options: &Options) -> Result<Box<dyn RecordReader>, S
 }
 
 #[cfg(feature = "parquet")]
-fn parquet(source: Source) -> Result<Box<dyn RecordReader>, SeriesError> {
-    Ok(Box::new(super::parquet::Parquet::new(source)?))
+fn parquet(source: Source, options: &Options) -> Result<Box<dyn RecordReader>, SeriesError> {
+    let file = super::parquet::Parquet::new(source)?;
+    file.check_types(&options.wanted, options.declared_hz.is_none())?;
+    Ok(Box::new(file))
 }
 
 #[cfg(not(feature = "parquet"))]
-fn parquet(_: Source) -> Result<Box<dyn RecordReader>, SeriesError> {
+fn parquet(_: Source, _: &Options) -> Result<Box<dyn RecordReader>, SeriesError> {
     Err(SeriesError::NotBuilt {
         name: "a Parquet file",
         feature: "parquet",

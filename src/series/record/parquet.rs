@@ -1,7 +1,7 @@
 //! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
 use super::arrow::durations;
-use super::column::Column;
+use super::column::{Column, is_time};
 use super::pages::Pages;
 use super::parquet_bytes::Whole;
 use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
@@ -341,8 +341,44 @@ impl Parquet {
         }
     }
 
+    /// Refuses columns of a type that is not read, of these names, and of time where the rate is not known otherwise.
+    ///
+    /// # Errors
+    /// As said.
+    pub(super) fn check_types(
+        &self,
+        wanted: &[String],
+        needs_time: bool,
+    ) -> Result<(), SeriesError> {
+        let schema = self.metadata.file_metadata().schema_descr();
+        let needs_time = needs_time && self.time.is_none();
+        let is_asked =
+            |name: &str| wanted.iter().any(|w| w == name) || needs_time && is_time(name, false);
+        let unread = schema
+            .columns()
+            .iter()
+            .find(|c| meaning(c).is_none() && is_asked(c.name()));
+        match unread {
+            Some(c) => Err(SeriesError::Broken {
+                wrong: format!("column `{}` contains {}", c.name(), type_words(c)),
+                remedy: "write it as numbers (float64), times as timestamps or seconds",
+            }),
+            None => Ok(()),
+        }
+    }
+
     fn descriptor(&self, leaf: usize) -> ColumnDescPtr {
         self.metadata.file_metadata().schema_descr().column(leaf)
+    }
+}
+
+/// Returns what a column of a type that is not read contains.
+fn type_words(c: &ColumnDescriptor) -> String {
+    match (c.physical_type(), c.logical_type_ref()) {
+        (_, Some(LogicalType::Date)) => "dates without a time of day".to_owned(),
+        (_, Some(LogicalType::Decimal(_))) => "decimal numbers as bytes (DECIMAL)".to_owned(),
+        (_, Some(LogicalType::String)) => "text".to_owned(),
+        (kind, _) => format!("values of the type {kind}, which are not read as numbers"),
     }
 }
 

@@ -22,6 +22,8 @@ pub enum Times {
         step_s: f64,
         /// Samples.
         samples: usize,
+        /// Whether the file states the unit of its times, or its format does.
+        unit_stated: bool,
     },
     /// A time with each sample.
     Stored {

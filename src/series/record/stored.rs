@@ -79,6 +79,8 @@ impl RecordReader for Stored {
             start_s,
             step_s,
             samples,
+            // Both formats count in seconds.
+            unit_stated: true,
         }
     }
 

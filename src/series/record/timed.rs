@@ -29,13 +29,14 @@ pub(super) fn timed(
     reader: Box<dyn RecordReader>,
     time_unit_s: Option<f64>,
 ) -> Result<(Box<dyn RecordReader>, Option<TimeUnit>), SeriesError> {
-    let Times::Stored {
-        rounding_s,
-        epoch_s,
-        unit_stated,
-    } = reader.times()
-    else {
-        return Ok((reader, None));
+    let (rounding_s, epoch_s, unit_stated) = match reader.times() {
+        Times::Stored {
+            rounding_s,
+            epoch_s,
+            unit_stated,
+        } => (rounding_s, epoch_s, unit_stated),
+        Times::Even { .. } => return Ok((in_stated_unit(reader, time_unit_s), None)),
+        Times::None { .. } => return Ok((reader, None)),
     };
     if reader.are_times_of_day() {
         return Ok((past_midnight(reader)?, None));
@@ -70,6 +71,36 @@ pub(super) fn timed(
         times,
     };
     Ok((Box::new(inner), unit))
+}
+
+/// Returns a reader of even steps with its times in seconds, where the file states no unit and the job does.
+fn in_stated_unit(
+    reader: Box<dyn RecordReader>,
+    time_unit_s: Option<f64>,
+) -> Box<dyn RecordReader> {
+    match (reader.times(), time_unit_s) {
+        (
+            Times::Even {
+                start_s,
+                step_s,
+                samples,
+                unit_stated: false,
+            },
+            Some(second),
+        ) => Box::new(Timed {
+            inner: reader,
+            origin: 0.0,
+            second,
+            later_s: Vec::new(),
+            times: Times::Even {
+                start_s: start_s * second,
+                step_s: step_s * second,
+                samples,
+                unit_stated: true,
+            },
+        }),
+        _ => reader,
+    }
 }
 
 fn first_time(reader: &dyn RecordReader) -> Result<Option<f64>, SeriesError> {

@@ -14,6 +14,8 @@ pub(super) struct Sampling {
     pub samples: usize,
     /// Number of the channel that holds the times, where there is one.
     pub times: Option<usize>,
+    /// Whether the file states the unit of its steps.
+    pub unit_stated: bool,
 }
 
 impl Sampling {

@@ -2,12 +2,13 @@
 
 use super::completed::MassCards;
 use super::task::{CompletedDeck, DECK, Task, force, length, mass};
+use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::host::outcome::Answer;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::payload::{BallastFit, BallastSpec};
-use crate::units::number;
+use crate::units::{number, plus_minus};
 use serde::Serialize;
 
 /// Masses that complete a model, report units.
@@ -40,6 +41,24 @@ pub struct Ballasted {
 
 impl Answer for Ballasted {
     const COMMAND: &'static str = "ballast";
+    const RESULT: &'static str = "The masses";
+
+    fn verdict(&self) -> String {
+        let (mass, force) = (self.job.report_units.mass, self.job.report_units.force);
+        let off = self.reactions.iter().map(|r| (r.after - r.measured).abs());
+        let half = NORMAL_95 * self.together.mass_sigma;
+        format!(
+            "{} of {} {} together: every reaction is within {} {} of the measured one.",
+            match self.masses.len() {
+                1 => "1 lumped mass".to_owned(),
+                n => format!("{n} lumped masses"),
+            },
+            plus_minus(self.together.mass, half),
+            mass.name,
+            number(off.fold(0.0, f64::max)),
+            force.name
+        )
+    }
 }
 
 /// One lumped mass, with what the data leave each number when the others are adjusted (95 %).

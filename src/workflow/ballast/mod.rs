@@ -34,7 +34,9 @@ const ASSUMED_NOISE: f64 = 0.01;
 /// Every fault of the job and its deck; a region that can't hold a mass; a model that already weighs more.
 pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let mut work = Work::of_job(cx, job);
-    let (ballast, read) = read_asked(&mut work, job)?;
+    let read = read_asked(&mut work, job)?;
+    let job = &job.with_property_ids(&read.model.property_names)?;
+    let ballast = asked(job)?;
     let wheels = wheels_of(job, &read.model)?;
     let standing = work
         .stage("solve", |_| {
@@ -98,26 +100,36 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// What the job asks for, and its deck, whose findings go to the work.
-fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckModel), Faults> {
-    let missing = |field: &str, example: &str| {
-        Faults::from(Fault::of(
-            &*job.file,
-            field,
-            format!("the job has no [{field}]"),
-            example,
-        ))
-    };
-    let ballast = job.ballast.as_ref().ok_or_else(|| {
+fn missing(job: &Job, field: &str, example: &str) -> Faults {
+    Faults::from(Fault::of(
+        &*job.file,
+        field,
+        format!("the job has no [{field}]"),
+        example,
+    ))
+}
+
+/// Returns the section of the job.
+///
+/// # Errors
+/// A job without it.
+fn asked(job: &Job) -> Result<&Ballast, Faults> {
+    job.ballast.as_ref().ok_or_else(|| {
         missing(
+            job,
             "ballast",
             "state what is looked for: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
         )
-    })?;
+    })
+}
+
+/// What the job asks for, and its deck, whose findings go to the work.
+fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
+    asked(job)?;
     let files = job
         .model
         .as_ref()
-        .ok_or_else(|| missing("model", "name the deck: [model] deck = \"model.bdf\""))?;
+        .ok_or_else(|| missing(job, "model", "name the deck: [model] deck = \"model.bdf\""))?;
     check_named(work, job, Absent::Refused)?;
     check_tables(work, job)?;
     let read = work.stage("read model", |s| read_deck(s, job, files))?;
@@ -129,7 +141,7 @@ fn read_asked<'a>(work: &mut Work, job: &'a Job) -> Result<(&'a Ballast, DeckMod
             "name the deck",
         )));
     }
-    Ok((ballast, read))
+    Ok(read)
 }
 
 /// Weight of one mass at most, in job units: as the job says, else all that the model lacks.

@@ -2,6 +2,7 @@
 
 use super::Calibrated;
 use crate::host::fault::{Fault, Faults};
+use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::redirect;
 use crate::workflow::reconcile::relative::relative;
 use std::path::Path;
@@ -35,8 +36,30 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
     s.remove("columns");
     s.insert("file".into(), Value::String("sensitivity.csv".into()));
     s.insert("covariance".into(), Value::String("calibration.bin".into()));
+    s.remove("common_zero");
+    if !answer.found.common_zero.is_empty() {
+        s.insert(
+            "common_zero".into(),
+            Value::String("common_zero.csv".into()),
+        );
+    }
+    let range = &answer.found.range;
+    let loads = answer.sensitivity.loads.iter().map(|l| l.name.as_str());
+    s.insert(
+        "range".into(),
+        ranges(loads.zip(range.loads.iter().copied())),
+    );
+    let gauges = answer.sensitivity.gauges.iter().map(String::as_str);
+    let strain = range.strain.iter().map(|r| r.map(|v| v / MICROSTRAIN));
+    s.insert("strain_range".into(), ranges(gauges.zip(strain)));
     table.insert("sensitivity".into(), Value::Table(s));
-    table.remove("calibration");
+    // Which runs taught S stays known: `recover` does not compare these with their recorded loads.
+    if let Some(Value::Table(keys)) = table.remove("calibration")
+        && let Some(runs) = keys.get("runs").cloned()
+    {
+        let only = Table::from_iter([("runs".to_owned(), runs)]);
+        table.insert("calibration".into(), Value::Table(only));
+    }
     // How gauges are turned is in the rows of S now.
     if let Some(Value::Array(list)) = table.get_mut("correction") {
         for c in list.iter_mut().filter_map(Value::as_table_mut) {
@@ -64,4 +87,14 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
     Ok(format!(
         "# The job with S as calibrated: `strainbridge recover calibrated.toml`.\n{body}"
     ))
+}
+
+/// Ranges by name; what no run states has none.
+fn ranges<'a>(all: impl Iterator<Item = (&'a str, [f64; 2])>) -> Value {
+    let stated = all.filter(|(_, r)| r.iter().all(|v| v.is_finite()));
+    let entry = |(name, r): (&str, [f64; 2])| {
+        let ends = r.map(Value::Float).to_vec();
+        (name.to_owned(), Value::Array(ends))
+    };
+    Value::Table(stated.map(entry).collect())
 }

@@ -1,5 +1,6 @@
 //! Known loads of the runs file: values, their sd, sums, repeats.
 
+use super::asked::Asked;
 use super::payloads::{Payloads, add_columns};
 use crate::calibrate::KnownLoads;
 use crate::finding::{Finding, Severity};
@@ -28,10 +29,18 @@ pub(super) struct Known {
     pub group: usize,
 }
 
+impl Known {
+    fn of(row: usize, loads: KnownLoads, group: usize) -> Self {
+        Self { row, loads, group }
+    }
+}
+
 /// What the runs file says.
 pub(super) struct KnownRuns {
     /// Runs that teach, in the order of the strain table.
     pub runs: Vec<Known>,
+    /// Runs that are recovered and compared with their loads alone.
+    pub checks: Vec<Known>,
     /// Name and values, a run each (NaN where blank), of the column that the scale may depend on.
     pub column: Option<(String, Vec<f64>)>,
 }
@@ -93,10 +102,11 @@ pub(super) fn read_known(
         cell.map_or("", String::as_str)
     };
     faults.extend(named_twice(&table, key));
-    let asked = asked_rows(job, &table, key, strain, &mut faults);
+    let Asked { asked, checks } = Asked::of((job, &headers), (&table, key), strain, &mut faults);
     let largest = largest_known(&table, &stated, loads.len(), &mut faults);
     let held_out = |run: &str| matches!(&measured.hold_out, HoldOut::Runs(list) if list.iter().any(|r| r == run));
     let (mut out, mut groups): (Vec<Known>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
+    let mut checked = Vec::new();
     let (mut values, mut partly, mut teaching) = (Vec::new(), Vec::new(), Vec::new());
     for (row, run) in strain.iter().enumerate() {
         let Some(at) = (0..table.rows.len()).find(|i| name_of(*i) == run) else {
@@ -107,7 +117,8 @@ pub(super) fn read_known(
             Some(_) => !listed,
             None => held_out(run),
         };
-        if left_out {
+        let is_check = checks.contains(&at);
+        if left_out && !is_check {
             continue;
         }
         let found = loads_of((&table, at), &stated, payloads.as_ref(), loads, &largest);
@@ -116,10 +127,12 @@ pub(super) fn read_known(
             None
         });
         let Some(known) = known else {
-            if listed {
+            if listed || is_check {
                 let line = table.rows.get(at).map_or(0, |r| r.0);
-                let wrong = format!("run `{run}` is to teach and its loads are not known");
-                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs`"));
+                let wrong = format!(
+                    "the loads of run `{run}` are not known, and it is a calibration or a check run"
+                );
+                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs` or `check`"));
             } else if stated
                 .iter()
                 .any(|s| matches!(cell(&table, at, s), Ok(Some(_))))
@@ -128,6 +141,10 @@ pub(super) fn read_known(
             }
             continue;
         };
+        if is_check {
+            checked.push(Known::of(row, known, 0));
+            continue;
+        }
         let cells = |columns: &[usize]| -> Vec<String> {
             columns
                 .iter()
@@ -151,11 +168,7 @@ pub(super) fn read_known(
             }
         }
         teaching.push(at);
-        out.push(Known {
-            row,
-            loads: known,
-            group,
-        });
+        out.push(Known::of(row, known, group));
     }
     faults.extend(payloads.and_then(|p| p.unaccounted(job, &table, &teaching)));
     if out.is_empty() && faults.is_empty() {
@@ -165,6 +178,7 @@ pub(super) fn read_known(
     work.findings.extend(partly_known(&table.file, &partly));
     Ok(KnownRuns {
         runs: out,
+        checks: checked,
         column: depends.map(|(name, _)| (name, values)),
     })
 }
@@ -224,49 +238,6 @@ fn named_twice(table: &Table, key: usize) -> FaultList {
             )
         })
         .collect()
-}
-
-/// Rows of the runs that `[calibration] runs` names; `None` where it names none.
-fn asked_rows(
-    job: &Job,
-    table: &Table,
-    key: usize,
-    strain: &[String],
-    faults: &mut FaultList,
-) -> Option<Vec<usize>> {
-    let list = job.calibration.runs.as_ref()?;
-    let names: Vec<&str> = table
-        .rows
-        .iter()
-        .filter_map(|r| r.1.get(key))
-        .map(String::as_str)
-        .collect();
-    let mut out = Vec::new();
-    for run in list {
-        let place = names.iter().position(|n| n == run);
-        let known = [
-            (place.is_some(), &*table.file, names.clone()),
-            (
-                strain.contains(run),
-                "the strain file",
-                strain.iter().map(String::as_str).collect(),
-            ),
-        ];
-        for (found, file, choices) in known {
-            if !found {
-                let wrong = format!("`{file}` has no run `{run}`");
-                faults.push(Fault::at(
-                    &*job.file,
-                    job.calibration.line,
-                    "calibration.runs",
-                    wrong,
-                    suggest::remedy(run, choices),
-                ));
-            }
-        }
-        out.extend(place);
-    }
-    Some(out)
 }
 
 /// The column that a key of `[calibration]` names.

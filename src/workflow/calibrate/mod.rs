@@ -1,5 +1,7 @@
 //! `calibrate`: S from runs of known load, fused with the model's where there is one; the job that the other workflows run with it.
 
+mod asked;
+mod checks;
 mod glued;
 mod job_file;
 mod known;
@@ -10,13 +12,15 @@ mod said;
 pub use job_file::calibrated_job;
 pub use outcome::*;
 
-use crate::calibrate::{KnownRun, ModelPrior, Task, calibrate_as_glued};
+use crate::calibrate::{
+    CommonZero, KnownRun, ModelPrior, Task, calibrate_as_glued, recover_checks,
+};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::readings::stated_readings;
-use crate::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs};
+use crate::job::{Job, JobLoad, LoadRole, Measured, Reference, Runs, Terms};
 use crate::linalg::Matrix;
 use crate::measured::faults::no_gauge_column;
 use crate::measured::strain_table::StrainTable;
@@ -46,23 +50,23 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let (known, strain) = read(&mut work, job, (measured, runs), &zeroed, s, origin)?;
     let names = zeroed.runs()?;
     let noise_factor = &zeroed.noise_factor;
+    let prior_is_given = prior.is_some();
+    let as_run = |k: &known::Known| KnownRun {
+        run: names[k.row].clone(),
+        strain: strain[k.row].strain.clone(),
+        noise_factor: noise_factor[k.row],
+        loads: k.loads.clone(),
+        group: k.group,
+    };
     let task = Task {
         gauges: prepared.sensitivity.gauges.clone(),
         loads: prepared.sensitivity.loads.clone(),
         noise: measured.noise_microstrain * MICROSTRAIN,
         model: prior,
-        runs: known
-            .runs
-            .iter()
-            .map(|k| KnownRun {
-                run: names[k.row].clone(),
-                strain: strain[k.row].strain.clone(),
-                noise_factor: noise_factor[k.row],
-                loads: k.loads.clone(),
-                group: k.group,
-            })
-            .collect(),
+        runs: known.runs.iter().map(as_run).collect(),
         sums: sums(job, &prepared.sensitivity.loads),
+        common_zero: common_zero(job, prior_is_given)?,
+        scale_sd: job.calibration.scale_sd,
     };
     let sites = match glued::tolerance(&job.calibration) {
         Some(t) => Some((t, glued::Sites::of(job, &prepared, t)?)),
@@ -96,7 +100,11 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             .flatten()
             .filter_map(DependenceSummary::finding),
     );
-    let calibration = said::words(&task, &found, &listed, next, dependence.flatten());
+    let mut calibration = said::words(&task, &found, &listed, next, dependence.flatten());
+    let checks: Vec<KnownRun> = known.checks.iter().map(as_run).collect();
+    let checked = recover_checks(&found, task.noise, &checks);
+    calibration.checks = checks::compared(&checked, &listed);
+    work.findings.extend(checks::finding(&calibration.checks));
     work.findings.extend(glued::untold(&calibration.gauges));
     let glued = found.as_glued.iter().enumerate();
     let answer = Calibrated {
@@ -111,6 +119,25 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         job: job.clone(),
     };
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
+}
+
+/// What the job states of strain without load.
+///
+/// # Errors
+/// An intercept beside a model, whose S goes through zero.
+fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
+    match (job.calibration.terms, has_prior) {
+        (Terms::Linear, _) => Ok(CommonZero::None),
+        (Terms::Intercept, false) => Ok(CommonZero::Sought),
+        (Terms::Intercept, true) => Err(Fault::at(
+            &*job.file,
+            job.calibration.line,
+            "calibration.terms",
+            "`intercept` needs an S that is learnt from the runs alone, and the job gives one by [model] or [sensitivity]",
+            "write terms = \"linear\" and take the zero of the runs from a run without load ([measured] zero or zero_runs), or leave [model] out",
+        )
+        .into()),
+    }
 }
 
 /// Reads what [`calibrate`] learns from, as far as no model is solved for it, and drops it: of a job that is to be calibrated, as its section says

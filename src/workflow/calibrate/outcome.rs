@@ -4,6 +4,7 @@ use crate::calibrate::Calibration;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Gauge, GaugeSpec};
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::linalg::Matrix;
 use crate::model::Vec3;
@@ -38,6 +39,23 @@ pub struct Calibrated {
 
 impl Answer for Calibrated {
     const COMMAND: &'static str = "calibrate";
+    const RESULT: &'static str = "The calibrated sensitivities";
+
+    fn verdict(&self) -> String {
+        let c = &self.calibration;
+        let prior = match c.prior {
+            "model" => "and the model",
+            _ => "without a model",
+        };
+        format!(
+            "Sensitivities of {} to {} from {} {prior}; the 95 % intervals contain {} of {} runs left out one by one.",
+            counted(self.sensitivity.gauges.len(), "gauge"),
+            counted(self.sensitivity.loads.len(), "load"),
+            counted(c.runs, "run"),
+            c.coverage.held,
+            c.coverage.of
+        )
+    }
 }
 
 /// `calibration` of `result.json`.
@@ -53,8 +71,22 @@ pub struct CalibrationSummary {
     pub repeat_scatter_rel: Option<f64>,
     /// Noise over the strain.
     pub noise_rel: f64,
+    /// Smallest and largest known load of the calibration runs by load, report units.
+    pub range: BTreeMap<String, [f64; 2]>,
+    /// Smallest and largest reading of the calibration runs by gauge, microstrain.
+    pub strain_range: BTreeMap<String, [f64; 2]>,
     /// Runs left out one by one.
     pub coverage: CoverageSummary,
+    /// Terms of the model of the strain: `linear`, `intercept`.
+    pub terms: &'static str,
+    /// Tests of the linear model against further terms; empty where runs are too few.
+    pub lack_of_fit: Vec<LackOfFitSummary>,
+    /// Errors of left-out runs by least squares with either terms; null where runs are too few.
+    pub held_out_error: Option<HeldOutSummary>,
+    /// Residual of the runs by load.
+    pub residuals: Vec<LoadResidual>,
+    /// Check runs: loads applied and recovered, which S was not calibrated with.
+    pub checks: Vec<CheckLoad>,
     /// The next known load worth applying.
     pub next_run: Option<NextRunSummary>,
     /// Relative error of the model as the runs show it.
@@ -200,4 +232,66 @@ pub struct DependenceSummary {
     pub chance: f64,
     /// Degrees of freedom behind `sigma`.
     pub dof: f64,
+}
+
+/// Test of the linear model against one kind of term.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LackOfFitSummary {
+    /// `common zero`, `squares`, `products`.
+    pub test: &'static str,
+    /// Chance of a term at least as clear where there is none, over all gauges and terms of the kind.
+    pub p: f64,
+}
+
+/// Root mean square error of left-out runs, percent of the largest load.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HeldOutSummary {
+    /// Without a common zero.
+    pub linear_percent: f64,
+    /// With one.
+    pub intercept_percent: f64,
+    /// `linear`, or `intercept` where its error is clearly smaller.
+    pub recommended: &'static str,
+}
+
+/// Recovered less known load over the calibration runs, percent of full scale: the largest known load.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LoadResidual {
+    /// Load.
+    pub load: String,
+    /// Largest known load.
+    pub full_scale: f64,
+    /// Its unit.
+    pub unit: String,
+    /// Root mean square over the runs that S was calibrated with.
+    pub rms_percent: f64,
+    /// The largest of them.
+    pub max_percent: f64,
+    /// Root mean square over left-out runs; null without one.
+    pub left_out_rms_percent: Option<f64>,
+    /// The largest of them.
+    pub left_out_max_percent: Option<f64>,
+    /// Its run.
+    pub left_out_max_run: Option<String>,
+}
+
+/// A load, or a combination, of a check run, report units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CheckLoad {
+    /// Run.
+    pub run: String,
+    /// Load or combination.
+    pub load: String,
+    /// As `[runs]` gives it.
+    pub applied: f64,
+    /// As recovered with the calibrated S.
+    pub recovered: f64,
+    /// Lower end of the 95 % interval of the difference, around `recovered`: the error of the applied load is in it.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Unit.
+    pub unit: String,
+    /// Whether the interval contains the applied load.
+    pub inside: bool,
 }

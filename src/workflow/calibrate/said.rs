@@ -5,7 +5,7 @@ use crate::calibrate::{Calibration, Dependence, LeftOut, Task, depends_on, known
 use crate::estimate::student_95;
 use crate::finding::{Finding, Severity};
 use crate::strain_chain::LoadUnits;
-use crate::units::number;
+use crate::units::{MICROSTRAIN, number};
 use crate::workflow::recover::Listed;
 use std::collections::BTreeMap;
 
@@ -245,6 +245,35 @@ pub(super) fn words(
             .collect(),
         repeat_scatter_rel: found.repeat_scatter_rel,
         noise_rel: found.noise_rel,
+        range: ranges(
+            listed,
+            task.loads.iter().map(|l| l.name.as_str()),
+            &found.range.loads,
+        ),
+        strain_range: (task.gauges.iter().zip(&found.range.strain))
+            .filter(|(_, r)| r[0].is_finite())
+            .map(|(g, r)| (g.clone(), r.map(|v| v / MICROSTRAIN)))
+            .collect(),
+        terms: match found.common_zero.is_empty() {
+            true => "linear",
+            false => "intercept",
+        },
+        lack_of_fit: (found.lack_of_fit.tests.iter())
+            .map(|t| LackOfFitSummary {
+                test: t.term.name(),
+                p: t.p,
+            })
+            .collect(),
+        held_out_error: found.lack_of_fit.held_out.map(|h| HeldOutSummary {
+            linear_percent: 100.0 * h.linear,
+            intercept_percent: 100.0 * h.intercept,
+            recommended: match found.lack_of_fit.recommends_intercept() {
+                Some(true) => "intercept",
+                _ => "linear",
+            },
+        }),
+        residuals: residuals(task, found, listed),
+        checks: Vec::new(),
         coverage: CoverageSummary {
             held: found.coverage.held,
             of: found.coverage.of,
@@ -264,4 +293,55 @@ pub(super) fn words(
         undetermined: found.undetermined.iter().map(terms).collect(),
         dependence,
     }
+}
+
+/// Ranges by load, report units; a load that no run states has none.
+fn ranges<'a>(
+    listed: &Listed,
+    names: impl Iterator<Item = &'a str>,
+    ranges: &[[f64; 2]],
+) -> BTreeMap<String, [f64; 2]> {
+    let all = names.zip(&listed.units).zip(ranges);
+    all.filter(|(_, r)| r[0].is_finite())
+        .map(|((name, unit), r)| (name.to_owned(), r.map(|v| v * unit.factor)))
+        .collect()
+}
+
+/// Recovered less known loads over the runs, by load.
+fn residuals(task: &Task, found: &Calibration, listed: &Listed) -> Vec<LoadResidual> {
+    let fitted = found.fitted(task.noise, &task.runs);
+    let rms = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len().max(1) as f64).sqrt();
+    let one = |l: usize| {
+        let full = found.range.largest(l);
+        let percent = |run: usize, value: f64| {
+            let known = known_of(task, run, &[(l, 1.0)])?;
+            Some(100.0 * (value - known) / full)
+        };
+        let of_fit = fitted
+            .iter()
+            .filter_map(|(run, c)| percent(*run, c.estimate.values[l]));
+        let of_fit: Vec<f64> = of_fit.filter(|v| v.is_finite()).collect();
+        let left = found.left_out.iter().filter_map(|o| {
+            let off = percent(o.number, o.estimate.values[l])?;
+            off.is_finite().then_some((off, &o.estimate.run))
+        });
+        let left: Vec<(f64, &String)> = left.collect();
+        let offs: Vec<f64> = left.iter().map(|o| o.0).collect();
+        let worst = left.iter().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+        let unit = &listed.units[l];
+        (full > 0.0 && !of_fit.is_empty()).then(|| LoadResidual {
+            load: listed.names[l].clone(),
+            full_scale: full * unit.factor,
+            unit: unit.name.clone(),
+            rms_percent: rms(&of_fit),
+            max_percent: of_fit.iter().fold(0.0, |a, v| f64::max(a, v.abs())),
+            left_out_rms_percent: worst.map(|_| rms(&offs)),
+            left_out_max_percent: worst.map(|w| w.0.abs()),
+            left_out_max_run: worst.map(|w| w.1.clone()),
+        })
+    };
+    (0..task.loads.len())
+        .filter(|l| task.loads[*l].wanted)
+        .filter_map(one)
+        .collect()
 }

@@ -10,12 +10,13 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::{Component, Job, JobLoad, LoadActs};
 use crate::model::{Grid, Model};
 use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::named_results::{Absent, check_named};
-use crate::strain_chain::solved::support_of_job;
+use crate::strain_chain::solved::{refuse_repeated_subcases, support_of_job};
 use nastran::bdf::{Deck, Edits, Field, format_card, write_edited};
 use nastran::cards::Force;
 use serde::Serialize;
@@ -65,6 +66,15 @@ pub struct UnitLoadDeck {
 
 impl Answer for UnitLoadDeck {
     const COMMAND: &'static str = "cases";
+    const RESULT: &'static str = "The deck of unit loads";
+
+    fn verdict(&self) -> String {
+        format!(
+            "{} written for Nastran; the structure is {}.",
+            counted(self.subcases.len(), "unit-load subcase"),
+            self.support
+        )
+    }
 }
 
 /// A deck as read, and the files of its edited form.
@@ -116,6 +126,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     // Those of the deck that is written here come of a run that is still to be made.
     check_named(&work, job, Absent::ToCome)?;
     let read = work.stage("read deck", |s| read_deck(s, job, files))?;
+    refuse_repeated_subcases(&read)?;
     if read.deck.sources.is_empty() {
         return Err(fault(
             "model.deck",

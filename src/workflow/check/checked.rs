@@ -3,8 +3,9 @@
 use super::decks::DeckEntry;
 use super::records::RecordEntry;
 use super::results::ResultEntry;
-use crate::host::fault::FaultList;
+use crate::host::fault::{Fault, FaultList};
 use crate::host::outcome::{Answer, StatedUnits};
+use crate::host::words::counted;
 use crate::job::Candidates;
 use serde::{Serialize, Serializer};
 
@@ -20,6 +21,9 @@ pub struct Checked {
     /// Every fault; where there is one, the files are bad input.
     #[serde(serialize_with = "as_lines")]
     pub faults: FaultList,
+    /// Next command of a user with the last job.
+    #[serde(skip)]
+    pub(super) next: Option<String>,
     /// Jobs in words.
     #[serde(skip)]
     pub jobs: Vec<String>,
@@ -36,4 +40,26 @@ fn as_lines<S: Serializer>(faults: &FaultList, s: S) -> Result<S::Ok, S::Error> 
 
 impl Answer for Checked {
     const COMMAND: &'static str = "check";
+    const RESULT: &'static str = "The result of these files";
+
+    fn verdict(&self) -> String {
+        let files = self.decks.len() + self.results.len() + self.records.len() + self.jobs.len();
+        format!("{} read, no faults found.", counted(files, "file"))
+    }
+
+    fn faults(&self) -> &[Fault] {
+        &self.faults
+    }
+}
+
+impl Checked {
+    /// Returns the next step of a user: the command of the job, or a job for a deck; `None` where the files have faults.
+    pub fn next_step(&self) -> Option<String> {
+        let deck = self.decks.first().map(|d| {
+            let deck = d.path();
+            format!("run `strainbridge init {deck}` for a job")
+        });
+        let next = self.next.clone().or(deck);
+        next.filter(|_| self.faults.is_empty())
+    }
 }

@@ -2,11 +2,13 @@
 
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::host::fault::FaultList;
-use crate::host::words::short;
+use crate::host::words::{counted, short};
 use crate::host::work::Work;
+use crate::job::Job;
 use crate::model::{Model, UnsupportedCard};
-use crate::strain_chain::deck::{DeckModel, model_of_deck};
+use crate::strain_chain::deck::{DeckModel, model_of_deck, moduli_and_densities};
 use crate::strain_chain::solved::find_repeated_subcases;
+use crate::units::{Quantity, Unit, UnitSystem, factor, likely_system};
 use nastran::bdf::vocabulary::{Effect, effect_of_card};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,8 +42,22 @@ pub struct DeckEntry {
     wtmass: f64,
     property_names: BTreeMap<u32, String>,
     faults: usize,
+    /// Units of mass and centre of gravity for people; `None` where neither a job nor the materials show them.
+    #[serde(skip)]
+    shown: Option<ShownUnits>,
     #[serde(skip)]
     pub(super) model: Option<Model>,
+}
+
+/// Units in which people read mass and centre of gravity.
+#[derive(Clone, Copy)]
+struct ShownUnits {
+    /// Units of the deck.
+    system: UnitSystem,
+    /// Unit of lengths.
+    length: Unit,
+    /// Whether a job states them; else the materials suggest them.
+    is_stated: bool,
 }
 
 pub(super) fn look(
@@ -50,7 +66,10 @@ pub(super) fn look(
     given: &str,
     bytes: &[u8],
 ) -> (DeckEntry, FaultList) {
-    let read = model_of_deck(&mut work.inputs, base, given, bytes);
+    let mut read = model_of_deck(&mut work.inputs, base, given, bytes);
+    // The warning `card-not-solved` names these cards; results of Nastran may be given.
+    let not_carried = std::mem::take(&mut read.not_carried);
+    read.faults.retain(|f| !not_carried.contains(f));
     work.findings.extend(read.findings.iter().cloned());
     work.findings.extend(find_repeated_subcases(&read));
     work.findings.extend(check_shapes(&read.model));
@@ -99,18 +118,17 @@ fn without_influence(
     cards: &BTreeMap<String, usize>,
     model: &Model,
 ) -> BTreeMap<&'static str, usize> {
+    // `MDLPRM OFFDEF`: the name of the card comes first
+    let acting = |name: &str| {
+        let of_name = |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name);
+        let acting = model.unsupported_cards.iter().filter(of_name);
+        acting.map(|u| u.at).collect::<BTreeSet<_>>().len()
+    };
     let mut counted = BTreeMap::new();
     for (name, n) in cards {
         let (reason, n) = match effect_of_card(name) {
-            Some(Effect::None(reason)) => (reason, *n),
-            Some(Effect::ActsWith(_)) => {
-                // `MDLPRM OFFDEF`: the name of the card comes first
-                let of_name =
-                    |u: &&UnsupportedCard| u.card.split(' ').next() == Some(name.as_str());
-                let acting = model.unsupported_cards.iter().filter(of_name);
-                let acting: BTreeSet<_> = acting.map(|u| u.at).collect();
-                ("acts on nothing in this deck", n - acting.len().min(*n))
-            }
+            Some(Effect::None(reason)) => (reason, n - acting(name).min(*n)),
+            Some(Effect::ActsWith(_)) => ("acts on nothing in this deck", n - acting(name).min(*n)),
             _ => continue,
         };
         if n > 0 {
@@ -118,6 +136,17 @@ fn without_influence(
         }
     }
     counted
+}
+
+/// The units that the materials of a deck suggest.
+fn suggested(model: &Model) -> Option<ShownUnits> {
+    let (moduli, densities) = moduli_and_densities(model);
+    let system = likely_system(model.params.unitsys.as_deref(), &moduli, &densities)?;
+    Some(ShownUnits {
+        system,
+        length: system.unit(Quantity::Length),
+        is_stated: false,
+    })
 }
 
 impl DeckEntry {
@@ -141,8 +170,56 @@ impl DeckEntry {
             wtmass: m.params.wtmass,
             property_names: m.property_names.iter().cloned().collect(),
             faults: d.faults.len(),
+            shown: suggested(m),
             model: Some(d.model),
         }
+    }
+
+    /// Takes the units that a job states.
+    pub(super) fn state_units(&mut self, job: &Job) {
+        self.shown = Some(ShownUnits {
+            system: job.units,
+            length: job.report_units.length,
+            is_stated: true,
+        });
+    }
+
+    /// Mass and centre of gravity in words.
+    fn weight(&self) -> String {
+        if !self.mass.is_finite() || self.cg.iter().any(|v| !v.is_finite()) {
+            return "more than numbers can be".to_owned();
+        }
+        let wtmass = match self.wtmass == 1.0 {
+            true => String::new(),
+            false => format!(" (PARAM,WTMASS,{} applied)", self.wtmass),
+        };
+        /// Share of the largest coordinate below which another one is rounding.
+        const ROUNDING: f64 = 1e-12;
+        let largest = self.cg.iter().fold(0.0, |a: f64, v| a.max(v.abs()));
+        let plain = |v: f64| if v.abs() < ROUNDING * largest { 0.0 } else { v };
+        let at = |scale: f64| self.cg.map(|v| short(plain(v) * scale)).join(", ");
+        match self.shown {
+            None => format!(
+                "{}{wtmass}, centre of gravity {}, units of the deck",
+                short(self.mass),
+                at(1.0)
+            ),
+            Some(u) => {
+                let mass = short(self.mass * u.system.mass_kg());
+                let cg = at(factor(u.system, u.length));
+                let guess = match u.is_stated {
+                    true => String::new(),
+                    false => format!(", if the deck is in {}", u.system.name()),
+                };
+                let length = u.length.name;
+                format!("{mass} kg{wtmass}, centre of gravity {cg} {length}{guess}")
+            }
+        }
+    }
+
+    /// Path as given.
+    pub(super) fn path(&self) -> &str {
+        &self.path
     }
 
     /// Its mesh.
@@ -163,29 +240,17 @@ impl DeckEntry {
     /// For people.
     pub fn text(&self) -> String {
         let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
-        let wtmass = if self.wtmass == 1.0 {
-            String::new()
-        } else {
-            format!(" (PARAM,WTMASS,{} applied)", self.wtmass)
-        };
         let solution = self
             .solution
             .as_ref()
             .map_or(String::new(), |s| format!(", SOL {s}"));
-        let [x, y, z] = self.cg.map(short);
-        let weight = match self.mass.is_finite() && self.cg.iter().all(|v| v.is_finite()) {
-            true => format!(
-                "{}{wtmass}, centre of gravity {x}, {y}, {z}",
-                short(self.mass)
-            ),
-            false => "more than numbers can be".to_owned(),
-        };
         format!(
-            "deck `{}`: {} grids, {} elements, {} subcases{solution}\n  mass {weight}\n  cards: {}\n{}  faults: {}",
+            "deck `{}`: {}, {}, {}{solution}\n  mass {}\n  cards: {}\n{}  faults: {}",
             self.path,
-            self.grids,
-            self.elements,
-            self.subcases.len(),
+            counted(self.grids, "grid"),
+            counted(self.elements, "element"),
+            counted(self.subcases.len(), "subcase"),
+            self.weight(),
             cards.join(", "),
             self.idle(),
             self.faults

@@ -14,7 +14,7 @@ use crate::model::Model;
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::job_deck::against_units;
 use crate::strain_chain::solved::{relief_of_job, support_finding, support_of_job};
-use crate::strain_chain::{given_as_asked, off_their_elements};
+use crate::strain_chain::{given_as_asked, point_findings};
 use crate::workflow::{calibrate, identify, reconcile, recover, respond};
 use std::collections::HashSet;
 use std::path::Path;
@@ -34,12 +34,20 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     files(work, &job, found, into);
     let of_job = found.results.iter_mut().skip(results);
     of_job.for_each(|r| r.is_of_job = true);
+    let its_decks = found.decks.iter_mut().skip(decks);
+    its_decks.for_each(|d| d.state_units(&job));
     let mut faults = std::mem::take(&mut found.faults);
     let s = job.sensitivity.as_ref().and_then(|_| {
         let read = given_as_asked(work, &job);
         kept(read, &mut faults)
     });
     let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
+    let command = match (&job.measured, &job.vehicle) {
+        (Some(_), _) => "recover",
+        (None, Some(_)) => "identify",
+        (None, None) => "place",
+    };
+    found.next = Some(format!("run `strainbridge {command} {given}`"));
     found.jobs.push(format!(
         "job `{given}`: {} loads, {} gauges, units {}",
         s.as_ref().map_or(job.loads.len(), |s| s.loads.len()),
@@ -168,7 +176,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
             work.findings.extend(against_units(job, model));
-            work.findings.extend(off_their_elements(model, job));
+            work.findings.extend(point_findings(model, job));
             match support_of_job(job, model) {
                 Ok(support) => {
                     work.findings.push(support_finding(&m.deck.given, support));
@@ -178,6 +186,10 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
                 Err(faults) => found.faults.extend(faults.into_list()),
             }
             found.faults.extend(missing_ids(job, model));
+            match job.with_property_ids(&model.property_names) {
+                Ok(with_ids) => found.candidates = Some(with_ids.candidates),
+                Err(faults) => found.faults.extend(faults.into_list()),
+            }
         }
     }
     for named in other_files(job) {

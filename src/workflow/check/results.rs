@@ -65,8 +65,14 @@ impl ResultEntry {
             entry.1 += t.rows;
         }
         let mut out = format!(
-            "results `{}`: {}, {} bytes a word",
-            self.path, self.solver, self.word_bytes
+            "results `{}`: {}{}",
+            self.path,
+            self.solver,
+            // A text file has no words of bytes.
+            match self.word_bytes {
+                0 => String::new(),
+                n => format!(", {n} bytes a word"),
+            }
         );
         for ((quantity, analysis, element, is_complex), (subcases, rows)) in kinds {
             let complex = if is_complex {

@@ -41,6 +41,7 @@ use crate::host::context::{Context, Files};
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::Opened;
 use crate::host::outcome::{Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::{Work, stopped};
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::measured::faults::record_fault;
@@ -140,7 +141,9 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         let absent = compared.check(&job.file, section, is_all)?;
         work.findings.extend(absent);
     }
-    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared, reused);
+    let kept = counted(reused, "result");
+    work.notes.push(format!("{kept} kept from an earlier run"));
+    let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared);
     work.findings
         .extend(answer.findings(&files, &status, days_in));
     work.findings

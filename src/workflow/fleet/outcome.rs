@@ -10,8 +10,10 @@ use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
 use crate::finding::{Finding, Severity, few};
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::series::rainflow::{DamageInterval, Ratio};
+use crate::units::number;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -160,13 +162,24 @@ pub struct Fleet {
     pub mission: Option<MissionAnswer>,
     /// Files by path.
     pub files: Vec<FileAnswer>,
-    /// How many results were kept from an earlier run.
-    #[serde(skip)]
-    pub reused: usize,
 }
 
 impl Answer for Fleet {
     const COMMAND: &'static str = "fleet";
+    const RESULT: &'static str = "The loads and damage of the fleet";
+
+    fn verdict(&self) -> String {
+        let count = |status: &str| self.files.iter().filter(|f| f.status == status).count();
+        let hours: f64 = self.vehicles.iter().map(|v| v.hours).sum();
+        format!(
+            "{} of {} counted, {} failed: {} h of {}.",
+            count("done"),
+            counted(self.files.len(), "file"),
+            count("failed"),
+            number(hours),
+            counted(self.vehicles.len(), "vehicle")
+        )
+    }
 }
 
 impl VehicleAnswer {
@@ -295,7 +308,6 @@ impl Fleet {
         files: &[FileHead],
         status: &[Status],
         compared: Compared,
-        reused: usize,
     ) -> Self {
         let mut listed: Vec<FileAnswer> = files
             .iter()
@@ -324,7 +336,6 @@ impl Fleet {
             reference: compared.reference.map(|r| r.answer),
             mission: compared.mission.as_ref().and_then(MissionSums::answer),
             files: listed,
-            reused,
         }
     }
 

@@ -19,6 +19,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::model::{Model, Shell};
 use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
@@ -70,6 +71,23 @@ pub struct NotProposed {
 
 impl Answer for Proposal {
     const COMMAND: &'static str = "init";
+    const RESULT: &'static str = "The proposed job";
+
+    fn verdict(&self) -> String {
+        let left_out = match self.left_out.len() {
+            0 => String::new(),
+            n => format!(", leaves out {n}"),
+        };
+        let places = match (self.placeable, self.purpose) {
+            (false, None) => ", and cannot place gauges as it is: the findings state why",
+            _ => "",
+        };
+        format!(
+            "{} proposes {}{left_out}{places}.",
+            self.job,
+            counted(self.loads.len(), "load")
+        )
+    }
 }
 
 /// A commented job from a deck and its results, to stand in `folder`.

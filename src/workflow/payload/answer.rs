@@ -5,9 +5,11 @@ use super::model::Parts;
 use super::readings::{NetReading, Readings};
 use super::task::Task;
 use crate::host::outcome::{Answer, finite};
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
 use crate::strain_chain::{Conditioning, Prepared};
+use crate::units::{number, plus_minus};
 use serde::Serialize;
 
 /// Payloads weighed, report units.
@@ -39,6 +41,34 @@ pub struct Weighed {
 
 impl Answer for Weighed {
     const COMMAND: &'static str = "payload";
+    const RESULT: &'static str = "The payload";
+
+    fn verdict(&self) -> String {
+        let weighed = || self.payload.iter().filter(|p| p.refused.is_none());
+        let refused = match self.payload.len() - weighed().count() {
+            0 => String::new(),
+            n => format!("; {} refused", counted(n, "run")),
+        };
+        let (force, mass) = (self.job.report_units.force, self.job.report_units.mass);
+        let words = |p: &WeighedPayload| {
+            let mass = p
+                .mass
+                .map_or_else(String::new, |m| format!(" ({} {})", number(m), mass.name));
+            format!("{} {}{mass}", p.weight(), force.name)
+        };
+        let half = |p: &WeighedPayload| p.half_width();
+        let widest = weighed().max_by(|a, b| half(a).total_cmp(&half(b)));
+        match (weighed().count(), widest) {
+            (_, None) => "No run gives a payload.".to_owned(),
+            (1, Some(one)) => format!("Payload of {}: {}{refused}.", one.run, words(one)),
+            (n, Some(widest)) => format!(
+                "{} weighed, least certain {}: {}{refused}.",
+                counted(n, "payload"),
+                widest.run,
+                words(widest)
+            ),
+        }
+    }
 }
 
 /// One payload. What is refused has no numbers.
@@ -68,6 +98,27 @@ pub struct WeighedPayload {
     pub refused: Option<String>,
     /// Unit of the weight.
     pub unit: String,
+}
+
+impl WeighedPayload {
+    /// Returns the weight with its interval, which ends at zero for a payload that may not be there.
+    pub fn weight(&self) -> String {
+        match (self.force, self.force_low, self.force_high) {
+            (Some(force), Some(low), Some(high)) if low <= 0.0 => {
+                format!("{} (0 to {})", number(force), number(high))
+            }
+            (Some(force), ..) => plus_minus(force, self.half_width()),
+            _ => "-".to_owned(),
+        }
+    }
+
+    /// Half width of the 95 % interval of the weight.
+    pub fn half_width(&self) -> f64 {
+        match (self.force_low, self.force_high) {
+            (Some(low), Some(high)) => (high - low) / 2.0,
+            _ => f64::NAN,
+        }
+    }
 }
 
 /// An ellipse in plan.

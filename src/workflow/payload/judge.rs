@@ -7,6 +7,7 @@ use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, few};
 use crate::host::words::short;
 use crate::host::work::Work;
+use crate::input_faults::identical::identical_readings;
 use crate::measured::zero::judged;
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 use crate::recovery::Readings;
@@ -186,7 +187,11 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
             noise_factor: noise_factor(r),
         })
         .collect();
-    let kept = judged(work, measured, &prepared.sensitivity.gauges, &read);
+    let gauges = &prepared.sensitivity.gauges;
+    let of_gauge = |g: usize| read.iter().map(|r| r.strain[g]).collect();
+    let columns: Vec<Vec<f64>> = (0..gauges.len()).map(of_gauge).collect();
+    work.findings.extend(identical_readings(gauges, &columns));
+    let kept = judged(work, measured, gauges, &read);
     let strained = runs.iter_mut().filter(|r| !r.strain.is_empty());
     for (run, kept) in strained.zip(kept) {
         run.strain = kept.strain;

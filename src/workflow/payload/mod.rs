@@ -1,6 +1,7 @@
 //! `payload`: mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
 
 mod answer;
+mod calibrated;
 mod faults;
 mod judge;
 mod model;
@@ -71,6 +72,8 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let spec = spec_of(&task, &parts, runs);
     let weighing = work.stage("weigh", |_| weigh(&parts.model, runs, &spec));
     judge::findings(&mut work, &task, &parts, runs, &spec, &weighing);
+    let outside = calibrated::findings(&task, &parts, &weighing);
+    work.findings.extend(outside);
     faults::search(&mut work, &task, &parts, runs, (&spec, &weighing));
     let place = stated::place_contradicted(&task, &parts, runs, &spec, &weighing);
     work.findings.extend(place);

@@ -6,6 +6,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
 use crate::host::work::Work;
 use crate::job::{Measured, NamedFile};
+use crate::measured::common_zero::common_zero;
 use crate::measured::faults::no_gauge_column;
 use crate::measured::means::{StrainFile, read_strain_file};
 use crate::measured::runs_file::{RunRow, read_runs};
@@ -329,19 +330,29 @@ fn strain(
         )
         .into());
     }
-    let runs = if let StrainFile::Table(table) = &file
+    let (mut runs, from_unloaded) = if let StrainFile::Table(table) = &file
         && let StrainRows::Runs(names) = &table.rows
     {
         of_runs(work, task, model, measured, (table, names), zero)?
     } else {
         no_zero_runs(task.job, measured, &measured.strain.given)?;
-        vec![(stem(&measured.strain), nets(all.into_iter(), &zero))]
+        let record = nets(all.into_iter(), &zero);
+        (vec![(stem(&measured.strain), record)], false)
     };
+    // The unloaded run of the table reads the common zero too.
+    if !from_unloaded {
+        let common = common_zero(work, task.job, &model.gauges)?;
+        for (_, nets) in &mut runs {
+            for (net, zero) in nets.iter_mut().zip(&common) {
+                net.value -= zero;
+            }
+        }
+    }
     judge_net(work, task, model, &runs);
     Ok(runs)
 }
 
-/// A row a run.
+/// A row a run, and whether the reading of an unloaded run of the table is subtracted from it.
 fn of_runs(
     work: &mut Work,
     task: &Task,
@@ -349,7 +360,7 @@ fn of_runs(
     measured: &Measured,
     (table, names): (&StrainTable, &[String]),
     zero: Vec<Option<Net>>,
-) -> Result<Vec<(String, Vec<Net>)>, Faults> {
+) -> Result<(Vec<(String, Vec<Net>)>, bool), Faults> {
     let noise = measured.noise_microstrain * MICROSTRAIN;
     let readings = by_gauge(table, model);
     // Without a zero file an unloaded run of the same table is the zero.
@@ -359,6 +370,7 @@ fn of_runs(
         .as_ref()
         .and_then(|u| names.iter().position(|n| n == u))
         .filter(|_| measured.zero.is_none());
+    let from_unloaded = own.is_some();
     let zero: Vec<Option<Net>> = match own {
         Some(i) => readings
             .iter()
@@ -382,7 +394,8 @@ fn of_runs(
     };
     let empty = |name: &String| measured.zero_runs.contains(name);
     let runs = names.iter().enumerate().filter(|(_, n)| !empty(n));
-    Ok(runs.map(|(i, name)| (name.clone(), of_run(i))).collect())
+    let runs = runs.map(|(i, name)| (name.clone(), of_run(i)));
+    Ok((runs.collect(), from_unloaded))
 }
 
 /// Means over all rows of a strain file by gauge of the model, strain; NaN where the file has no column.

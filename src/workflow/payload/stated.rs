@@ -33,8 +33,10 @@ pub(super) fn place_contradicted(
         ..spec.clone()
     };
     let free = weigh(&parts.model, runs, &free);
-    let pairs = weighing.runs.iter().zip(&free.runs);
-    let refuted = pairs.filter_map(|(known, free)| Some((sigmas(free)?, known, free)));
+    // The stated place of a run is its own, where the runs file gives one.
+    let of = |((run, known), free)| Some((sigmas(free, run)?, known, free));
+    let stated = runs.iter().zip(&weighing.runs).zip(&free.runs);
+    let refuted = stated.filter_map(of);
     let mut refuted: Vec<(f64, &WeighedRun, &WeighedRun)> =
         refuted.filter(|(s, ..)| *s > REFUTED).collect();
     refuted.sort_by(|a, b| b.0.total_cmp(&a.0));
@@ -66,20 +68,20 @@ pub(super) fn place_contradicted(
                 place[1],
                 short(known.force)
             ),
-            "correct `nominal_x`, `nominal_y` or `grid`, or let the place free: position = \"free\"",
+            "correct the place in the runs file, `nominal_x`, `nominal_y` or `grid`, or let the place free: position = \"free\"",
         )
         .with_numbers(worst, REFUTED),
     )
 }
 
 /// Returns how many standard deviations a place that was found lies from the stated one; `None` where it was not found.
-fn sigmas(free: &WeighedRun) -> Option<f64> {
+fn sigmas(free: &WeighedRun, run: &PayloadRun) -> Option<f64> {
     let [a, b, _, d] = free.shift_covariance;
     let determinant = a * d - b * b;
     if free.refused.is_some() || !(determinant > 0.0) {
         return None;
     }
-    let [x, y] = free.shift;
+    let [x, y] = [0, 1].map(|k| free.shift[k] - run.shift[k]);
     let square = (d * x * x - 2.0 * b * x * y + a * y * y) / determinant;
     Some(square.sqrt()).filter(|s| s.is_finite())
 }

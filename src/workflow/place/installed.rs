@@ -1,6 +1,7 @@
 //! The gauges that the job already has, by the same measures.
 
 use super::judge::{as_recovered, in_job_order, sigma_rows};
+use super::known::gluing_variance;
 use super::outcome::{Installed, InstalledQuality, WorstLoss};
 use super::task::Task;
 use crate::finding::{Finding, Severity, few};
@@ -46,7 +47,7 @@ pub(super) fn installed(
     };
     let noise = job.placement.noise_microstrain;
     let order = &task.order;
-    let read = task.rows_of(&gauges, &s, job.placement.model_uncertainty_rel);
+    let read = task.rows_of(&gauges, &s, job.placement.model_uncertainty_rel, &[]);
     let over_noise = |row: &Vec<f64>| row.iter().map(|v| v / noise).collect();
     let rows: Vec<Vec<f64>> = read.strain.iter().map(over_noise).collect();
     let Some(q) = judge_rows(&rows, &spec.prior, k).map(|q| in_job_order(q, order)) else {
@@ -79,12 +80,19 @@ pub(super) fn installed(
         false => job.placement.model_uncertainty_rel,
     };
     let recovered = as_recovered(task, &spec.prior, &read.over_sd, u);
+    let more = gluing_variance(task, &gauges);
+    let glued = task.rows_of(&gauges, &s, job.placement.model_uncertainty_rel, &more);
+    let as_glued = as_recovered(task, &spec.prior, &glued.over_sd, u);
+    let load_sigma = match (&recovered, &as_glued) {
+        (Some(r), Some(g)) => sigma_rows(job, &listed(job, &s)?, Some(r), g, scales),
+        _ => Vec::new(),
+    };
     let quality = InstalledQuality {
         log_det,
         upper_bound: bound,
         condition_number: finite(s.condition_number()),
         condition_number_scaled: finite(s.condition_number_scaled()),
-        load_sigma: sigma_rows(job, &listed(job, &s)?, recovered.as_deref(), &q, scales),
+        load_sigma,
         worst_loss: WorstLoss {
             gauge: s.gauges[q.worst].clone(),
             leverage: q.leverage[q.worst],

@@ -98,23 +98,29 @@ pub(super) fn chosen_as_recovered(
     )
 }
 
-/// Standard deviations of the loads, and of the job's combinations of them, in report units: as recovered, and as glued where that is more.
+/// Returns the covariance of the loads of a chosen layout with the tolerances of gluing, which its rows contain, and with the error of the model.
+pub(super) fn as_glued(job: &Job, q: &Quality, k: usize) -> Vec<f64> {
+    let mut out = q.covariance.clone();
+    let model = job.placement.model_uncertainty_rel.powi(2);
+    out.iter_mut().step_by(k + 1).for_each(|v| *v += model);
+    out
+}
+
+/// Standard deviations of the loads, and of the job's combinations of them, in report units: as recovered, and as glued where the job states
+/// tolerances.
 pub(super) fn sigma_rows(
     job: &Job,
     listed: &Listed,
     recovered: Option<&[f64]>,
-    q: &Quality,
+    as_glued: &[f64],
     scales: &[f64],
 ) -> Vec<LoadSigma> {
     let p = &job.placement;
     let tolerances =
         p.angle_tolerance_deg > 0.0 || p.position_tolerance > 0.0 || p.gauge_factor_rel > 0.0;
     let k = scales.len();
-    let mut as_glued = q.covariance.clone();
-    let model = p.model_uncertainty_rel.powi(2);
-    as_glued.iter_mut().step_by(k + 1).for_each(|v| *v += model);
     let one = |(terms, (u, name)): (Vec<(usize, f64)>, (&LoadUnits, &String))| {
-        let glued = sigma_of(&as_glued, scales, &terms) * u.factor;
+        let glued = sigma_of(as_glued, scales, &terms) * u.factor;
         LoadSigma {
             name: name.clone(),
             sigma: recovered.map_or(glued, |r| sigma_of(r, scales, &terms) * u.factor),

@@ -1,11 +1,14 @@
 //! Gauges of the job as `recover` will read them: by the model, or by the S that was given or calibrated.
 
+use super::pool::scatter;
 use super::task::Task;
-use crate::gauge::Gauge;
+use crate::gauge::{Bridge, Gauge};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
-use crate::job::Job;
+use crate::job::{Job, JobGauge};
 use crate::linalg::spd;
+use crate::placement::candidates::{Angles, Choice, Scatter};
+use crate::placement::sites::bridges;
 use crate::sensitivity::{NoStrain, Sensitivity, from_cases};
 use crate::strain_chain::read_given;
 use crate::units::MICROSTRAIN;
@@ -66,8 +69,9 @@ impl Task<'_> {
     }
 
     /// Rows of gauges with S `s`. Strain of the model is off by `model_rel`, 1 sd, and by what may be left of its mesh error; that of a calibrated S
-    /// by its covariance, with loads of expected size that are independent of each other.
-    pub fn rows_of(&self, gauges: &[Gauge], s: &Sensitivity, model_rel: f64) -> Rows {
+    /// by its covariance, with loads of expected size that are independent of each other. `more`: a variance of its own for each gauge,
+    /// microstrain squared; empty: none.
+    pub fn rows_of(&self, gauges: &[Gauge], s: &Sensitivity, model_rel: f64, more: &[f64]) -> Rows {
         let noise = self.job.placement.noise_microstrain;
         let row = |g: usize| -> Vec<f64> {
             let of = |&l: &usize| s.values[(g, l)] * self.scales[l] / MICROSTRAIN;
@@ -88,7 +92,7 @@ impl Task<'_> {
                     noise.hypot(model_rel * spd::dot(row, row).sqrt())
                 }
             };
-            w[g * n + g] = sd * sd;
+            w[g * n + g] = sd * sd + more.get(g).copied().unwrap_or(0.0);
         }
         if let Some(own) = &self.given
             && let Some(u) = &own.uncertainty
@@ -115,6 +119,49 @@ impl Task<'_> {
         let over_sd = whitened(&w, &strain, self.order.len());
         Rows { strain, over_sd }
     }
+}
+
+/// Returns the variance that the tolerances of gluing add to the reading of each gauge, microstrain squared at the expected loads, as for
+/// candidates at the same place; 0 for gauges whose S is calibrated as they are glued, and for gauges on bars.
+pub(super) fn gluing_variance(task: &Task, gauges: &[Gauge]) -> Vec<f64> {
+    let (job, model) = (task.job, task.fields.model());
+    let (loads, scales) = task.nuisance_first();
+    let of = |gauge: &Gauge| -> Option<f64> {
+        let is_calibrated = task
+            .given_row(gauge)
+            .is_some_and(|(s, _)| s.uncertainty.is_some());
+        let site = (model.shell_ix(gauge.element)?, gauge.surface);
+        let is_of =
+            |g: &&JobGauge| g.name == gauge.name || gauge.name.starts_with(&format!("{}.", g.name));
+        let stated = job.gauges.iter().find(is_of)?;
+        let scatter = Scatter {
+            noise: 0.0,
+            model_rel: job.placement.gauge_factor_rel,
+            ..scatter(job, model, &[site], stated.bridge, &loads, &scales)
+        };
+        let angles = Angles::Continuous;
+        let here = bridges(
+            model,
+            &[site],
+            stated.bridge,
+            &loads,
+            &scales,
+            angles,
+            scatter,
+        );
+        // A candidate for a shear bridge has the angle of its first grid.
+        let turn = match stated.bridge {
+            Bridge::Shear => std::f64::consts::FRAC_PI_4,
+            _ => 0.0,
+        };
+        let sd = here.sd(Choice {
+            place: 0,
+            step: 0,
+            angle: gauge.angle_rad + turn,
+        });
+        (!is_calibrated).then_some((sd / stated.bridge_factor).powi(2))
+    };
+    gauges.iter().map(|g| of(g).unwrap_or(0.0)).collect()
 }
 
 /// `L^-1 A` with `L L' = w`; over the roots of the diagonal where rounding leaves `w` without a factor.

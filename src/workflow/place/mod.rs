@@ -41,6 +41,7 @@ pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;
     let fields = read_fields(&mut work, job, WantedAt::Anywhere)?;
+    let job = &job.with_property_ids(&fields.model().property_names)?;
     let answer = placed(&mut work, job, &fields)?;
     let answer = answer.with(fields, job);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
@@ -124,7 +125,8 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     work.findings.extend(check_separability(&s.unconditioned()));
     judge::judge_layout(work, job, &chosen, &quality, &spec, &gauges, k);
     let recovered = judge::chosen_as_recovered(&task, &spec, &chosen.channels);
-    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &quality, &task.scales);
+    let as_glued = judge::as_glued(job, &quality, k);
+    let load_sigma = judge::sigma_rows(job, &listed, recovered.as_deref(), &as_glued, &task.scales);
     let in_job_units = load_sigma.iter().zip(units);
     let planned: Vec<f64> = in_job_units.map(|(l, u)| l.sigma / u.factor).collect();
     let planned = check_planned(&s, &planned);

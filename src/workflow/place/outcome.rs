@@ -1,12 +1,15 @@
 //! What `place` answers.
 
+use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::placement::Role;
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Conditioning, Fields, GaugeMeshError, LoadSigma};
+use crate::units::{factor, half_width};
 use serde::Serialize;
 
 /// A layout of gauges with its certificate.
@@ -66,6 +69,47 @@ pub struct Placed {
 
 impl Answer for Placed {
     const COMMAND: &'static str = "place";
+    const RESULT: &'static str = "The layout";
+
+    fn verdict(&self) -> String {
+        let share = match self.proved {
+            true => "the best possible layout (proved)".to_owned(),
+            false => format!(
+                "at least {:.1} % of the best possible layout",
+                // Rounded down: it is a lower bound.
+                (1000.0 * self.efficiency_bound).floor() / 10.0
+            ),
+        };
+        let least_certain = self.least_certain().map_or_else(String::new, |l| {
+            let half = half_width(NORMAL_95 * l.sigma());
+            format!(", least certain load {} {half} {}", l.name, l.unit)
+        });
+        format!(
+            "{} from {} candidates: {share}{least_certain}.",
+            counted(self.gauges.len(), "gauge"),
+            self.candidates.rows
+        )
+    }
+}
+
+impl Placed {
+    /// Returns the half width of the 95 % interval of a load over its expected size; `None` where the job states no size.
+    pub fn share_of_expected(&self, load: &LoadSigma) -> Option<f64> {
+        let of_job = self.job.loads.iter().find(|l| l.name == load.name)?;
+        let factor = of_job
+            .report_unit(&self.job.report_units)
+            .map_or(1.0, |u| factor(self.job.units, u));
+        let expected = of_job.expected? * factor;
+        Some(NORMAL_95 * load.sigma() / expected.abs())
+    }
+
+    /// Returns the load with the widest interval over its expected size, where the job states the sizes of all loads.
+    fn least_certain(&self) -> Option<&LoadSigma> {
+        let shares = self.load_sigma.iter().map(|l| self.share_of_expected(l));
+        let shares: Option<Vec<f64>> = shares.collect();
+        let all = self.load_sigma.iter().zip(shares?);
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(l, _)| l)
+    }
 }
 
 /// How many candidates there were.

@@ -2,7 +2,7 @@
 
 use crate::gauge::centre;
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::job::{Job, LoadActs, Region};
+use crate::job::{Job, LoadActs, PropertyIds, Region};
 use crate::model::{Model, ShellIx, Vec3};
 use crate::placement::region::{
     Segment, attachments, borders, clear_of, free_edges, hole_rims, joints,
@@ -61,9 +61,10 @@ pub(super) fn allowed(
             .map_or(0, |p| p.id);
         let among =
             |ids: &Option<crate::job::Ids>, id: u32| ids.as_ref().map(|list| list.contains(id));
-        let allowed = among(&rule.properties, property) != Some(false)
+        let of = |ids: &Option<PropertyIds>| ids.as_ref().map(|list| list.contains(property));
+        let allowed = of(&rule.properties) != Some(false)
             && among(&rule.elements, shell.id) != Some(false)
-            && among(&rule.exclude_properties, property) != Some(true)
+            && of(&rule.exclude_properties) != Some(true)
             && among(&rule.exclude_elements, shell.id) != Some(true)
             && (sets.is_empty()
                 || sets
@@ -140,9 +141,14 @@ fn check_ids(job: &Job, model: &Model) -> Result<(), Faults> {
     let solids = model.solid_properties.iter().map(|p| p.id);
     let properties: BTreeSet<u32> = shells.chain(beams).chain(solids).collect();
     let elements: BTreeSet<u32> = model.elements().map(|e| model.element_id(e)).collect();
+    let of = |list: &Option<PropertyIds>| list.as_ref().map(|p| p.ids.clone());
     let lists = [
-        ("properties", &rule.properties, &properties),
-        ("exclude_properties", &rule.exclude_properties, &properties),
+        ("properties", &of(&rule.properties), &properties),
+        (
+            "exclude_properties",
+            &of(&rule.exclude_properties),
+            &properties,
+        ),
         ("elements", &rule.elements, &elements),
         ("exclude_elements", &rule.exclude_elements, &elements),
     ];

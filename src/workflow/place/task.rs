@@ -92,8 +92,10 @@ impl<'a> Task<'a> {
         let s = self
             .s_of(&laid)
             .map_err(|missing| without_strain(self.job, &missing))?;
-        self.kept_rows = self.rows_of(&laid, &s, rel).over_sd;
-        self.kept_recovered = self.rows_of(&laid, &s, p.model_uncertainty_rel).over_sd;
+        self.kept_rows = self.rows_of(&laid, &s, rel, &[]).over_sd;
+        self.kept_recovered = self
+            .rows_of(&laid, &s, p.model_uncertainty_rel, &[])
+            .over_sd;
         let points: Vec<_> = laid.iter().map(|g| [g.position, g.position]).collect();
         let here: Vec<Vec3> = self
             .sites

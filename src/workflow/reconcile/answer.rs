@@ -70,6 +70,11 @@ pub struct Reconciled {
 
 impl Answer for Reconciled {
     const COMMAND: &'static str = "reconcile";
+    const RESULT: &'static str = "The comparison";
+
+    fn verdict(&self) -> String {
+        self.sentence()
+    }
 }
 
 impl Reconciled {

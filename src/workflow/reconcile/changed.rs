@@ -70,6 +70,12 @@ impl DeckFrame {
             p.card.z1 = p.card.z1.map(|z| z * factor);
             p.card.z2 = p.card.z2.map(|z| z * factor);
         }
+        let shells = deck.cards.shells.iter_mut();
+        for s in shells.filter(|s| ids.contains(&s.card.pid.unwrap_or(s.card.id))) {
+            if let Some(card) = s.card.with_thickness_times(factor) {
+                s.card = card;
+            }
+        }
         Model::from_deck(&deck).0
     }
 }

@@ -125,7 +125,7 @@ pub(super) fn read(
     part.per_mm = Some(along);
     part.as_modelled = finer.is_some().then_some(base);
     let deck = DeckFrame {
-        zones: super::zones::zones(job, fields.model(), &gauges),
+        zones: super::zones::zones(job, fields.model(), &gauges)?,
         fields,
         gauges,
         columns: asked.columns,

@@ -12,7 +12,7 @@ use crate::job::{Component, EffectSource, Job};
 use crate::model::Model;
 use crate::reconcile::strain::StiffnessOf;
 use crate::units::KILO;
-use nastran::bdf::{Edits, Field, MemoryLoader, format_card, read_deck, write_edited};
+use nastran::bdf::{Edits, Field, MemoryLoader, ToFields, format_card, read_deck, write_edited};
 use nastran::cards::{Bush, Orientation, Pbush};
 
 /// A stiffness that was named: what it is one of, place, size.
@@ -98,6 +98,14 @@ impl DeckFrame {
                         + &format_card("PSHELL", &fields)),
                 )
                 .ok()?;
+        }
+        let of_property =
+            |pid: u32| wanted(pid) && deck.cards.pshells.iter().any(|p| p.card.id == pid);
+        let shells = deck.cards.shells.iter();
+        for s in shells.filter(|s| of_property(s.card.pid.unwrap_or(s.card.id))) {
+            if let Some(card) = s.card.with_thickness_times(factor) {
+                edits.replace_card(deck, s.at, &card.to_card()).ok()?;
+            }
         }
         Some(())
     }

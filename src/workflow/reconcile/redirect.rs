@@ -18,7 +18,8 @@ pub(crate) fn text_of(work: &mut Work, job: &Job) -> Result<String, Faults> {
 
 /// Makes every file name of the job relative to the output folder.
 pub(crate) fn redirect(table: &mut Table, prefix: &str) {
-    const FILE_KEYS: [&str; 10] = [
+    const FILE_KEYS: [&str; 11] = [
+        "common_zero",
         "covariance",
         "file",
         "deck",

@@ -1,14 +1,24 @@
 //! Zones: properties whose stiffness may be wrong together.
 
 use crate::gauge::Gauge;
+use crate::host::fault::Faults;
 use crate::job::{Ids, Job};
 use crate::model::Model;
 use std::collections::BTreeMap;
 
 /// Returns the zones that the job states, else each shell property with gauges, by its name in the deck.
-pub(super) fn zones(job: &Job, model: &Model, gauges: &[Gauge]) -> BTreeMap<String, Ids> {
-    if let Some(r) = job.reconcile.as_ref().filter(|r| !r.zones.is_empty()) {
-        return r.zones.clone();
+///
+/// # Errors
+/// Names that no property of the deck has, or several.
+pub(super) fn zones(
+    job: &Job,
+    model: &Model,
+    gauges: &[Gauge],
+) -> Result<BTreeMap<String, Ids>, Faults> {
+    let with_ids = job.with_property_ids(&model.property_names)?;
+    if let Some(r) = with_ids.reconcile.filter(|r| !r.zones.is_empty()) {
+        let zones = r.zones.into_iter();
+        return Ok(zones.map(|(zone, list)| (zone, list.ids)).collect());
     }
     let mut zones: BTreeMap<String, Ids> = BTreeMap::new();
     for gauge in gauges {
@@ -24,5 +34,5 @@ pub(super) fn zones(job: &Job, model: &Model, gauges: &[Gauge]) -> BTreeMap<Stri
             ids.0.push([property.id; 2]);
         }
     }
-    zones
+    Ok(zones)
 }

@@ -1,19 +1,30 @@
 //! What `recover` answers.
 
+use super::compare::Comparison;
 use super::damage::LoadDamage;
 use super::dynamic::Motion;
 use super::history::History;
+use super::sections::{SectionLoad, Sections};
 use super::sink::RecordHead;
 use super::trace::Spans;
 use super::validation::ValidationGauge;
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Conditioning, GaugeMeshError, LoadUnits, Prepared};
-use crate::units::MICROSTRAIN;
+use crate::units::{MICROSTRAIN, half_width};
 use serde::Serialize;
 use std::sync::Arc;
+
+/// What is compared and counted in addition to the loads.
+#[derive(Default)]
+pub(super) struct Beside {
+    pub validation: Vec<ValidationGauge>,
+    pub comparison: Comparison,
+    pub sections: Vec<SectionLoad>,
+}
 
 /// Loads from measured strain.
 #[derive(Serialize)]
@@ -27,6 +38,12 @@ pub struct Recovered {
     /// Gauges that no load was estimated from, each compared with its prediction.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub validation: Vec<ValidationGauge>,
+    /// Recovered against recorded loads, where some were recorded.
+    #[serde(flatten)]
+    pub comparison: Comparison,
+    /// Loads by section and over the duty cycle, where the job has sections.
+    #[serde(flatten)]
+    pub sections: Option<Sections>,
     /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it, and what may be left of it is weighed.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
@@ -40,6 +57,30 @@ pub struct Recovered {
 
 impl Answer for Recovered {
     const COMMAND: &'static str = "recover";
+    const RESULT: &'static str = "The recovered loads";
+
+    fn verdict(&self) -> String {
+        let spans = self.spans();
+        let measured = match &self.states {
+            States::Runs(runs) => counted(runs.runs.len(), "run"),
+            States::Record(record) => counted(record.samples as usize, "sample"),
+        };
+        let known = spans.iter().filter(|s| s.share().is_finite());
+        let least_certain = known.max_by(|a, b| a.share().total_cmp(&b.share()));
+        let least_certain = least_certain.map_or_else(String::new, |s| {
+            format!(
+                ", least certain {} {} {}",
+                s.name,
+                half_width(s.half),
+                s.unit
+            )
+        });
+        format!(
+            "{} from {measured}{least_certain}; residual {}.",
+            counted(spans.len(), "load"),
+            self.states.residual()
+        )
+    }
 }
 
 impl Recovered {
@@ -114,6 +155,13 @@ pub struct RecoveredLoad {
     pub unit: String,
 }
 
+impl RecoveredLoad {
+    /// Half width of the 95 % interval.
+    pub fn half_width(&self) -> f64 {
+        (self.high - self.low) / 2.0
+    }
+}
+
 /// A gauge over all runs, or over a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaugeResidual {
@@ -155,6 +203,8 @@ pub struct RecoveredRecord {
     pub duration_s: f64,
     /// Steps between samples over the duration.
     pub sample_rate_hz: Option<f64>,
+    /// Every how many samples `loads.csv` has a row.
+    pub csv_every: usize,
     /// Content of the loads against the first elastic mode, where that is known.
     #[serde(flatten)]
     pub content: Option<Content>,

@@ -8,9 +8,10 @@ use crate::recovery::Sums;
 use crate::series::rainflow::{Cycle, Damage, Point, Rainflow};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::Range;
 
 /// Samples read at a time.
-const PIECE: usize = 16_384;
+pub(super) const PIECE: usize = 16_384;
 
 /// Cycles of a load, report unit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -52,7 +53,13 @@ pub(super) fn damage(
     (0..head.n_loads())
         .into_par_iter()
         .map(|l| {
-            let d = damage_of(head, sums, samples, l, slope);
+            let [min, max] = extremes(head, sums, l);
+            let d = Counting {
+                head,
+                samples,
+                slope,
+            }
+            .damage(l, max - min, 0..samples.n_samples());
             LoadDamage {
                 name: head.names[l].clone(),
                 unit: head.units[l].name.clone(),
@@ -94,51 +101,70 @@ pub(super) fn extremes(head: &RecordHead, sums: &Sums, l: usize) -> [f64; 2] {
     })
 }
 
-/// Counts one load, report unit.
-fn damage_of(
-    head: &RecordHead,
-    sums: &Sums,
-    samples: &dyn Samples,
-    l: usize,
-    slope: f64,
-) -> Damage {
-    let [min, max] = extremes(head, sums, l);
-    let mut damage = Damage::new(slope, max - min);
-    let mut ends = [Vec::new(), Vec::new()];
-    let columns: Vec<usize> = (0..head.n_loads()).collect();
-    // Its interval is that of a normal error.
-    let wider = head.filter.coverage_factor() / NORMAL_95;
-    let mut add = |cycle: Cycle| {
-        for (end, point) in ends.iter_mut().zip([cycle.from, cycle.to]) {
-            end.clear();
-            samples.read(point.at, point.at + 1, &columns, end);
+/// What cycles of a record are counted from, and the power of their range.
+#[derive(Clone, Copy)]
+pub(super) struct Counting<'a> {
+    pub head: &'a RecordHead,
+    pub samples: &'a dyn Samples,
+    pub slope: f64,
+}
+
+impl Counting<'_> {
+    /// Counts load `l` over some of the samples, report unit; ranges reach to `limit`.
+    pub fn damage(self, l: usize, limit: f64, range: Range<usize>) -> Damage {
+        let Self {
+            head,
+            samples,
+            slope,
+        } = self;
+        let mut damage = Damage::new(slope, limit);
+        let mut ends = [Vec::new(), Vec::new()];
+        let columns: Vec<usize> = (0..head.n_loads()).collect();
+        // Its interval is that of a normal error.
+        let wider = head.filter.coverage_factor() / NORMAL_95;
+        let mut add = |cycle: Cycle| {
+            for (end, point) in ends.iter_mut().zip([cycle.from, cycle.to]) {
+                end.clear();
+                samples.read(point.at, point.at + 1, &columns, end);
+            }
+            let [from, to] = &ends;
+            let change: Vec<f64> = from
+                .iter()
+                .zip(to)
+                .zip(&head.units)
+                .map(|((a, b), u)| (b - a) / u.factor)
+                .collect();
+            // The worse known end is that of the change.
+            let by_end = [cycle.from, cycle.to].map(|point| {
+                let gain = head.estimate_at(point.at);
+                let ends = [cycle.from.at, cycle.to.at];
+                head.filter.sigma_of_change(gain, l, &change, ends)
+            });
+            let sigma = wider * by_end[0].max(by_end[1]) * head.units[l].factor;
+            damage.add(&cycle, sigma);
+        };
+        let mut count = Rainflow::default();
+        let mut values = Vec::with_capacity(PIECE);
+        for from in range.clone().step_by(PIECE) {
+            values.clear();
+            samples.read(from, (from + PIECE).min(range.end), &[l], &mut values);
+            for (at, &value) in (from..).zip(&values) {
+                count.push(Point { at, value }, &mut add);
+            }
         }
-        let [from, to] = &ends;
-        let change: Vec<f64> = from
-            .iter()
-            .zip(to)
-            .zip(&head.units)
-            .map(|((a, b), u)| (b - a) / u.factor)
-            .collect();
-        // The worse known end is that of the change.
-        let by_end = [cycle.from, cycle.to].map(|point| {
-            let gain = head.estimate_at(point.at);
-            let ends = [cycle.from.at, cycle.to.at];
-            head.filter.sigma_of_change(gain, l, &change, ends)
-        });
-        let sigma = wider * by_end[0].max(by_end[1]) * head.units[l].factor;
-        damage.add(&cycle, sigma);
-    };
+        count.finish(&mut add);
+        damage
+    }
+}
+
+/// Counts a load that was recorded, in the unit of its values.
+pub(super) fn damage_of_recorded(values: impl Iterator<Item = f64>, slope: f64) -> f64 {
+    let mut damage = Damage::new(slope, 0.0);
+    let mut add = |cycle: Cycle| damage.add(&cycle, 0.0);
     let mut count = Rainflow::default();
-    let mut values = Vec::with_capacity(PIECE);
-    let n = samples.n_samples();
-    for from in (0..n).step_by(PIECE) {
-        values.clear();
-        samples.read(from, (from + PIECE).min(n), &[l], &mut values);
-        for (at, &value) in (from..).zip(&values) {
-            count.push(Point { at, value }, &mut add);
-        }
+    for (at, value) in values.enumerate() {
+        count.push(Point { at, value }, &mut add);
     }
     count.finish(&mut add);
-    damage
+    damage.value
 }

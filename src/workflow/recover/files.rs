@@ -9,17 +9,10 @@ use crate::job::{Job, LoadFile};
 use crate::recovery::Sums;
 use crate::series::rpc::Target;
 
-/// Rows of a history as text at most; longer ones are thinned there.
-const MOST_ROWS_OF_TEXT: usize = 200_000;
 /// Samples of a history up to which every file is written without being asked for.
 const MOST_SAMPLES: usize = 200_000;
 /// The same for tables of Nastran, which hold a pair of numbers a sample as text.
 const MOST_ROWS: usize = 20_000;
-
-/// Every how many samples a table as text has a row.
-pub(super) fn stride(samples: usize) -> usize {
-    samples.div_ceil(MOST_ROWS_OF_TEXT).max(1)
-}
 
 /// Files that are made of a history of about so many samples.
 ///
@@ -60,8 +53,11 @@ pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding
             Severity::Info,
             "history-thinned",
             "loads.csv",
-            format!("loads.csv holds every {}th sample; loads.bin holds all of them (format: docs/reference/files.md)", head.stride),
-            "",
+            format!(
+                "loads.csv has a row for every {} samples, as [recover] csv_every states; loads.bin has all of them (format: docs/reference/files.md)",
+                head.stride
+            ),
+            "drop csv_every to get every sample in loads.csv",
         ));
     }
     out

@@ -5,7 +5,10 @@
 
 mod answer;
 mod block;
+mod by_load;
+mod calibrated;
 mod combined;
+mod compare;
 mod content;
 mod damage;
 mod dead_parts;
@@ -18,6 +21,8 @@ mod look;
 mod record;
 mod recorded;
 mod runs;
+mod section_files;
+mod sections;
 mod sink;
 mod speaking;
 mod task;
@@ -28,18 +33,23 @@ pub use answer::{
     Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
     RunFit, States,
 };
+pub use by_load::LoadSpan;
 pub(super) use combined::{Listed, listed};
+pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;
 pub use dynamic::Motion;
 pub use files::rpc_targets;
 pub use history::{History, HistoryRow};
 pub(super) use look::{gauges_of_file, look};
+pub use sections::{DutyLoad, SectionLoad, Sections};
 use sink::Unheard;
 pub use sink::{Block, RecordHead, RecordSink, Sample, Samples};
 pub(super) use speaking::silent_throughout;
 pub use trace::{Span, Spans};
 pub use validation::ValidationGauge;
+
+use answer::Beside;
 
 use crate::host::context::Context;
 use crate::host::fault::Faults;
@@ -80,10 +90,12 @@ pub fn recover_into(
     job.estimating()?;
     check_tables(&work, job)?;
     let mut prepared = prepare(&mut work, job)?;
-    let (states, validation) = recovered(&mut work, (job, measured), &prepared, sink)?;
+    let (states, beside) = recovered(&mut work, (job, measured), &prepared, sink)?;
     prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
     let answer = Recovered {
-        validation,
+        validation: beside.validation,
+        comparison: beside.comparison,
+        sections: Sections::of(job, beside.sections),
         conditioning: Conditioning::of(&prepared.sensitivity),
         states,
         mesh_error: prepared.mesh_error.clone(),
@@ -102,7 +114,7 @@ fn recovered(
     (job, measured): (&Job, &Measured),
     prepared: &Prepared,
     sink: &mut dyn RecordSink,
-) -> Result<(States, Vec<ValidationGauge>), Faults> {
+) -> Result<(States, Beside), Faults> {
     let (_, estimating) = task::validation_rows(job, &prepared.sensitivity);
     let s = prepared.sensitivity.of_gauges(&estimating);
     work.findings.extend(check_separability(&s.unconditioned()));
@@ -111,15 +123,17 @@ fn recovered(
     let strain = open_strain(work, job, measured)?;
     Ok(match strain {
         MeasuredStrain::Record(record) => {
-            let (record, validation) =
+            let (record, mut beside) =
                 work.stage("stream", |w| record::record(w, &task, &record, sink))?;
-            (States::Record(Box::new(record)), validation)
+            let of_files = section_files::count_files(work, &task)?;
+            beside.sections.extend(of_files);
+            (States::Record(Box::new(record)), beside)
         }
         MeasuredStrain::Runs(table) => {
             let unused = job.dynamic.map(|_| dynamic::without_record());
             work.findings.extend(unused);
-            let (runs, validation) = runs::runs(work, &task, &table)?;
-            (States::Runs(Box::new(runs)), validation)
+            let (runs, beside) = runs::runs(work, &task, &table)?;
+            (States::Runs(Box::new(runs)), beside)
         }
     })
 }

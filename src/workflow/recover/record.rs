@@ -1,18 +1,23 @@
 //! Records: samples streamed through one estimate, pieces in parallel, a few pieces in memory at a time.
 
-use super::answer::{Content, GaugeResidual, RecordLoad, RecoveredRecord};
+use super::answer::{Beside, Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::block::block;
+use super::calibrated;
 use super::combined::{Listed, listed};
-use super::damage::{LoadDamage, about_damage, damage};
+use super::compare::{self, Gap};
+use super::damage::{Counting, LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
 use super::dynamic::{Motion, rested};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
+use super::runs::identical;
+use super::sections;
 use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
-use super::validation::{self, Channels, Compared, ValidationGauge};
+use super::validation::{self, Channels, Compared};
+use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
@@ -40,7 +45,7 @@ pub(super) fn record(
     task: &Task,
     record: &Record,
     sink: &mut dyn RecordSink,
-) -> Result<(RecoveredRecord, Vec<ValidationGauge>), Faults> {
+) -> Result<(RecoveredRecord, Beside), Faults> {
     no_zero_runs(task.job, task.measured, &task.measured.strain.given)?;
     let mut channels = Channels::of(task, record);
     let Speaking {
@@ -59,6 +64,10 @@ pub(super) fn record(
         dead,
     } = without_dead_parts(work, task, record, &sensitivity, &zero)?;
     check_times(work, &record)?;
+    work.findings.extend(identical(&sensitivity, &readings));
+    let clock = record.clock().clone();
+    let recorded = compare::record_of_job(work, task, &names)?;
+    let parts = sections::parts(task.job, &clock)?;
     let rested = rested(work, task, &record, &sensitivity)?;
     let (judged, errors, at_rest, motion, blank) = match rested {
         Some(r) => {
@@ -98,18 +107,59 @@ pub(super) fn record(
         filter,
         first_s,
         step_s,
-        stride: files::stride(about),
+        stride: task.job.recover.csv_every,
         files: files::wanted(task.job, about)?,
+        is_compared: recorded.is_some() || !parts.is_empty(),
     });
     sink.begin(&head)?;
-    let (sums, spans, compared) = stream(work, (&record, channels.as_ref()), &head, sink)?;
+    let Streamed {
+        sums,
+        spans,
+        compared,
+        gaps,
+    } = stream(work, (&record, channels.as_ref()), &head, sink)?;
     sink.end(sums.missing.samples())?;
+    let ends: Vec<f64> = (sums.min.iter().zip(&sums.max))
+        .map(|(a, b)| a.abs().max(b.abs()))
+        .collect();
+    let halves: Vec<f64> = head
+        .filter
+        .sigma(&ends)
+        .iter()
+        .map(|s| NORMAL_95 * s)
+        .collect();
+    work.findings.extend(calibrated::of_record(
+        task.job,
+        &sensitivity,
+        &head.units,
+        (&head.file, sums.missing.samples()),
+        (&sums.min, &sums.max, &halves),
+    ));
     let validation = match &channels {
         Some(c) => c.found(&compared, head.filter.whole()),
         None => Vec::new(),
     };
     work.findings.extend(validation::contradicted(&validation));
     let slope = task.job.recover.slope;
+    let mut beside = Beside {
+        validation,
+        ..Beside::default()
+    };
+    if head.is_compared {
+        let samples = sink.samples()?;
+        let counting = Counting {
+            head: &head,
+            samples: &*samples,
+            slope,
+        };
+        if let Some(recorded) = recorded {
+            let with = (&clock, recorded);
+            beside.comparison = work.stage("compare", |w| {
+                compare::record(w, task.job, (counting, &gaps), with)
+            })?;
+        }
+        beside.sections = work.stage("sections", |_| sections::count_all(counting, &parts));
+    }
     let damage = match head.files.contains(&LoadFile::Rainflow) {
         true => {
             work.findings.push(about_damage(slope));
@@ -118,15 +168,24 @@ pub(super) fn record(
         }
         false => None,
     };
-    work.findings
-        .extend(files::findings(task.job, &head, &sums));
-    let gaps = check_gaps(&head.file, &sensitivity, &sums.missing);
-    // What is blank for the filter alone is said with it.
-    let by_filter = sums.missing.gaps == blank as u64;
-    let said = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
-    work.findings.extend(gaps.into_iter().filter(said));
+    about_files(work, task, &head, &sums, (&sensitivity, blank));
     let extras = (content, motion, damage);
-    Ok((answer(sensitivity, head, sums, spans, extras), validation))
+    Ok((answer(sensitivity, head, sums, spans, extras), beside))
+}
+
+/// Adds the findings on files and on gaps; `blank` samples are blank for the filter of [dynamic] alone, which its own finding states.
+fn about_files(
+    work: &mut Work,
+    task: &Task,
+    head: &RecordHead,
+    sums: &Sums,
+    (sensitivity, blank): (&Sensitivity, usize),
+) {
+    work.findings.extend(files::findings(task.job, head, sums));
+    let gaps = check_gaps(&head.file, sensitivity, &sums.missing);
+    let by_filter = sums.missing.gaps == blank as u64;
+    let stated = |f: &Finding| !(by_filter && f.code == "samples-with-gaps");
+    work.findings.extend(gaps.into_iter().filter(stated));
 }
 
 /// Reads the whole record as it is recovered, without S: S of the gauges that read, and readings of samples spread over it.
@@ -217,6 +276,15 @@ fn unusable(task: &Task) -> Fault {
     )
 }
 
+/// What a pass over the record leaves.
+struct Streamed {
+    sums: Sums,
+    spans: Spans,
+    compared: Compared,
+    /// Samples in which a gauge gives nothing, with the estimate from the others, where loads are compared.
+    gaps: Vec<Gap>,
+}
+
 /// Recovers the record piece by piece, in parallel, and hands the loads on; the sums over it.
 ///
 /// # Errors
@@ -226,9 +294,10 @@ fn stream(
     (record, channels): (&Record, Option<&Channels>),
     head: &RecordHead,
     sink: &mut dyn RecordSink,
-) -> Result<(Sums, Spans, Compared), Faults> {
+) -> Result<Streamed, Faults> {
     let filter = &head.filter;
     let mut compared = Compared::default();
+    let mut gaps = Vec::new();
     let mut sums = Sums::new(filter.n_gauges(), filter.n_loads());
     let mut spans = Spans::new(filter.n_loads());
     let mut first = 0;
@@ -248,12 +317,21 @@ fn stream(
             compared.merge(&of_channels);
             spans.add(&block);
             block.first = first;
+            if head.is_compared {
+                let of_block = block.loads.gaps.iter();
+                gaps.extend(of_block.map(|(i, gain)| (first + i, gain.clone())));
+            }
             first += block.times.len();
             blocks.push(block);
         }
         Ok(sink.take(blocks)?)
     })?;
-    Ok((sums, spans, compared))
+    Ok(Streamed {
+        sums,
+        spans,
+        compared,
+        gaps,
+    })
 }
 
 /// Hands over the pieces of a record group by group, and tells of them, while it is wanted.
@@ -322,6 +400,7 @@ fn answer(
         samples,
         gaps: sums.missing.gaps,
         duration_s: to - from,
+        csv_every: head.stride,
         sample_rate_hz: finite(samples.saturating_sub(1) as f64 / (to - from)),
         content,
         motion,

@@ -2,7 +2,7 @@
 
 use super::known_payload::KnownLoads;
 use super::task::Task;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::input_faults::{RecordedRuns, findings_of_recorded_loads};
@@ -31,6 +31,10 @@ pub(super) fn wrong_records(
     };
     let rows = read_runs(&mut work.inputs, job, runs)?;
     let row_of = |run: &str| rows.iter().find(|r| r.run == run);
+    let unrecorded = readings.iter().filter(|r| row_of(&r.run).is_none());
+    let unrecorded: Vec<&str> = unrecorded.map(|r| r.run.as_str()).collect();
+    let missing = without_row(&runs.file.given, &unrecorded, readings.len());
+    work.findings.extend(missing);
     let is_taken_out = |l: usize| known.iter().flatten().any(|k| k.0 == l);
     let is_recorded = |l: &usize| {
         let column = rows
@@ -89,6 +93,27 @@ pub(super) fn wrong_records(
         };
     }
     Ok(found)
+}
+
+/// Returns the finding on `runs`, of `all` measured ones, that the runs file has no row for: a warning where that are all of them.
+fn without_row(file: &str, runs: &[&str], all: usize) -> Option<Finding> {
+    let severity = match runs.len() == all {
+        true => Severity::Warning,
+        false => Severity::Info,
+    };
+    (!runs.is_empty()).then(|| {
+        Finding::new(
+            severity,
+            "run-without-record",
+            few(runs),
+            format!(
+                "`{file}` has no row for {} of {all} measured runs: they are not compared with recorded loads",
+                runs.len()
+            ),
+            "give the runs the same names in both files, or add their rows",
+        )
+        .with_numbers(runs.len() as f64, 0.0)
+    })
 }
 
 /// Returns SI units of one job unit of a load.

@@ -1,14 +1,18 @@
 //! Static states.
 
-use super::answer::RecoveredRuns;
+use super::answer::{Beside, RecoveredRuns};
+use super::calibrated;
 use super::combined::{Listed, listed};
+use super::compare;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
+use super::sections;
 use super::task::Task;
 use super::validation::{self, ValidationGauge};
 use crate::finding::{Finding, Severity, few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
+use crate::input_faults::identical::identical_readings;
 use crate::input_faults::not_explained_by;
 use crate::job::LoadActs;
 use crate::job::correct::channel_of;
@@ -132,6 +136,8 @@ pub(super) struct Solved {
     pub readings: Vec<Readings>,
     pub recovery: Recovery,
     pub validation: Vec<ValidationGauge>,
+    /// Loads that the runs file states and that were not recovered.
+    pub known: KnownLoads,
 }
 
 /// Reads the strain of the runs and recovers their loads.
@@ -144,6 +150,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         let mut others = || alternative_rows(work, task.job, fields, &s.gauges);
         recover_with_alternatives(&s, &readings, task.errors, &mut others)
     });
+    work.findings.extend(identical(&s, &readings));
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
     let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
@@ -162,6 +169,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         readings,
         recovery,
         validation,
+        known,
     })
 }
 
@@ -201,25 +209,35 @@ pub(super) fn runs(
     work: &mut Work,
     task: &Task,
     table: &StrainTable,
-) -> Result<(RecoveredRuns, Vec<ValidationGauge>), Faults> {
+) -> Result<(RecoveredRuns, Beside), Faults> {
+    sections::without_record(task.job)?;
     let Solved {
         s,
         readings,
         mut recovery,
         validation,
+        known,
     } = solve(work, task, table)?;
     let Listed {
         names,
         units,
         sums: combinations,
     } = listed(task.job, &s)?;
+    let comparison = compare::runs(work, task, (&s, &readings), (&recovery, &units), &known)?;
     let k = s.loads.len();
     work.findings.extend(sums(task, &recovery, &units[..k]));
+    let outside = calibrated::of_runs(task, (&s, &readings), &recovery, &units[..k]);
+    work.findings.extend(outside);
     for run in &mut recovery.runs {
         run.estimate.add_sums(&names[k..], &combinations);
     }
     let runs = RecoveredRuns::of(&s, readings, recovery, names, units);
-    Ok((runs, validation))
+    let beside = Beside {
+        validation,
+        comparison,
+        sections: Vec::new(),
+    };
+    Ok((runs, beside))
 }
 
 /// Equilibrium: the sum of all forces by direction, where it is far from zero in a run.
@@ -274,4 +292,11 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
         )
         .with_numbers(largest, 0.1),
     ]
+}
+
+/// The finding on gauges with the same readings.
+pub(super) fn identical(s: &Sensitivity, readings: &[Readings]) -> Option<Finding> {
+    let of_gauge = |g: usize| readings.iter().map(|r| r.strain[g]).collect();
+    let columns: Vec<Vec<f64>> = (0..s.gauges.len()).map(of_gauge).collect();
+    identical_readings(&s.gauges, &columns)
 }

@@ -88,10 +88,12 @@ pub struct RecordHead {
     pub first_s: f64,
     /// Time between samples, s.
     pub step_s: f64,
-    /// Every how many samples a table as text has a row.
+    /// Every how many samples `loads.csv` has a row.
     pub stride: usize,
     /// What is to be made of the history.
     pub files: Vec<LoadFile>,
+    /// Whether loads are compared with recorded ones or counted by section.
+    pub is_compared: bool,
     /// Stretches of samples in which some gauges are dead, and the estimate from the others.
     pub stretches: Vec<(Range<usize>, Arc<Gain>)>,
 }
@@ -110,7 +112,7 @@ impl RecordHead {
 
     /// Whether anything is made of the history that has to read all of it again.
     pub fn is_read_again(&self) -> bool {
-        !self.files.is_empty()
+        !self.files.is_empty() || self.is_compared
     }
 
     /// Value, low and high end of the 95 % interval of the loads of a sample, report units; `None` where the gauges that read don't tell it.

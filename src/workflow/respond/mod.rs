@@ -2,10 +2,11 @@
 
 mod gauges;
 mod outcome;
+mod record_states;
 mod states;
 
 pub use gauges::{Check, GaugeCheck};
-pub use outcome::{Element, Field, Responded};
+pub use outcome::{Element, ElementFatigue, Field, Responded};
 
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, few};
@@ -15,7 +16,9 @@ use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::{self, Job};
 use crate::model::{GridIx, Model};
-use crate::respond::{Peak, Place, ResponseRow, envelope, hot_spots, response_rows};
+use crate::respond::{
+    LoadState, Peak, Place, PlaceDamage, ResponseRow, envelope, fatigue, hot_spots, response_rows,
+};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{Prepared, WantedAt, has_covariance, prepare, read_fields};
 use crate::units::factor;
@@ -77,7 +80,10 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         )
         .into());
     };
-    let states = states::read(work, job, &prepared)?;
+    let states::States { states, is_history } = states::read(work, job, &prepared)?;
+    if let (Some(_), false) = (job.respond.slope, is_history) {
+        return Err(no_history(job).into());
+    }
     let wanted = job.respond.elements.as_ref();
     let (rows, findings) = response_rows(fields.model(), &fields.load_cases(job), |_| true);
     work.findings.extend(findings);
@@ -124,7 +130,16 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         }
     };
     let hottest = spots.iter().take(job.respond.hottest);
+    let fatigue = match job.respond.slope {
+        Some(slope) => {
+            work.findings.push(about_damage(slope));
+            let places: Vec<&ResponseRow> = order.iter().filter_map(|i| rows.get(*i)).collect();
+            work.stage("fatigue", |_| damage_of(&places, &states, (slope, u)))
+        }
+        None => Vec::new(),
+    };
     Ok(Responded {
+        fatigue,
         elements: order.iter().map(entry).collect(),
         hot_spots: hottest.map(entry).collect(),
         states: states.len(),
@@ -141,6 +156,50 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         prepared,
         job: job.clone(),
     })
+}
+
+/// The fault of a slope without a history.
+fn no_history(job: &Job) -> Fault {
+    Fault::at(
+        &*job.file,
+        job.respond.line,
+        "respond.slope",
+        "the loads are those of runs, which do not follow each other in time: they make no cycles",
+        "name the loads of a record: [respond] loads = \"job.out/loads.csv\", or drop slope",
+    )
+}
+
+/// Pseudo-damage of places in the words of the answer.
+fn damage_of(
+    places: &[&ResponseRow],
+    states: &[LoadState],
+    (slope, unit): (f64, f64),
+) -> Vec<ElementFatigue> {
+    let found = fatigue(places, states, (slope, unit));
+    let one = |(row, d): (&&ResponseRow, PlaceDamage)| ElementFatigue {
+        element: row.element,
+        surface: row.surface_word(),
+        damage: d.value,
+        damage_low: d.low,
+        damage_high: d.high,
+        angle_deg: d.angle_deg,
+    };
+    places.iter().zip(found).map(one).collect()
+}
+
+/// What pseudo-damage of stress is.
+fn about_damage(slope: f64) -> Finding {
+    Finding::new(
+        Severity::Info,
+        "pseudo-damage",
+        "fatigue",
+        format!(
+            "rainflow counts by ASTM E1049-85 of the normal stress on the plane where its damage is largest; pseudo-damage is the sum of cycles times range to the \
+             power {slope}, without mean stress and without a limit below which ranges do no harm. It compares places and histories; it is no life. Its interval \
+             moves all ranges together by their own 95 % interval, from the intervals of the loads"
+        ),
+        "state the slope of the part's S-N curve: [respond] slope",
+    )
 }
 
 /// Grids of the element of a row.

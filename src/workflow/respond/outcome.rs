@@ -1,10 +1,13 @@
 //! What `respond` answers.
 
 use super::gauges::{Check, GaugeCheck};
+use crate::estimate::NORMAL_95;
 use crate::host::outcome::Answer;
+use crate::host::words::counted;
 use crate::job::Job;
 use crate::respond::{LoadState, Peak, ResponseRow};
 use crate::strain_chain::Prepared;
+use crate::units::plus_minus;
 use serde::Serialize;
 
 /// Stress from loads.
@@ -14,6 +17,9 @@ pub struct Responded {
     pub elements: Vec<Element>,
     /// Elements hotter than all that share a grid with them.
     pub hot_spots: Vec<Element>,
+    /// Pseudo-damage of these elements over the history of loads, where the job states a slope.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub fatigue: Vec<ElementFatigue>,
     /// How many states of the loads there are.
     pub states: usize,
     /// Unit of the stresses.
@@ -37,6 +43,24 @@ pub struct Responded {
 
 impl Answer for Responded {
     const COMMAND: &'static str = "respond";
+    const RESULT: &'static str = "The stresses";
+
+    fn verdict(&self) -> String {
+        let states = counted(self.states, "load state");
+        let Some(e) = self.elements.first() else {
+            return format!("No element has a stress in {states}.");
+        };
+        let at =
+            e.at.as_ref()
+                .map_or_else(String::new, |at| format!(" at {at}"));
+        format!(
+            "Largest von Mises stress {} {}, element {} {}{at}, of {states}.",
+            plus_minus(e.max_von_mises, e.half_width()),
+            self.stress_unit,
+            e.element,
+            e.surface
+        )
+    }
 }
 
 /// Response of every element to every state, model units.
@@ -51,6 +75,23 @@ pub struct Field {
     pub spots: Vec<usize>,
     /// States of the loads.
     pub states: Vec<LoadState>,
+}
+
+/// Pseudo-damage of an element, report unit of stress to the power of the slope.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ElementFatigue {
+    /// Element id.
+    pub element: u32,
+    /// Side, or recovery point.
+    pub surface: String,
+    /// Damage on the plane where it is largest.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+    /// Direction normal to that plane, from the x axis of the element.
+    pub angle_deg: f64,
 }
 
 /// The largest stress of an element.
@@ -70,4 +111,11 @@ pub struct Element {
     pub low: f64,
     /// Upper end.
     pub high: f64,
+}
+
+impl Element {
+    /// Half width of the 95 % interval.
+    pub fn half_width(&self) -> f64 {
+        NORMAL_95 * self.sigma
+    }
 }

@@ -1,5 +1,6 @@
 //! Load states: a table that `recover` wrote, or the job's static runs recovered here.
 
+use super::record_states;
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
@@ -9,7 +10,7 @@ use crate::job::unread::unread_columns;
 use crate::job::{Job, JobLoad, NamedFile};
 use crate::recovery::beyond_expected;
 use crate::respond::{LoadState, Spread};
-use crate::series::record::{is_time, name_and_unit};
+use crate::series::record::{is_format, is_time, name_and_unit};
 use crate::strain_chain::{LoadUnits, Prepared, load_units};
 use crate::units::Quantity;
 use crate::workflow::recover::recovered_runs;
@@ -18,15 +19,17 @@ use std::collections::HashSet;
 /// Rows of the table whose fields are in memory at a time.
 const PART: usize = 10_000;
 
+/// Load states, and whether they follow each other in time.
+pub(super) struct States {
+    pub states: Vec<LoadState>,
+    pub is_history: bool,
+}
+
 /// The states of the job.
 ///
 /// # Errors
 /// Neither loads nor measured strain; tables that can't be read.
-pub(super) fn read(
-    work: &mut Work,
-    job: &Job,
-    prepared: &Prepared,
-) -> Result<Vec<LoadState>, Faults> {
+pub(super) fn read(work: &mut Work, job: &Job, prepared: &Prepared) -> Result<States, Faults> {
     if let Some(named) = &job.respond.loads {
         return from_table(work, job, named);
     }
@@ -40,9 +43,8 @@ pub(super) fn read(
         )));
     };
     let (_, recovery) = recovered_runs(work, job, measured, prepared)?;
-    Ok(recovery
-        .runs
-        .into_iter()
+    let states = recovery.runs.into_iter();
+    let states = states
         .map(|r| {
             // The Birge factor and Student's t of the interval count as a wider sigma.
             let widen = (r.estimate.coverage_factor / NORMAL_95).powi(2);
@@ -54,20 +56,30 @@ pub(super) fn read(
                 ),
             }
         })
-        .collect())
+        .collect();
+    Ok(States {
+        states,
+        is_history: false,
+    })
 }
 
 /// Columns `<load>`, and where there `<load>.low`, `<load>.high`, in report units, as `recover` writes them.
-pub(super) fn from_table(
-    work: &mut Work,
-    job: &Job,
-    named: &NamedFile,
-) -> Result<Vec<LoadState>, Faults> {
+pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Result<States, Faults> {
+    let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
+    let bytes = work.inputs.read_named(job, named)?;
+    if is_format(&bytes) {
+        let (states, left_out) = record_states::read(work, job, named, bytes, &names)?;
+        let states = finish(work, job, (named, &names), states, left_out)?;
+        return Ok(States {
+            states,
+            is_history: true,
+        });
+    }
+    drop(bytes);
     let text = work
         .inputs
         .read_named_text(job, named)
         .map_err(Faults::from)?;
-    let names: Vec<String> = job.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &names);
     let mut faults = FaultList::new();
     let mut columns: Option<Columns> = None;
@@ -92,6 +104,23 @@ pub(super) fn from_table(
         work.inputs.note(&named.given, unread);
     }
     Faults::check(faults)?;
+    let is_history = columns.as_ref().is_some_and(|c| c.kind == Key::Time);
+    let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
+    let states = finish(work, job, (named, &exact), states, blank)?;
+    Ok(States { states, is_history })
+}
+
+/// Adds what is to be reported of the states of a file; `exact` are loads without an interval, `blank` counts rows that lack a load.
+///
+/// # Errors
+/// A file without a state.
+fn finish(
+    work: &mut Work,
+    job: &Job,
+    (named, exact): (&NamedFile, &[String]),
+    states: Vec<LoadState>,
+    blank: usize,
+) -> Result<Vec<LoadState>, Faults> {
     if states.is_empty() {
         return Err(Faults::from(Fault::of(
             &*named.given,
@@ -117,7 +146,6 @@ pub(super) fn from_table(
         let found = beyond_expected(&load.name, load.expected, values);
         work.findings.extend(found);
     }
-    let exact = columns.map_or_else(Vec::new, |c| c.without_interval);
     work.findings.push(Finding::new(
         Severity::Info,
         "load-errors-independent",
@@ -125,7 +153,7 @@ pub(super) fn from_table(
         if exact.is_empty() {
             "a table of intervals holds no correlations between loads: their errors are taken as independent".to_owned()
         } else {
-            format!("{} have no interval in the table and count as exact", exact.join(", "))
+            format!("{} have no interval in the file and count as exact", exact.join(", "))
         },
         "let `respond` recover the runs itself ([measured], no [respond] loads) to keep correlations",
     ));

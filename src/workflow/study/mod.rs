@@ -7,6 +7,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::{Job, Study};
 use crate::measured::runs_file::{RunRow, read_runs};
@@ -14,7 +15,7 @@ use crate::sensitivity::{Load, check_separability};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{Conditioning, LoadUnits, load_units};
 use crate::study::{ErrorKind, StudyError, StudyRow, StudySpec, TrueLoad, study_layout};
-use crate::units::{MICROSTRAIN, Quantity};
+use crate::units::{MICROSTRAIN, Quantity, number};
 use serde::Serialize;
 
 /// One line of the answer.
@@ -40,6 +41,34 @@ pub struct Studied {
 
 impl Answer for Studied {
     const COMMAND: &'static str = "study";
+    const RESULT: &'static str = "The study";
+
+    fn verdict(&self) -> String {
+        let rows = || {
+            let of_row = |r: &'_ StudiedLayout| r.mean_relative_rms.map(|e| (e, r.clone()));
+            self.study.iter().filter_map(of_row)
+        };
+        let best = rows().min_by(|a, b| a.0.total_cmp(&b.0));
+        let worst = rows().max_by(|a, b| a.0.total_cmp(&b.0));
+        let of = |(error, row): &(f64, StudiedLayout)| {
+            format!(
+                "{} % ({} {}, {})",
+                number(100.0 * error),
+                row.layout,
+                counted(row.gauges, "gauge"),
+                row.error
+            )
+        };
+        match (best, worst) {
+            (Some(best), Some(worst)) if best.1 != worst.1 => format!(
+                "Mean error of the loads from {} to {}.",
+                of(&best),
+                of(&worst)
+            ),
+            (Some(one), _) => format!("Mean error of the loads {}.", of(&one)),
+            _ => "No layout determines the loads.".to_owned(),
+        }
+    }
 }
 
 /// A layout under one error.

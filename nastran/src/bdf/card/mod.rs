@@ -2,6 +2,7 @@
 
 mod connector;
 mod constraint;
+mod extent;
 mod geometry;
 mod ids;
 mod line;
@@ -28,6 +29,7 @@ use crate::place::Placed;
 ///
 /// `name` is in upper case and without `*`.
 pub(super) fn read_card(f: &mut Fields, cards: &mut Cards) -> bool {
+    extent::check(f);
     match f.name {
         b"GRID" => keep(&mut cards.grids, f, geometry::grid),
         b"GRDSET" => keep_one(&mut cards.grdset, f, geometry::grdset),

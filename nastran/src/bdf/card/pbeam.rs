@@ -48,18 +48,11 @@ pub(super) fn pbeam(f: &mut Fields) -> Pbeam {
         }
         let values = std::array::from_fn(|k| f.opt_real(i + 2 + k, VALUES[k.min(5)]));
         i += 8;
-        let mut points = if word == "YESA" {
-            points_a
-        } else {
-            [[0.0; 2]; 4]
-        };
-        if word == "YES" {
-            if is_so(f, i) || i >= f.len() {
-                points = points_a;
-            } else {
-                points = recovery(f, i);
-                i += 8;
-            }
+        // YESA: the points of end A. NO asks for no stress there and states no points; the section between the stations has those of end A.
+        let mut points = points_a;
+        if word == "YES" && !is_so(f, i) && i < f.len() {
+            points = recovery(f, i);
+            i += 8;
         }
         written.push(Written {
             x_xb,

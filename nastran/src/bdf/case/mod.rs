@@ -1,5 +1,6 @@
 //! Case control: subcases, what loads and holds each, and what is put out.
 
+mod options;
 mod read;
 mod set;
 
@@ -176,6 +177,21 @@ impl CaseControl {
             .cloned();
         full.params = params.chain(subcase.params.iter().cloned()).collect();
         full
+    }
+
+    /// Returns the place of the statement of this full name that counts in a subcase: the last one there, else the last above the subcases.
+    pub fn place_of(&self, word: &str, subcase: Option<u32>) -> Option<Place> {
+        let is_named = |l: &&CaseLine| {
+            !l.in_packet && super::vocabulary::case_word(&l.name).is_some_and(|w| w.name == word)
+        };
+        let within = |l: &&CaseLine| {
+            let own = l.subcase.and_then(|i| self.subcases.get(i));
+            own.is_some_and(|s| Some(s.id) == subcase)
+        };
+        let lines = self.lines.iter().rev().filter(is_named);
+        let here = lines.clone().find(within);
+        let above = || lines.clone().find(|l| l.subcase.is_none());
+        here.or_else(above).map(|l| l.at)
     }
 
     /// The MPC set that belongs to the structure whatever the load: the one above the subcases, else the smallest that a subcase selects.

@@ -5,6 +5,7 @@ use super::super::fields::note_fault;
 use super::super::number::{Number, read_number};
 use super::super::sections::Statement;
 use super::super::vocabulary::{case_word, request_of};
+use super::options::{abbreviates, unknown_option, unknown_value};
 use super::{CaseControl, CaseLine, Request, Selection, Set, Subcase, SubcaseKind};
 use crate::cards::{Param, ParamValue};
 
@@ -18,6 +19,7 @@ pub(in super::super) fn read_case_control(
 ) -> CaseControl {
     let mut case = CaseControl::default();
     let mut in_packet = false;
+    let mut skips = false;
     let mut rest = statements;
     while let Some((first, more)) = rest.split_first() {
         let (text, end, used) = joined(first, more);
@@ -34,7 +36,12 @@ pub(in super::super) fn read_case_control(
             first,
             faults,
         };
-        if let Some(kind) = subcase_kind(&name) {
+        let switch = skip_switch(&name, text);
+        let skipped = skips || switch.is_some();
+        if let Some(on) = switch {
+            skips = on;
+        } else if skips {
+        } else if let Some(kind) = subcase_kind(&name) {
             in_packet = false;
             read.begin(kind, &name, text);
         } else if word == "OUTPUT" && text.contains('(') {
@@ -49,10 +56,13 @@ pub(in super::super) fn read_case_control(
             subcase,
             name,
             text: text.to_owned(),
-            in_packet,
+            in_packet: in_packet || skipped,
             start: first.start,
             end,
         });
+        if skipped {
+            continue;
+        }
         // Statements of substructuring, up to ENDSUBS, are a language of their own.
         match word {
             "SUBSTRUCTURE" => in_packet = true,
@@ -61,6 +71,21 @@ pub(in super::super) fn read_case_control(
         }
     }
     case
+}
+
+/// Returns whether the statement begins (`SKIP ON`, `SKIPON`, `SKIP=ON`) or ends a block of statements that are not carried out.
+fn skip_switch(name: &str, text: &str) -> Option<bool> {
+    let value = match name {
+        "SKIPON" => return Some(true),
+        "SKIPOFF" | "SKIPOF" => return Some(false),
+        "SKIP" => value_of(text, name.len()),
+        _ => return None,
+    };
+    match value.to_ascii_uppercase().as_str() {
+        "ON" => Some(true),
+        "OFF" => Some(false),
+        _ => None,
+    }
 }
 
 /// The statement with the lines that continue it, where the last ends, and how many they are.
@@ -157,7 +182,13 @@ impl Reader<'_> {
 
     fn statement(&mut self, name: &str, text: &str) {
         let value = value_of(text, name.len());
-        match case_word(name).map_or("", |w| w.name) {
+        let word = case_word(name).map_or("", |w| w.name);
+        if let Some(why) = unknown_option(word, &options_of(text))
+            .or_else(|| unknown_value(word, &value.to_ascii_uppercase()))
+        {
+            return self.fault(name, text, why);
+        }
+        match word {
             "TITLE" => self.current().title = Some(value.to_owned()),
             "SUBTITLE" => self.current().subtitle = Some(value.to_owned()),
             "LABEL" => self.current().label = Some(value.to_owned()),
@@ -194,16 +225,16 @@ impl Reader<'_> {
     fn temperature(&mut self, name: &str, text: &str, value: &str) {
         let id = self.number(name, value);
         let options = options_of(text);
-        let is = |o: &str| options.iter().any(|have| have.starts_with(o));
+        let is = |o: &str| options.iter().any(|have| abbreviates(have, o));
         let current = self.current();
-        if is("INIT") {
+        if is("INITIAL") {
             current.temperature_initial = id;
             return;
         }
         if !is("LOAD") {
             current.temperature_material = id;
         }
-        if !is("MATE") {
+        if !is("MATERIAL") {
             current.temperature_load = id;
         }
     }
@@ -233,6 +264,10 @@ impl Reader<'_> {
             }
             // sets of times, grid components or named sets: kept in the deck, not read
             (Ok(_), Err(word)) if word.contains(['.', '/', '(']) => {}
+            (Ok(_), Err(word)) if word.eq_ignore_ascii_case("THRU") => {
+                let why = "THRU needs two ids that ascend before and behind it, and may not be behind EXCEPT within the range";
+                self.fault("SET", text, why)
+            }
             (Ok(_), Err(word)) => self.fault("SET", &word, "the item of the set is no id"),
             (Err(_), _) => self.fault("SET", head, "the set has no number"),
         }

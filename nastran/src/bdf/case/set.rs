@@ -176,31 +176,6 @@ impl SetReader {
             return Ok(rest);
         }
         let range = match self.items.pop() {
-            // An id and THRU begin the next range: a list behind EXCEPT contains no THRU.
-            Some(SetItem::Thru {
-                first: start,
-                last: end,
-                by,
-                mut except,
-            }) if self.excepting => {
-                let first = except.pop().ok_or_else(wrong)?;
-                if first > last || except.iter().any(|e| *e >= first) {
-                    return Err(wrong());
-                }
-                self.excepting = false;
-                self.items.push(SetItem::Thru {
-                    first: start,
-                    last: end,
-                    by,
-                    except,
-                });
-                SetItem::Thru {
-                    first,
-                    last,
-                    by: step,
-                    except: Vec::new(),
-                }
-            }
             Some(SetItem::One(first)) if first <= last => SetItem::Thru {
                 first,
                 last,

@@ -272,3 +272,33 @@ fn tables_end_at_endt_leave_out_skip_and_keep_their_order() {
         assert_eq!(super::bulk(wrong).faults.len(), 1, "{wrong}");
     }
 }
+
+#[test]
+fn a_station_without_stress_output_has_the_points_of_end_a() {
+    // QRG, PBEAM: the line of points is left out where SO is YESA or NO.
+    for so in ["NO", "YESA"] {
+        let deck = super::clean(&format!(
+            "PBEAM,1,1,8.,2.,3.,,1.\n,20.,10.,-20.,10.\n,{so},.5,9.,4.,5.\n,YES,1.,16.,4.,6.\n,21.,11.,-21.,11.\n"
+        ));
+        let stations = &deck.cards.pbeams[0].stations;
+        let points: Vec<[f64; 2]> = stations.iter().map(|s| s.recovery[0]).collect();
+        assert_eq!(points, [[20.0, 10.0], [20.0, 10.0], [21.0, 11.0]], "{so}");
+    }
+}
+
+#[test]
+fn a_shell_scales_the_thicknesses_that_it_states() {
+    let deck = super::clean(
+        "CQUAD4,1,1,1,2,3,4\n,,,2.,,4.\nCQUAD4,2,1,1,2,3,4\n,,1,2.,2.,2.,2.\nCQUAD4,3,1,1,2,3,4\n",
+    );
+    let scaled: Vec<_> = deck
+        .cards
+        .shells
+        .iter()
+        .map(|s| s.card.with_thickness_times(0.5).map(|s| s.thickness))
+        .collect();
+    assert_eq!(
+        scaled,
+        [Some([Some(1.0), None, Some(2.0), None]), None, None]
+    );
+}

@@ -110,7 +110,7 @@ fn sets_list_ids_ranges_and_exceptions() {
 }
 
 #[test]
-fn an_exception_ends_outside_its_range_or_at_the_next_thru() {
+fn an_exception_ends_outside_its_range() {
     let read = |list: &str| {
         let deck = clean(&format!(
             "SOL 101\nCEND\nSET 1 = {list}\nBEGIN BULK\nGRID,1\n"
@@ -122,11 +122,9 @@ fn an_exception_ends_outside_its_range_or_at_the_next_thru() {
         ranges.iter().cloned().flatten().collect()
     };
     for (list, have) in [
-        ("1 THRU 10 EXCEPT 5, 8 THRU 12", ids(&[1..=4, 6..=12])),
-        ("1 THRU 10 EXCEPT 5,\n   8 THRU 12", ids(&[1..=4, 6..=12])),
         (
-            "1 THRU 10 EXCEPT 5,7,\n 9 THRU 12 EXCEPT 11,40",
-            ids(&[1..=4, 6..=6, 8..=10, 12..=12, 40..=40]),
+            "1 THRU 10 EXCEPT 5,7,\n 11 THRU 13 EXCEPT 12,40",
+            ids(&[1..=4, 6..=6, 8..=11, 13..=13, 40..=40]),
         ),
         (
             "1 THRU 10 EXCEPT 5, 20 THRU 22",
@@ -139,8 +137,8 @@ fn an_exception_ends_outside_its_range_or_at_the_next_thru() {
         // below the range is outside the range, too
         ("10 THRU 12 EXCEPT 11, 3", ids(&[3..=3, 10..=10, 12..=12])),
         (
-            "1 THRU 9 BY 2 EXCEPT 5, 8 THRU 12 BY 4",
-            vec![1, 3, 7, 8, 9, 12],
+            "1 THRU 9 BY 2 EXCEPT 5, 10 THRU 14 BY 4",
+            vec![1, 3, 7, 9, 10, 14],
         ),
     ] {
         assert_eq!(read(list), have, "{list}");
@@ -148,8 +146,12 @@ fn an_exception_ends_outside_its_range_or_at_the_next_thru() {
 }
 
 #[test]
-fn a_range_that_begins_before_an_excepted_id_is_a_fault() {
+fn thru_in_a_list_behind_except_is_a_fault() {
+    // MSC Nastran Quick Reference Guide, SET: "a THRU may not be within an EXCEPT"
     for list in [
+        "1 THRU 12 EXCEPT 3 THRU 10",
+        "1 THRU 12 EXCEPT 3 THRU 10, 20",
+        "1 THRU 10 EXCEPT 5, 8 THRU 12",
         "1 THRU 10 EXCEPT 5, 3 THRU 12",
         "1 THRU 10 EXCEPT 5, 8 THRU 6",
         "1 THRU 10 EXCEPT THRU 6",
@@ -235,5 +237,85 @@ fn an_exception_from_single_ids_is_refused() {
     for items in ["1, 2, 3 EXCEPT 2", "EXCEPT 2"] {
         let deck = bulk(&format!("SOL 101\nCEND\nSET 1 = {items}\nBEGIN BULK\n"));
         assert_eq!(shown(&deck).len(), 1, "{items}");
+    }
+}
+
+#[test]
+fn statements_between_skip_on_and_skip_off_are_not_carried_out() {
+    for [on, off] in [
+        ["SKIP ON", "SKIP OFF"],
+        ["SKIPON", "SKIPOFF"],
+        ["SKIP=ON", "SKIP = OFF"],
+    ] {
+        let text = format!(
+            "SOL 101\nCEND\nLOAD = 1\n{on}\nLOAD = 2\nSUBCASE 7\nLOAD = 3\n{off}\nSPC = 4\nBEGIN BULK\nGRID,1\nENDDATA\n"
+        );
+        let case = clean(&text).case_control;
+        assert_eq!(
+            (case.global.load, case.global.spc),
+            (Some(1), Some(4)),
+            "{on}"
+        );
+        assert!(case.subcases.is_empty(), "{on}");
+    }
+}
+
+#[test]
+fn options_and_values_that_nastran_does_not_know_are_refused_with_their_line() {
+    let read = |line: &str| {
+        bulk(&format!(
+            "SOL 101\nCEND\n{line}\nBEGIN BULK\nGRID,1\nENDDATA\n"
+        ))
+    };
+    for line in [
+        "TEMP(INTI) = 4",
+        "TEMP(BOHT) = 4",
+        "TEMPERATURE(LAOD) = 4",
+        "LOAD(2) = 1",
+        "METHOD(FLIUD) = 3",
+        "ANALYSIS = STATCS",
+        "RIGID = FOO",
+    ] {
+        let found = shown(&read(line));
+        assert!(
+            found.len() == 1 && found[0].starts_with("test.bdf:3: "),
+            "{line}: {found:?}"
+        );
+    }
+    for line in [
+        "TEMP(INIT) = 4",
+        "TEMP(MATE) = 4",
+        "TEMP(BOTH) = 4",
+        "METHOD(STRUCT) = 3",
+        "ANALYSIS = STATICS",
+        "ANALYSIS MODES",
+        "RIGID = LAGR",
+    ] {
+        assert_eq!(shown(&read(line)), Vec::<String>::new(), "{line}");
+    }
+}
+
+#[test]
+fn a_missing_or_misspelt_statement_between_sections_is_one_fault() {
+    let bulk_data = "GRID,1\nCROD,1,1,1,1\nFORCE,1,1,,1.,0.,0.,1.\n";
+    for (sections, starts) in [
+        (
+            "SOL 101\nLOAD = 1\nBEGIN BULK\n",
+            "test.bdf:3: `CEND`: CEND",
+        ),
+        (
+            "SOL 101\nCEND\nLOAD = 1\n",
+            "test.bdf:4: `BEGIN BULK`: BEGIN BULK",
+        ),
+        (
+            "SOL 101\nCEND\nBEGIN BLUK\n",
+            "test.bdf:3: `BEGIN`: no part",
+        ),
+    ] {
+        let found = shown(&bulk(&format!("{sections}{bulk_data}ENDDATA\n")));
+        assert!(
+            found.len() == 1 && found[0].starts_with(starts),
+            "{sections}: {found:?}"
+        );
     }
 }

@@ -69,11 +69,72 @@ fn a_continuation_without_a_card_is_a_fault() {
 }
 
 #[test]
-fn a_continuation_with_another_name_stays_with_the_card_above_and_is_noted() {
+fn a_continuation_with_another_name_belongs_to_no_card() {
     let head = "PSHELL  4       1       .25     1               1                       ";
-    let deck = super::bulk(&format!("{head}+P4\n+P5     -.1     .2\n"));
-    assert_eq!(deck.cards.pshells[0].z1, Some(-0.1));
-    assert_eq!((deck.faults.len(), deck.notes.len()), (0, 1));
+    let asked = shown(&super::bulk(&format!("{head}+P4\n+P5     -.1     .2\n")));
+    assert_eq!(asked.len(), 2, "{asked:?}");
+    assert!(
+        asked[0].starts_with("test.bdf:2: the continuation belongs to no card: P5"),
+        "{asked:?}"
+    );
+    assert!(
+        asked[1].starts_with("test.bdf:1: the card asks for a continuation that no line has: P4"),
+        "{asked:?}"
+    );
+    // nor does one below a card that asks for none, whatever is between
+    for text in [
+        format!("{head}\n+P5     -.1     .2\n"),
+        format!("{head}\nGRID,9\n+P5     -.1     .2\n"),
+    ] {
+        let found = shown(&super::bulk(&text));
+        assert!(
+            found.len() == 1 && found[0].contains("belongs to no card: P5"),
+            "{found:?}"
+        );
+    }
+    // a beginning is another name
+    let other = shown(&super::bulk(&format!(
+        "{head}+P\nGRID,9\n+P5     -.1     .2\n"
+    )));
+    assert_eq!(other.len(), 2, "{other:?}");
+}
+
+#[test]
+fn the_last_of_several_continuations_is_missed_too() {
+    let head = "RBE2    9       1       123     2       3       4       5       6       +R1\n";
+    let rest = "+R1     7       8       9       10      11      12      13      14      +R2\n";
+    for between in ["", "GRID,99\n"] {
+        let found = shown(&super::bulk(&[head, between, rest].concat()));
+        assert!(
+            found.len() == 1 && found[0].contains("that no line has: R2"),
+            "{between}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn names_of_continuations_are_equal_in_both_cases() {
+    let head = "PSHELL  4       1       .25     1               1                       ";
+    for between in ["", "GRID,9\n"] {
+        let text = format!("{head}+ab\n{between}+AB     -.1     .2\n");
+        assert_eq!(fibres(&text), (Some(-0.1), Some(0.2)), "{between}");
+    }
+}
+
+#[test]
+fn a_name_that_two_cards_ask_for_is_refused_though_one_has_it_below() {
+    let head = |id| {
+        format!("PSHELL  {id}       1       .25     1               1                       +A\n")
+    };
+    let rest = "+A      -.1     .2\n";
+    let text = [&head(4), &head(5), rest, rest].concat();
+    let found = shown(&super::bulk(&text));
+    assert!(
+        found
+            .iter()
+            .any(|f| f.contains("lines 1 and 2 both name it")),
+        "{found:?}"
+    );
 }
 
 #[test]
@@ -123,7 +184,7 @@ fn a_continuation_goes_to_the_card_that_names_it_also_below_a_card_without_a_nam
             "*Q1                   0.              1.              0.                *Q1B\n",
             pbar,
             grids[1],
-            "*Q1B                                                -1.5              0.*Q1C\n",
+            "*Q1B                                                -1.5              0.\n",
             rest_of_pbar,
         ]
         .concat(),

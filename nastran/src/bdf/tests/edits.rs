@@ -232,11 +232,13 @@ fn written_cards_read_back_equal() {
                 i12: 0.0,
                 j: 4.0,
                 nsm: 0.0,
-                recovery: if x_xb == 0.5 {
-                    [[0.0; 2]; 4]
-                } else {
-                    [[x_xb, 2.0], [3.0, 4.0], [5.0, 6.0], [7.0, 8.0]]
-                },
+                // Without output: the points of end A.
+                recovery: [
+                    [if x_xb == 0.5 { 0.0 } else { x_xb }, 2.0],
+                    [3.0, 4.0],
+                    [5.0, 6.0],
+                    [7.0, 8.0],
+                ],
             })
             .collect(),
         k: [Some(0.8), None],

@@ -31,7 +31,7 @@ CTRIA3,7,1,1,2
     assert_eq!(lines, expected, "{:#?}", shown(&deck));
     assert_eq!(
         shown(&deck)[0],
-        "test.bdf:1: `GRID` field 5 (X2): a real number is needed, found: A.: write a number such as 1.5 or 1.5-3, and check that fields start in columns 1, 9, 17 .."
+        "test.bdf:1: `GRID` field 5 (X2): a real number is needed, found: A.: write a number such as 1.5 or 1.5-3, and check that the value is in its own field: between commas, or in columns 9, 17, 25 .. on"
     );
 }
 

@@ -4,6 +4,7 @@ mod cards;
 mod case_control;
 mod continuations;
 mod edits;
+mod extra_fields;
 mod faults;
 mod fields;
 mod foreign;

@@ -28,6 +28,4 @@ pub struct CaseWord {
     pub name: &'static str,
     /// Effect of the word.
     pub effect: Effect,
-    /// Whether the word is not an abbreviation of the full name and was found by its first four letters.
-    pub misspelt: bool,
 }

@@ -11,27 +11,27 @@ pub fn effect_of_card(name: &str) -> Option<Effect> {
     cards().get(name).copied()
 }
 
-/// Reads a word of case control in upper case: in full, abbreviated to four letters or more, or by its first four letters.
+/// Reads a word of case control in upper case: in full, abbreviated to four letters or more, or a word of output in the plural.
 ///
 /// `None` for a word that no dialect has.
 pub fn case_word(word: &str) -> Option<CaseWord> {
-    let of = |e: &Entry, misspelt: bool| CaseWord {
+    let abbreviated = || {
+        let long_enough = word.len() >= ABBREVIATION;
+        let begin = words().iter().filter(|e| e.written.starts_with(word));
+        let begin = begin.filter(|_| long_enough);
+        begin.min_by_key(|e| preference(e.effect))
+    };
+    // Output requests and statements about output are often written in the plural.
+    let singular = || {
+        let stems = ["ES", "S"].into_iter().filter_map(|s| word.strip_suffix(s));
+        let mut of_stem = stems.filter_map(word_in_full);
+        of_stem.find(|e| matches!(e.effect, Effect::Request | Effect::None(_)))
+    };
+    let e = word_in_full(word).or_else(abbreviated).or_else(singular)?;
+    Some(CaseWord {
         name: e.name,
         effect: e.effect,
-        misspelt,
-    };
-    let words = words();
-    if let Some(e) = word_in_full(word) {
-        return Some(of(e, false));
-    }
-    let head = word.get(..ABBREVIATION)?;
-    let abbreviated = words.iter().filter(|e| e.written.starts_with(word));
-    if let Some(e) = abbreviated.min_by_key(|e| preference(e.effect)) {
-        return Some(of(e, false));
-    }
-    let of_head = words.iter().filter(|e| e.written.starts_with(head));
-    let e = of_head.min_by_key(|e| spelling::distance(e.written, word))?;
-    Some(of(e, true))
+    })
 }
 
 /// Returns whether a statement above CEND, in upper case, changes the solution sequence or starts from an earlier run.
@@ -81,7 +81,6 @@ pub fn all_words() -> impl Iterator<Item = (&'static str, CaseWord)> {
         let word = CaseWord {
             name: e.name,
             effect: e.effect,
-            misspelt: false,
         };
         (e.written, word)
     })

@@ -28,37 +28,37 @@ fn differs_by_one(a: &str, b: &str) -> bool {
     }
 }
 
-/// Number of letters that are to be added, left out, replaced or exchanged with their neighbour to make one word of the other.
-///
-/// # Reference
-/// Optimal string alignment, after F. J. Damerau (1964), Communications of the ACM 7, 171.
-pub(super) fn distance(a: &str, b: &str) -> usize {
-    let (a, b) = (a.as_bytes(), b.as_bytes());
-    let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let at = |r: usize, c: usize| rows.get(r).and_then(|r| r.get(c)).copied();
-            let same = a.get(i - 1) == b.get(j - 1);
-            let replaced = at(i - 1, j - 1).unwrap_or(0) + usize::from(!same);
-            let left_out = at(i - 1, j).unwrap_or(0) + 1;
-            let added = row.last().copied().unwrap_or(0) + 1;
-            let mut least = replaced.min(left_out).min(added);
-            let crossed =
-                i > 1 && j > 1 && a.get(i - 1) == b.get(j - 2) && a.get(i - 2) == b.get(j - 1);
-            if let (true, Some(before)) = (crossed, at(i.wrapping_sub(2), j.wrapping_sub(2))) {
-                least = least.min(before + 1);
-            }
-            row.push(least);
-        }
-        rows.push(row);
-    }
-    rows.last().and_then(|r| r.last()).copied().unwrap_or(0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Number of letters that are to be added, left out, replaced or exchanged with their neighbour to make one word of the other.
+    ///
+    /// # Reference
+    /// Optimal string alignment, after F. J. Damerau (1964), Communications of the ACM 7, 171.
+    fn distance(a: &str, b: &str) -> usize {
+        let (a, b) = (a.as_bytes(), b.as_bytes());
+        let mut rows: Vec<Vec<usize>> = vec![(0..=b.len()).collect()];
+        for i in 1..=a.len() {
+            let mut row = vec![i];
+            for j in 1..=b.len() {
+                let at = |r: usize, c: usize| rows.get(r).and_then(|r| r.get(c)).copied();
+                let same = a.get(i - 1) == b.get(j - 1);
+                let replaced = at(i - 1, j - 1).unwrap_or(0) + usize::from(!same);
+                let left_out = at(i - 1, j).unwrap_or(0) + 1;
+                let added = row.last().copied().unwrap_or(0) + 1;
+                let mut least = replaced.min(left_out).min(added);
+                let crossed =
+                    i > 1 && j > 1 && a.get(i - 1) == b.get(j - 2) && a.get(i - 2) == b.get(j - 1);
+                if let (true, Some(before)) = (crossed, at(i.wrapping_sub(2), j.wrapping_sub(2))) {
+                    least = least.min(before + 1);
+                }
+                row.push(least);
+            }
+            rows.push(row);
+        }
+        rows.last().and_then(|r| r.last()).copied().unwrap_or(0)
+    }
 
     #[test]
     fn words_that_differ_by_one_are_those_at_distance_one() {

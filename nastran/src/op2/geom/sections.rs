@@ -90,6 +90,11 @@ pub(super) fn pbeam(f: &mut Fields<'_>) -> Option<Pbeam> {
         }
     }
     stations.sort_by(|a, b| a.x_xb.total_cmp(&b.x_xb));
+    // A station without stress output states no points: those of end A, as in a deck.
+    let points_a = stations.first().map_or([[0.0; 2]; 4], |s| s.recovery);
+    for station in stations.iter_mut().filter(|s| !s.output) {
+        station.recovery = points_a;
+    }
     if let Some(last) = stations.last().filter(|s| s.x_xb < 1.0).copied() {
         stations.push(BeamStation { x_xb: 1.0, ..last });
     }

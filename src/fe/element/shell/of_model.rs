@@ -74,9 +74,11 @@ pub(crate) fn shell_matrices(
         .iter()
         .all(|t| *t > 0.0 && t.is_finite())
     {
+        let stated = shell.thickness[..n].iter().map(f64::to_string);
+        let stated: Vec<String> = stated.collect();
         return Err(refuse(
             shell,
-            &format!("thickness: {:?}", &shell.thickness[..n]),
+            &format!("its thickness at the corners is {}", stated.join(", ")),
             "give a thickness above zero",
         ));
     }

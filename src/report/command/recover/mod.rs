@@ -3,6 +3,8 @@
 //! Loads of a record are written while they are recovered, by a [`RecordFolder`]; everything else is written of the outcome.
 
 mod columns;
+mod compared;
+mod console;
 mod folder;
 mod nastran;
 #[cfg(feature = "parquet")]
@@ -19,14 +21,15 @@ use super::Report;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::report::page::{Page, number};
+use crate::report::console::Console;
+use crate::report::page::Page;
 use crate::workflow::recover::{Recovered, States};
-use std::fmt::Write;
 
 impl Report for Outcome<Recovered> {
     const FILES: &'static [&'static str] = &["result.json", "report.html", "loads.csv"];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
+        compared::write(out, self)?;
         match &self.states {
             States::Runs(runs) => runs::write(out, self, runs),
             States::Record(record) => record::write(out, self, record),
@@ -34,29 +37,15 @@ impl Report for Outcome<Recovered> {
     }
 
     fn page(&self) -> Option<Page> {
-        Some(match &self.states {
+        let mut page = match &self.states {
             States::Runs(runs) => runs::page(self, runs),
             States::Record(record) => record::page(self, record),
-        })
+        };
+        compared::add_sections(&mut page, self);
+        Some(page)
     }
 
-    fn words(&self) -> String {
-        let mut text = match &self.states {
-            States::Runs(runs) => runs::words(runs),
-            States::Record(record) => record::words(record),
-        };
-        for g in &self.validation {
-            let _ = match (g.rms_microstrain, g.expected_rms_microstrain) {
-                (Some(rms), Some(expected)) => writeln!(
-                    text,
-                    "validation gauge {}: differs from its prediction by {} microstrain rms, expected {}",
-                    g.name,
-                    number(rms),
-                    number(expected)
-                ),
-                _ => writeln!(text, "validation gauge {}: nothing to compare", g.name),
-            };
-        }
-        text
+    fn console(&self) -> Console {
+        console::console(self)
     }
 }

@@ -79,19 +79,6 @@ fn derived(
     Ok(())
 }
 
-/// One line.
-pub(super) fn words(record: &RecoveredRecord) -> String {
-    format!(
-        "{}: {} samples at {} Hz, {} s, {} with gaps, residual {} microstrain rms\n",
-        record.head.file,
-        record.samples,
-        fixed(rate(record), 4),
-        fixed(record.duration_s, 4),
-        record.gaps,
-        fixed(record.residual_rms_microstrain, 2)
-    )
-}
-
 fn rate(record: &RecoveredRecord) -> f64 {
     record.sample_rate_hz.unwrap_or(f64::NAN)
 }

@@ -14,9 +14,8 @@ use crate::report::page::{Page, number};
 use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{residual_sheet, runs_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
-use crate::units::{MICROSTRAIN, fixed};
+use crate::units::MICROSTRAIN;
 use crate::workflow::recover::{Recovered, RecoveredRuns};
-use std::fmt::Write as _;
 use std::io::Write;
 
 /// Writes everything.
@@ -44,33 +43,6 @@ pub(super) fn write(
     write_page(out, outcome)?;
     let sheets = [runs_sheet(&shown), residual_sheet(&by_gauge(&runs.gauges))];
     write_book(out, outcome, job, "loads.xlsx", &sheets)
-}
-
-/// A line a run.
-pub(super) fn words(runs: &RecoveredRuns) -> String {
-    let mut text = String::new();
-    for r in &runs.recovery.runs {
-        let list: Vec<String> = runs
-            .units
-            .iter()
-            .enumerate()
-            .map(|(l, u)| {
-                let half = r.estimate.coverage_factor * r.estimate.sigma(l);
-                let (name, value) = (&r.estimate.names[l], r.estimate.values[l]);
-                match value.is_finite() {
-                    true => format!(
-                        "{name} {:.4} +- {} {}",
-                        value * u.factor,
-                        fixed(half * u.factor, 4),
-                        u.name
-                    ),
-                    false => format!("{name} not known"),
-                }
-            })
-            .collect();
-        let _ = writeln!(text, "{}: {}", r.estimate.run, list.join(", "));
-    }
-    text
 }
 
 fn loads_csv(w: &mut dyn Write, runs: &RecoveredRuns) -> std::io::Result<()> {

@@ -3,17 +3,19 @@
 //! A segment lists objects that changed and holds their samples, channel after channel or interleaved; [`segments`] reads the lists,
 //! this file the samples. Channels of `DAQmx` raw data and scalings other than lines and polynomials are refused by name.
 
+mod clock;
 mod fault;
 mod segments;
 mod stamp;
 #[cfg(test)]
 mod tests;
 
-use super::column::{Column, is_time, seconds_in};
+use super::column::{Column, seconds_in};
 use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
 use super::time_unit::single_rounding_s;
 use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
+use clock::{check_clocks, check_restarts, is_over_time, samplings};
 use fault::broken;
 use segments::{Channel, Kind, Value, channels_of};
 use stamp::Stamp;
@@ -51,12 +53,14 @@ impl Tdms {
         let (all, texts): (Vec<Channel>, Vec<Channel>) = channels_of((*bytes).as_ref())?
             .into_iter()
             .partition(|c| c.kind != Kind::Text);
+        let (all, spectra) = over_time(all, wanted)?;
         let samplings = samplings(&all, (*bytes).as_ref());
         let named = all.iter().zip(&samplings);
         let named: Vec<(&str, Sampling)> = named.map(|(c, s)| (c.name.as_str(), *s)).collect();
         let Some((main, together)) = sampled_together(&named, wanted)? else {
             return Err(SeriesError::Empty);
         };
+        check_clocks(&all, &together, main, (*bytes).as_ref())?;
         let names: Vec<String> = all.iter().map(|c| c.name.clone()).collect();
         let (mut columns, mut channels, mut time) = (Vec::new(), Vec::new(), None);
         let (mut groups, mut others) = (Vec::new(), Vec::new());
@@ -67,6 +71,7 @@ impl Tdms {
                 others.push(other(&c, Some(sampling.step_s)));
                 continue;
             }
+            check_restarts(&c)?;
             let scale = scale_of(&c)?;
             if is_times {
                 time = Some((c, scale));
@@ -84,7 +89,7 @@ impl Tdms {
             groups.push(c.group.clone());
             channels.push((c, scale));
         }
-        others.extend(texts.iter().map(|c| other(c, None)));
+        others.extend(texts.iter().chain(&spectra).map(|c| other(c, None)));
         let samples = main.samples;
         let mut file = Self {
             bytes,
@@ -105,6 +110,7 @@ impl Tdms {
                     start_s: main.start_s,
                     step_s: main.step_s,
                     samples,
+                    unit_stated: main.unit_stated,
                 }
             }
             None => {}
@@ -145,6 +151,28 @@ impl Tdms {
     }
 }
 
+/// Splits channels into those over time and those over something else, such as frequency.
+///
+/// # Errors
+/// Wanted channels that are not over time, or no channel that is.
+fn over_time(
+    all: Vec<Channel>,
+    wanted: &[String],
+) -> Result<(Vec<Channel>, Vec<Channel>), SeriesError> {
+    let (over_time, others): (Vec<Channel>, Vec<Channel>) = all.into_iter().partition(is_over_time);
+    let refused = others
+        .iter()
+        .find(|c| over_time.is_empty() || wanted.contains(&c.name));
+    match refused {
+        Some(c) => Err(broken(format!(
+            "the samples of `{}` are over {}, which is not time",
+            c.name,
+            clock::axis(c)
+        ))),
+        None => Ok((over_time, others)),
+    }
+}
+
 /// Returns the description of a channel that is not read; `step_s`: time between its samples, s, 0 where it states none.
 fn other(c: &Channel, step_s: Option<f64>) -> OtherChannel {
     OtherChannel {
@@ -154,49 +182,6 @@ fn other(c: &Channel, step_s: Option<f64>) -> OtherChannel {
         samples: c.samples,
         rate_hz: step_s.filter(|s| *s > 0.0).map(|s| 1.0 / s),
     }
-}
-
-/// Returns the times of the samples of each channel. Channels that state a step are on even steps from their start on; the others have the times
-/// of the channel of time in their group, else of the first one in the file.
-fn samplings(all: &[Channel], file: &[u8]) -> Vec<Sampling> {
-    let step = |c: &Channel| c.number("wf_increment").filter(|s| *s > 0.0);
-    let is_clock = |c: &Channel| {
-        let first = all.iter().find(|o| o.group == c.group);
-        let is_first = first.is_some_and(|f| f.name == c.name);
-        step(c).is_none() && (c.kind == Kind::Time || is_time(&c.name, is_first))
-    };
-    let clocks: Vec<(usize, &Channel)> = all.iter().enumerate().filter(|c| is_clock(c.1)).collect();
-    // Two groups whose times are equal have one clock.
-    let clock_of = |c: &Channel| {
-        let long = |k: &&(usize, &Channel)| k.1.samples == c.samples;
-        let own = clocks.iter().filter(long).find(|k| k.1.group == c.group);
-        let (at, clock) = own.or_else(|| clocks.iter().find(long))?;
-        let same = clocks
-            .iter()
-            .filter(long)
-            .find(|k| k.1.is_equal(clock, file));
-        Some(same.map_or(*at, |k| k.0))
-    };
-    let begin = all.iter().filter_map(|c| c.time("wf_start_time")).min();
-    let since = |c: &Channel| match (begin, c.time("wf_start_time")) {
-        (Some(begin), Some(start)) => start.since(begin),
-        _ => 0.0,
-    };
-    let sampling = |c: &Channel| match step(c) {
-        Some(step_s) => Sampling {
-            start_s: since(c) + c.number("wf_start_offset").unwrap_or(0.0),
-            step_s,
-            samples: c.samples,
-            times: None,
-        },
-        None => Sampling {
-            start_s: 0.0,
-            step_s: 0.0,
-            samples: c.samples,
-            times: clock_of(c),
-        },
-    };
-    all.iter().map(sampling).collect()
 }
 
 /// The scaling that a channel's properties state; numbers that its program has scaled need none.

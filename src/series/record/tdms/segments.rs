@@ -14,6 +14,9 @@ const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
 const DAQMX: u32 = 1 << 7;
 
+/// Properties that state the times of a waveform.
+const CLOCK: [&str; 3] = ["wf_start_time", "wf_start_offset", "wf_increment"];
+
 /// How numbers are stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
@@ -94,7 +97,7 @@ impl Kind {
 }
 
 /// Value of a property.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     Number(f64),
     Text(String),
@@ -113,6 +116,17 @@ struct Run {
     big: bool,
 }
 
+/// A property of the clock that a later segment states otherwise.
+#[derive(Clone, Debug)]
+pub struct Restart {
+    /// Number of samples before it.
+    pub first: usize,
+    /// Name of the property.
+    pub key: String,
+    /// Its value from there on.
+    pub value: Value,
+}
+
 /// A channel of numbers.
 #[derive(Clone, Debug)]
 pub struct Channel {
@@ -121,6 +135,7 @@ pub struct Channel {
     pub kind: Kind,
     pub samples: usize,
     pub properties: BTreeMap<String, Value>,
+    pub restarts: Vec<Restart>,
     runs: Vec<Run>,
 }
 
@@ -220,6 +235,7 @@ struct Index {
 struct Object {
     index: Option<Index>,
     properties: BTreeMap<String, Value>,
+    restarts: Vec<Restart>,
     runs: Vec<Run>,
     samples: usize,
     kind: Option<Kind>,
@@ -255,6 +271,7 @@ pub fn channels_of(bytes: &[u8]) -> Result<Vec<Channel>, SeriesError> {
             kind,
             samples: o.samples,
             properties: o.properties,
+            restarts: o.restarts,
             runs: o.runs,
         });
     }
@@ -353,7 +370,15 @@ fn object(
     for _ in 0..c.u32()? {
         let key = c.text()?;
         let value = c.value()?;
-        object.properties.insert(key, value);
+        let is_later = object.samples > 0 && CLOCK.contains(&key.as_str());
+        let before = object.restarts.iter().rev().find(|r| r.key == key);
+        let before = before.map(|r| &r.value).or(object.properties.get(&key));
+        if !is_later || before.is_none() {
+            object.properties.insert(key, value);
+        } else if before != Some(&value) {
+            let first = object.samples;
+            object.restarts.push(Restart { first, key, value });
+        }
     }
     if !active.contains(&path) {
         active.push(path);

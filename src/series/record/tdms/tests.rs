@@ -199,3 +199,115 @@ fn channels_at_other_times_and_channels_without_samples_are_listed_by_group() {
     ];
     assert_eq!(record.others(), expected);
 }
+
+/// A channel of a waveform, 10 units between its samples.
+fn waveform(path: &'static str, more: Vec<(&'static str, Property)>) -> Channel {
+    let mut properties = vec![("wf_increment", P::Real(10.0))];
+    properties.extend(more);
+    channel(path, properties)
+}
+
+#[test]
+fn the_unit_of_the_axis_of_a_waveform_counts() {
+    let unit = |u| vec![("wf_xunit_string", P::Text(u))];
+    for (u, step_s) in [("ms", 0.01), ("s", 10.0), ("us", 1e-5)] {
+        let record = open(&[waveform("/'g'/'P1'", unit(u))], &["P1"]).unwrap();
+        assert!((record.clock.rate_hz * step_s - 1.0).abs() < 1e-12, "{u}");
+        assert!(record.is_time_unit_stated());
+    }
+    // Without a unit they are seconds, unless the job states one.
+    let bytes = Arc::new(file(&[waveform("/'g'/'P1'", Vec::new())]));
+    for (time_unit_s, rate_hz) in [(None, 0.1), (Some(1e-3), 100.0)] {
+        let options = Options {
+            time_unit_s,
+            ..Options::default()
+        };
+        let record = open_record(bytes.clone(), &options).unwrap();
+        assert!((record.clock.rate_hz / rate_hz - 1.0).abs() < 1e-12);
+        assert_eq!(record.is_time_unit_stated(), time_unit_s.is_some());
+    }
+}
+
+#[test]
+fn a_waveform_over_frequency_is_refused_and_left_out_beside_others() {
+    let spectrum = |name, unit| {
+        let axis = vec![
+            ("wf_xname", P::Text(name)),
+            ("wf_xunit_string", P::Text(unit)),
+        ];
+        waveform("/'g'/'P1'", axis)
+    };
+    for (name, unit) in [
+        ("Frequency", "Hz"),
+        ("Frequency", ""),
+        ("", "mm"),
+        ("Angle", "deg"),
+    ] {
+        let refused = open(&[spectrum(name, unit)], &["P1"]).err().unwrap();
+        assert!(refused.to_string().contains("`P1` are over"), "{refused}");
+    }
+    for (name, unit) in [("Time", ""), ("Zeit", "s"), ("Relative time", ""), ("", "")] {
+        assert!(
+            open(&[spectrum(name, unit)], &["P1"]).is_ok(),
+            "{name} {unit}"
+        );
+    }
+    let both = [
+        spectrum("Frequency", "Hz"),
+        waveform("/'g'/'P2'", Vec::new()),
+    ];
+    let record = open(&both, &["P2"]).unwrap();
+    assert_eq!((record.columns().len(), record.others().len()), (1, 1));
+}
+
+#[test]
+fn segments_that_do_not_follow_each_other_are_refused() {
+    // 200 samples at 100 Hz: 2 s.
+    let part = |seconds: i64, fraction: f64, step: f64| {
+        let clock = vec![
+            ("wf_increment", P::Real(step)),
+            ("wf_start_time", P::Time(NOON + seconds, fraction)),
+        ];
+        file(&[channel("/'g'/'P1'", clock)])
+    };
+    let joined = |second: Vec<u8>| {
+        let bytes = [part(0, 0.25, 0.01), second].concat();
+        open_record(Arc::new(bytes), &Options::default())
+    };
+    // The same start again is that of the channel; a clock of a computer is read to 16 ms.
+    for second in [
+        part(0, 0.25, 0.01),
+        part(2, 0.25, 0.01),
+        part(2, 0.26, 0.01),
+    ] {
+        assert_eq!(joined(second).unwrap().clock.samples, 400);
+    }
+    for second in [
+        part(100, 0.25, 0.01),
+        part(2, 0.5, 0.01),
+        part(1, 0.25, 0.01),
+    ] {
+        let refused = joined(second).err().unwrap().to_string();
+        assert!(refused.contains("do not follow each other"), "{refused}");
+    }
+    let refused = joined(part(2, 0.25, 0.02)).err().unwrap().to_string();
+    assert!(refused.contains("time between samples"), "{refused}");
+}
+
+#[test]
+fn a_channel_of_times_that_contradicts_the_step_of_the_others_is_refused() {
+    let with = |step: f64, unit: &'static str| {
+        let mut times = channel("/'g'/'Time'", vec![("unit_string", P::Text(unit))]);
+        times.samples = Samples::Reals((0..200).map(|i| f64::from(i) * step).collect());
+        open(&[times, waveform("/'g'/'P1'", Vec::new())], &["P1"])
+    };
+    // 10 s between samples.
+    for (step, unit) in [(10.0, "s"), (10.0, ""), (1e4, "ms"), (1e4, "")] {
+        let record = with(step, unit).unwrap();
+        assert!((record.clock.rate_hz - 0.1).abs() < 1e-12, "{step} {unit}");
+    }
+    for (step, unit) in [(5.0, "s"), (10.0, "ms"), (20.0, "")] {
+        let refused = with(step, unit).err().unwrap().to_string();
+        assert!(refused.contains("`wf_increment`"), "{refused}");
+    }
+}

@@ -2,7 +2,8 @@
 
 use super::fault::broken;
 use crate::series::error::SeriesError;
-use crate::series::record::column::Column;
+use crate::series::record::column::{Column, seconds_in};
+use std::collections::BTreeSet;
 
 /// Lines of text before the numbers.
 const HEAD: usize = 11;
@@ -52,10 +53,14 @@ pub struct Dataset {
     unit: String,
     /// What may be its name: the first line of its head, the label of its numbers, grid and direction.
     titles: [String; 3],
+    /// Its name, where other data sets have the same one: a number goes with it in [`Self::column`].
+    pub twice: Option<String>,
     /// Time of the first sample, s.
     pub start_s: f64,
     /// Between samples, s.
     pub step_s: f64,
+    /// Whether the file states the unit of its times.
+    pub unit_stated: bool,
     /// How many.
     pub samples: usize,
     /// The numbers.
@@ -107,23 +112,30 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
             return Err(broken("the file is cut off: a data set has no end"));
         }
     }
-    // Programs differ in what tells their channels apart: the first of the titles that does; else a number.
-    let tells = |title: usize| {
-        let mut names: Vec<&str> = out
-            .iter()
-            .filter_map(|d| d.titles.get(title))
-            .map(String::as_str)
-            .collect();
-        names.sort_unstable();
-        names.iter().all(|n| !n.is_empty()) && names.windows(2).all(|w| w.first() != w.last())
+    // Programs differ in what tells their channels apart: the first of the titles that tells most of them; a number where it is there twice.
+    let names: [Vec<&str>; 3] =
+        [0, 1, 2].map(|t| out.iter().map(|d| d.titles[t].as_str()).collect());
+    let distinct = |names: &Vec<&str>| match names.contains(&"") {
+        true => 0,
+        false => names.iter().collect::<BTreeSet<_>>().len(),
     };
-    let title = (0..3).find(|t| tells(*t));
-    for (i, d) in out.iter_mut().enumerate() {
-        let name = match title.and_then(|t| d.titles.get(t)) {
-            Some(name) => name.clone(),
-            None => format!("{}#{}", d.titles.first().map_or("", String::as_str), i + 1),
+    let most = (0..2).max_by_key(|t| (distinct(&names[*t]), 1 - t));
+    let title = (0..3)
+        .find(|t| distinct(&names[*t]) == out.len())
+        .or(most.filter(|t| distinct(&names[*t]) > 1));
+    let title = names[title.unwrap_or(0)].clone();
+    let is_twice = |name: &str| title.iter().filter(|n| **n == name).count() > 1;
+    let names: Vec<(String, bool)> = title
+        .iter()
+        .map(|n| ((*n).to_owned(), is_twice(n)))
+        .collect();
+    for (i, (d, (name, twice))) in out.iter_mut().zip(names).enumerate() {
+        let column = match twice {
+            true => format!("{name}#{}", i + 1),
+            false => name.clone(),
         };
-        d.column = Column::of_channel(&name, &d.unit);
+        d.column = Column::of_channel(&column, &d.unit);
+        d.twice = twice.then_some(name);
     }
     Ok(out)
 }
@@ -181,9 +193,13 @@ fn history(
     if whole(6, 20, 30) != Some(1) {
         return Err(bad("its steps are uneven"));
     }
-    let start_s = real(6, 30, 43).unwrap_or(0.0);
+    let told = |t: String| Some(t).filter(|t| !t.is_empty() && !t.eq_ignore_ascii_case("none"));
+    let time_unit = told(field(7, 47, 67)).unwrap_or_default();
+    let second = seconds_in(&time_unit)
+        .ok_or_else(|| bad(&format!("`{time_unit}` of its abscissa is no unit of time")))?;
+    let start_s = second * real(6, 30, 43).unwrap_or(0.0);
     let step_s = real(6, 43, 56).filter(|s| *s > 0.0);
-    let step_s = step_s.ok_or_else(|| bad("no time between samples"))?;
+    let step_s = second * step_s.ok_or_else(|| bad("no time between samples"))?;
     let data = match (binary, bytes_of_data) {
         (Some(layout), Some(n)) => {
             let big = match layout.first() {
@@ -204,7 +220,6 @@ fn history(
             numbers(lines, samples, double).ok_or_else(|| bad("fewer numbers than samples"))?,
         ),
     };
-    let told = |t: String| Some(t).filter(|t| !t.is_empty() && !t.eq_ignore_ascii_case("none"));
     let direction = match whole(5, 51, 55) {
         Some(1) => "+X".to_owned(),
         Some(2) => "+Y".to_owned(),
@@ -223,8 +238,10 @@ fn history(
         column: Column::of_channel("", ""),
         unit: told(field(8, 47, 67)).unwrap_or_default(),
         titles,
+        twice: None,
         start_s,
         step_s,
+        unit_stated: !time_unit.is_empty(),
         samples,
         data,
     }))

@@ -2,6 +2,8 @@
 
 mod dataset;
 mod fault;
+#[cfg(test)]
+mod tests;
 
 use super::column::Column;
 use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink, Times};
@@ -31,6 +33,7 @@ pub(super) struct Uff {
     columns: Vec<Column>,
     sets: Vec<Dataset>,
     times: (f64, f64, usize),
+    unit_stated: bool,
     others: Vec<OtherChannel>,
 }
 
@@ -41,11 +44,19 @@ impl Uff {
     /// A file that can't be read or holds no time histories, wanted channels of another clock.
     pub(super) fn new(bytes: Bytes, wanted: &[String]) -> Result<Self, SeriesError> {
         let all = datasets((*bytes).as_ref())?;
+        let named_twice = |w: &&String| all.iter().filter(|d| d.twice.as_ref() == Some(*w)).count();
+        if let Some(name) = wanted.iter().find(|w| named_twice(w) > 0) {
+            return Err(broken(format!(
+                "`{name}` is there {} times, which of the data sets is meant is not known",
+                named_twice(&name)
+            )));
+        }
         let sampling = |d: &Dataset| Sampling {
             start_s: d.start_s,
             step_s: d.step_s,
             samples: d.samples,
             times: None,
+            unit_stated: d.unit_stated,
         };
         let channels = all.iter().map(|d| (d.column.name.as_str(), sampling(d)));
         let found = sampled_together(&channels.collect::<Vec<_>>(), wanted)?;
@@ -56,6 +67,7 @@ impl Uff {
             });
         };
         let times = (main.start_s, main.step_s, main.samples);
+        let unit_stated = main.unit_stated;
         let (mut sets, mut others) = (Vec::new(), Vec::new());
         for (set, together) in all.into_iter().zip(together) {
             match together {
@@ -74,6 +86,7 @@ impl Uff {
             columns: sets.iter().map(|d| d.column.clone()).collect(),
             sets,
             times,
+            unit_stated,
             others,
         })
     }
@@ -94,6 +107,7 @@ impl RecordReader for Uff {
             start_s,
             step_s,
             samples,
+            unit_stated: self.unit_stated,
         }
     }
 

@@ -1,0 +1,88 @@
+//! Options and values of the commands that select what acts on the structure.
+
+/// Returns whether an option is the word, or at least its first four letters.
+pub(super) fn abbreviates(option: &str, word: &str) -> bool {
+    option == word || option.len() >= 4 && word.starts_with(option)
+}
+
+/// Returns what is wrong with the options of a command; `None` where Nastran knows them all, or the command has output options alone.
+///
+/// # Reference
+/// MSC Nastran 2022.4 and Simcenter Nastran quick reference guides, case control commands.
+pub(super) fn unknown_option(word: &str, options: &[String]) -> Option<&'static str> {
+    let (known, why): (&[&str], _) = match word {
+        "LOAD" | "SPC" | "MPC" | "NSM" | "SUPORT1" | "DEFORM" | "SUBSEQ" | "SYMSEQ"
+        | "ANALYSIS" | "RIGID" => (&[], "the command has no options"),
+        "TEMPERATURE" => (
+            &["INITIAL", "MATERIAL", "LOAD", "BOTH"],
+            "the option is none of INITIAL, MATERIAL, LOAD and BOTH",
+        ),
+        "METHOD" => (
+            &["STRUCTURE", "FLUID", "COUPLED", "BOTH"],
+            "the option is none of STRUCTURE, FLUID, COUPLED and BOTH",
+        ),
+        _ => return None,
+    };
+    let knows = |o: &String| known.iter().any(|k| abbreviates(o, k));
+    (!options.iter().all(knows)).then_some(why)
+}
+
+/// Values of ANALYSIS.
+const ANALYSES: [&str; 40] = [
+    "STATICS",
+    "MODES",
+    "BUCKLING",
+    "DFREQ",
+    "MFREQ",
+    "DTRAN",
+    "MTRAN",
+    "DCEIG",
+    "MCEIG",
+    "SAERO",
+    "FLUTTER",
+    "FLUT",
+    "DIVERGE",
+    "DIVERG",
+    "HEAT",
+    "HSTAT",
+    "HTRAN",
+    "HOT2COLD",
+    "STRUCTURE",
+    "STRUCT",
+    "NLSTATICS",
+    "NLSTAT",
+    "NLSTATIC",
+    "NLTRAN",
+    "NLTRANS",
+    "LNSTATICS",
+    "CYCMODES",
+    "CYCMODE",
+    "CYCSTAT",
+    "RCTEST",
+    "RANDOM",
+    "PRELOAD",
+    "FOURIER",
+    "MULTIMBD",
+    "MBD",
+    "ACOUSTIC",
+    "FNASTRAN",
+    "SEMODES",
+    "SESTATIC",
+    "LINEAR",
+];
+
+/// Values of RIGID.
+const RIGIDS: [&str; 9] = [
+    "LINEAR", "LAGRANGE", "LAGRAN", "LAGR", "LGELIM", "LELIM", "STATIC", "PENALTY", "AUTO",
+];
+
+/// Returns what is wrong with the value of a command, in upper case, that is one of a list.
+pub(super) fn unknown_value(word: &str, value: &str) -> Option<&'static str> {
+    let (known, why): (&[&str], _) = match word {
+        "ANALYSIS" => (&ANALYSES, "Nastran knows no such analysis"),
+        "RIGID" => (&RIGIDS, "Nastran knows no such method of rigid elements"),
+        _ => return None,
+    };
+    let value = value.trim_matches(['\'', '"']);
+    (!known.iter().any(|k| abbreviates(value, k))).then_some(why)
+}

@@ -1,0 +1,79 @@
+//! Runs that a calibration does not use or does not contain: with many of them, the model does not fit.
+
+use super::types::Coverage;
+use crate::finding::{Finding, Severity};
+use statrs::distribution::{Binomial, DiscreteCDF};
+
+/// Share of the runs that may be excluded as suspect: labels and zeros are wrong in one run of twenty, seldom in one of ten.
+const MOST: f64 = 0.1;
+/// Chance of so few left-out runs within their 95 % regions, under which the regions are too narrow.
+const TOO_FEW: f64 = 0.01;
+/// Chance of a 95 % region.
+const HELD: f64 = 0.95;
+
+/// An error where more than a tenth of the runs is excluded as suspect.
+pub(super) fn too_many(excluded: usize, runs: usize) -> Option<Finding> {
+    let share = excluded as f64 / runs.max(1) as f64;
+    (share > MOST).then(|| {
+        Finding::new(
+            Severity::Error,
+            "calibration-runs-excluded",
+            "calibration",
+            format!(
+                "{excluded} of {runs} runs contradict the others, and the intervals do not include them: the model of the strain does not fit these runs",
+            ),
+            "correct labels, zeros and loads of these runs in the files, or leave them out with `[calibration] runs`; if they are right, more loads act than the job names",
+        )
+        .with_numbers(share, MOST)
+    })
+}
+
+/// An error where significantly fewer than 95 % of the left-out runs lie within their 95 % regions.
+pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
+    let of = u64::try_from(coverage.of).ok().filter(|n| *n > 0)?;
+    let chance = Binomial::new(HELD, of).ok()?.cdf(coverage.held as u64);
+    (chance < TOO_FEW).then(|| {
+        let share = coverage.held as f64 / of as f64;
+        Finding::new(
+            Severity::Error,
+            "calibration-coverage-low",
+            "calibration",
+            format!(
+                "the 95 % regions of the left-out runs contain {} of {of} known loads, {:.0} % (chance {chance:.1e} where 95 % is right): intervals are too narrow",
+                coverage.held,
+                100.0 * share
+            ),
+            "look for runs with a wrong label or zero, for loads that the job does not name, and for strain that is not proportional to the loads",
+        )
+        .with_numbers(share, HELD)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Binomial tails of 0.95: of 20 runs 16 or fewer hold with 1.6 %, 15 or fewer with 0.26 % (tables).
+    #[test]
+    fn a_tally_far_below_its_promise_is_an_error_and_chance_is_not() {
+        let tally = |held, of| Coverage {
+            held,
+            of,
+            factor: 1.0,
+        };
+        assert!(held_too_few(&tally(16, 20)).is_none());
+        assert!(held_too_few(&tally(0, 0)).is_none());
+        let found = held_too_few(&tally(15, 20)).unwrap();
+        assert_eq!(
+            (found.severity, &*found.code),
+            (Severity::Error, "calibration-coverage-low")
+        );
+        assert!(held_too_few(&tally(283, 338)).is_some());
+    }
+
+    #[test]
+    fn a_tenth_of_the_runs_may_be_excluded() {
+        assert!(too_many(1, 10).is_none());
+        assert!(too_many(2, 19).is_some() && too_many(32, 370).is_none());
+    }
+}

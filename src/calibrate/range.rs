@@ -1,0 +1,29 @@
+//! Range of what a calibration was made with.
+
+use super::types::{CalibratedRange, Task};
+use super::unknown::known_of;
+
+impl CalibratedRange {
+    /// Range of the runs with these numbers. A run in which a load is not known says nothing of the range of this load.
+    pub(super) fn of(task: &Task, used: &[usize]) -> Self {
+        let over = |value: &dyn Fn(usize) -> Option<f64>| {
+            let values = used.iter().filter_map(|r| value(*r));
+            let values = values.filter(|v| v.is_finite());
+            values.fold([f64::NAN; 2], |[low, high], v| [low.min(v), high.max(v)])
+        };
+        Self {
+            loads: (0..task.loads.len())
+                .map(|l| over(&|r| known_of(task, r, &[(l, 1.0)])))
+                .collect(),
+            strain: (0..task.gauges.len())
+                .map(|g| over(&|r| task.runs.get(r)?.strain.get(g).copied()))
+                .collect(),
+        }
+    }
+
+    /// Largest size of load `l`; 0 where no run has it.
+    pub fn largest(&self, l: usize) -> f64 {
+        let [low, high] = self.loads.get(l).copied().unwrap_or([0.0; 2]);
+        low.abs().max(high.abs())
+    }
+}

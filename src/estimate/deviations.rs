@@ -1,0 +1,72 @@
+//! Whether differences from true values exceed the intervals that are stated for them.
+
+use super::tails::chi_square_tail;
+
+/// Chance under which differences count as larger than their intervals allow.
+const SIGNIFICANT: f64 = 1e-3;
+/// Square of a normal error in sigmas that is exceeded with that chance.
+const LARGEST_SQUARE: f64 = 10.828;
+
+/// Differences of many samples over their standard deviation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deviations {
+    /// Mean of the squares; 1 is expected.
+    pub mean_square: f64,
+    /// Number of independent samples.
+    pub effective: f64,
+    /// Share of the variance that all samples have in common, such as the error of S.
+    pub common: f64,
+}
+
+impl Deviations {
+    /// Whether the differences are larger than the intervals allow: more than one common error alone makes with a chance of 0.001, or more than
+    /// independent errors make with that chance beside a common error of that chance.
+    pub fn exceed(&self) -> bool {
+        let common = self.common.clamp(0.0, 1.0);
+        let inflated = 1.0 - common + common * LARGEST_SQUARE;
+        let n = self.effective.max(1.0);
+        let independent = chi_square_tail(n * self.mean_square / inflated, n);
+        chi_square_tail(self.mean_square, 1.0) < SIGNIFICANT || independent < SIGNIFICANT
+    }
+
+    /// Returns the number of independent squares behind the mean of `blocks` of them: the variance of a mean of `n` squares of normal errors
+    /// is `2 / n` of its square.
+    pub fn effective(blocks: &[f64]) -> f64 {
+        let n = blocks.len() as f64;
+        let mean = blocks.iter().sum::<f64>() / n;
+        let variance = blocks.iter().map(|b| (b - mean) * (b - mean)).sum::<f64>() / (n - 1.0);
+        match variance > 0.0 {
+            true => n * 2.0 * mean * mean / variance,
+            false => n,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Chi-square with 10 degrees of freedom exceeds 29.59, with one 10.83, with a chance of 0.001 (Abramowitz and Stegun, table 26.8).
+    #[test]
+    fn independent_and_common_errors_have_limits_of_their_own() {
+        let exceed = |mean_square, effective, common| {
+            Deviations {
+                mean_square,
+                effective,
+                common,
+            }
+            .exceed()
+        };
+        assert!(!exceed(2.95, 10.0, 0.0) && exceed(2.97, 10.0, 0.0));
+        assert!(!exceed(10.8, 1e6, 1.0) && exceed(10.9, 1e6, 1.0));
+        assert!(!exceed(1.001, 1e4, 0.0) && exceed(1.1, 1e4, 0.0));
+    }
+
+    #[test]
+    fn blocks_of_ten_independent_squares_count_ten_each() {
+        // Means of ten squares scatter by a variance of 2 / 10: values one standard deviation to either side of 1.
+        let sd = (0.2_f64 * 3.0 / 4.0).sqrt();
+        let blocks = [1.0 - sd, 1.0 + sd, 1.0 - sd, 1.0 + sd];
+        assert!((Deviations::effective(&blocks) - 40.0).abs() < 1e-9);
+    }
+}

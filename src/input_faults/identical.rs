@@ -1,0 +1,83 @@
+//! Columns of a table that are the same to the last digit: one is a copy.
+
+use crate::finding::{Finding, Severity, few};
+use std::collections::HashMap;
+
+/// Different readings of two equal columns at least: fewer are the same by chance where numbers are rounded.
+const DIFFERENT_READINGS: usize = 3;
+
+/// Pairs of columns that have the same numbers in all rows, each with the first of its kind; columns with fewer different values than asked for are
+/// left out.
+pub fn identical_pairs(columns: &[Vec<f64>], different_at_least: usize) -> Vec<[usize; 2]> {
+    let mut first: HashMap<Vec<u64>, usize> = HashMap::new();
+    let mut out = Vec::new();
+    for (i, column) in columns.iter().enumerate() {
+        let mut different: Vec<u64> = (column.iter())
+            .filter(|v| v.is_finite())
+            .map(|v| v.to_bits())
+            .collect();
+        different.sort_unstable();
+        different.dedup();
+        if different.len() < different_at_least {
+            continue;
+        }
+        // All gaps are alike.
+        let bits = column
+            .iter()
+            .map(|v| if v.is_finite() { v.to_bits() } else { u64::MAX });
+        let kept = *first.entry(bits.collect()).or_insert(i);
+        if kept != i {
+            out.push([kept, i]);
+        }
+    }
+    out
+}
+
+/// The finding on gauges whose readings, a column each, are the same in all rows.
+pub fn identical_readings(gauges: &[String], columns: &[Vec<f64>]) -> Option<Finding> {
+    let pairs = identical_pairs(columns, DIFFERENT_READINGS);
+    let names: Vec<String> = (pairs.iter())
+        .map(|[a, b]| format!("{} and {}", gauges[*a], gauges[*b]))
+        .collect();
+    let (copy, count) = (pairs.first()?[1], names.len());
+    Some(
+        Finding::new(
+            Severity::Warning,
+            "columns-identical",
+            few(&names),
+            "these gauges have the same readings in every row, to the last digit, as no two gauges have: one column is a copy, and it counts twice",
+            format!(
+                "look the channels up in the logger's files. To leave a copy out: [[correction]] gauge = \"{}\", ignore = true",
+                gauges[copy]
+            ),
+        )
+        .with_numbers(count as f64, 0.0),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_copy_of_a_column_is_found_and_rounded_or_constant_columns_are_not() {
+        let column = |values: [f64; 4]| values.to_vec();
+        let columns = [
+            column([1.25, -3.5, 7.0, f64::NAN]),
+            column([1.25, -3.5, 7.1, f64::NAN]),
+            column([0.0; 4]),
+            column([1.25, -3.5, 7.0, f64::NAN]),
+            column([0.0; 4]),
+            column([1.0, 1.0, 2.0, 2.0]),
+            column([1.0, 1.0, 2.0, 2.0]),
+        ];
+        assert_eq!(identical_pairs(&columns, DIFFERENT_READINGS), [[0, 3]]);
+        let names: Vec<String> = (0..7).map(|i| format!("G{i}")).collect();
+        let finding = identical_readings(&names, &columns).unwrap();
+        assert_eq!(
+            (finding.code, &*finding.subject),
+            ("columns-identical", "G0 and G3")
+        );
+        assert!(identical_readings(&names[1..3], &columns[1..3]).is_none());
+    }
+}

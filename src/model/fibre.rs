@@ -1,0 +1,49 @@
+//! Fibre distances of a shell: where its surfaces are, along its normal.
+
+use super::types::{Model, Shell, ShellProperty};
+
+/// Z1 (bottom) and Z2 (top) from the reference plane of a shell, at its centre and at its corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fibres {
+    /// At the centre, where the thickness is the mean of the corners.
+    pub centre: [f64; 2],
+    /// At the corners, in the order of the grids.
+    pub corners: [[f64; 2]; 4],
+}
+
+impl Fibres {
+    /// Returns the distances at a corner, or at the centre.
+    pub fn at(&self, corner: Option<usize>) -> [f64; 2] {
+        let corner = corner.and_then(|k| self.corners.get(k));
+        corner.copied().unwrap_or(self.centre)
+    }
+}
+
+impl ShellProperty {
+    /// Returns Z1 and Z2 where the shell has this thickness: as stated, else half the local thickness below and above.
+    ///
+    /// # Reference
+    /// MSC Nastran Quick Reference Guide, PSHELL, remark on Z1 and Z2: `T` of their defaults is the local thickness, from the connection entry
+    /// where that states thicknesses at the grids.
+    pub fn fibres(&self, thickness: f64) -> [f64; 2] {
+        let [z1, z2] = self.z;
+        [
+            z1.unwrap_or(-thickness / 2.0),
+            z2.unwrap_or(thickness / 2.0),
+        ]
+    }
+}
+
+impl Model {
+    /// Returns the fibre distances of a shell; not a number where it has no property.
+    pub fn fibres(&self, shell: &Shell) -> Fibres {
+        let n = shell.shape.n_corners();
+        let mean = shell.thickness.iter().take(n).sum::<f64>() / n as f64;
+        let property = self.shell_properties.get(shell.property.us());
+        let z = |t: f64| property.map_or([f64::NAN; 2], |p| p.fibres(t));
+        Fibres {
+            centre: z(mean),
+            corners: shell.thickness.map(z),
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! Points that gauges state: held against the element and the side that are stated for the same gauge.
+
+use crate::estimate::NORMAL_95;
+use crate::fe::strain_tensor::Surface;
+use crate::finding::{Finding, Severity};
+use crate::gauge::{BetweenSkins, beside_beam, beside_shell, between_skins, nearest_skin};
+use crate::host::words::short;
+use crate::job::{Job, JobGauge, StatedPlace};
+use crate::model::{Model, ShellIx, Vec3};
+use crate::units::Quantity;
+
+/// Returns what is to be said of the points that the gauges of a job state.
+pub fn point_findings(model: &Model, job: &Job) -> Vec<Finding> {
+    let mut out = off_their_elements(model, job);
+    out.extend(
+        job.gauges
+            .iter()
+            .filter_map(|g| side_finding(model, job, g)),
+    );
+    out
+}
+
+/// Returns where the point stated for a gauge may be, basic frame: next to an element, it may be meant in the axes of `cid`, as the direction
+/// is, or in the basic ones.
+fn stated_points(model: &Model, g: &JobGauge) -> impl Iterator<Item = Vec3> + use<> {
+    let frame = model
+        .frame_ix(g.cid)
+        .and_then(|ix| model.frames.get(ix.us()));
+    let of = |x: [f64; 3]| {
+        let basic = Some(Vec3::from(x)).filter(|_| {
+            matches!(
+                g.place,
+                StatedPlace::Element(_) | StatedPlace::BeamPoint { .. }
+            )
+        });
+        [basic, frame.map(|f| f.to_basic(x))]
+    };
+    g.position.map(of).into_iter().flatten().flatten()
+}
+
+/// Returns the shell of a gauge with a stated point, and how the point is placed to its skins.
+fn at_skins(model: &Model, g: &JobGauge) -> Option<(ShellIx, BetweenSkins)> {
+    let on_element = |ix: ShellIx| {
+        stated_points(model, g)
+            .filter_map(|x| Some((beside_shell(model, ix, x)?.distance, x)))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(_, x)| x)
+    };
+    let (ix, x) = match g.place {
+        StatedPlace::Element(id) => {
+            let ix = model.shell_ix(id)?;
+            (ix, on_element(ix)?)
+        }
+        StatedPlace::Position(..) => {
+            let x = stated_points(model, g).next()?;
+            let stated = g.surface_stated.then_some(g.surface);
+            (nearest_skin(model, x, stated)?.shell, x)
+        }
+        StatedPlace::BeamPoint { .. } | StatedPlace::Unstated => return None,
+    };
+    Some((ix, between_skins(model, ix, x)?))
+}
+
+/// Returns the side of a gauge on an element: the stated one, else that of the skin nearest to the stated point, else the top.
+pub fn side_of(model: &Model, g: &JobGauge) -> Surface {
+    if g.surface_stated {
+        return g.surface;
+    }
+    at_skins(model, g).map_or(g.surface, |(_, skins)| skins.nearer())
+}
+
+/// Returns what is to be said where the stated point does not determine the side of a gauge, or contradicts the stated side.
+fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
+    let (ix, skins) = at_skins(model, g)?;
+    let element = model.shells.get(ix.us())?.id;
+    let unit = job.units.unit(Quantity::Length).name;
+    if !g.surface_stated {
+        let [bottom, top] = skins.distance;
+        let side = skins.nearer().word();
+        let undecided = || {
+            Finding::new(
+                Severity::Warning,
+                "gauge-side-assumed",
+                &g.name,
+                format!(
+                    "{}:{}: the point stated for gauge `{}` is about as far from the bottom ({} {unit}) as from the top ({} {unit}) of element \
+                     {element}: strain is taken on the {side}, which reverses the bending strain if the other side is meant",
+                    g.file, g.line, g.name, short(bottom), short(top)
+                ),
+                "state `surface`, or a point on the skin",
+            )
+            .with_numbers((bottom - top).abs(), skins.thickness)
+        };
+        return skins.is_undecided().then(undecided);
+    }
+    let contradicted = || {
+        let severity = match skins.is_on_other_skin(g.surface) {
+            true => Severity::Error,
+            false => Severity::Warning,
+        };
+        let [here, other] = skins.of(g.surface);
+        Finding::new(
+            severity,
+            "gauge-side-contradicted",
+            &g.name,
+            format!(
+                "{}:{}: the point stated for gauge `{}` is {} {unit} from the {} of element {element}, the stated surface, and {} {unit} from \
+                 its other side: strain is taken on the {}",
+                g.file, g.line, g.name, short(here), g.surface.word(), short(other), g.surface.word()
+            ),
+            "correct `surface` or the point, or state one of the two alone",
+        )
+        .with_numbers(here - other, 0.0)
+    };
+    skins.contradicts(g.surface).then(contradicted)
+}
+
+/// How well a point of a drawing is read and rounded, m: a gauge and its tabs are some 5 mm wide.
+const READ_OFF_M: f64 = 5e-3;
+
+/// How far from its element a gauge's point may be stated, job units, beside the element's faces: as far as the job says that gauges may sit
+/// from their drawing, with 95 %, and what reading a drawing leaves.
+fn point_tolerance(job: &Job) -> f64 {
+    let in_mm = job.reconcile.as_ref().and_then(|r| r.position_tolerance_mm);
+    let stated = [
+        job.placement.position_tolerance,
+        job.calibration.position_tolerance,
+        in_mm.unwrap_or(0.0) * 1e-3 / job.units.length_m(),
+    ];
+    NORMAL_95 * stated.into_iter().fold(0.0, f64::max) + READ_OFF_M / job.units.length_m()
+}
+
+/// Gauges whose stated point lies beside their stated element: one of the two is wrong, beyond doubt where they are farther from each other
+/// than the element is large. Their strain is that of the element.
+fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
+    let beside = |g: &JobGauge, x: Vec3| match g.place {
+        StatedPlace::Element(id) => beside_shell(model, model.shell_ix(id)?, x),
+        StatedPlace::BeamPoint { element, .. } => beside_beam(model, model.beam_ix(element)?, x),
+        StatedPlace::Position(..) | StatedPlace::Unstated => None,
+    };
+    let unit = job.units.unit(Quantity::Length).name;
+    let tolerance = point_tolerance(job);
+    let of = |g: &JobGauge| {
+        let found = stated_points(model, g)
+            .filter_map(|x| beside(g, x))
+            .min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        let element = match g.place {
+            StatedPlace::Element(id) | StatedPlace::BeamPoint { element: id, .. } => id,
+            StatedPlace::Position(..) | StatedPlace::Unstated => return None,
+        };
+        // A bar that states no recovery points doesn't say how deep it is.
+        let near = found.faces.map_or(found.size, |faces| faces + tolerance);
+        let (severity, limit) = match found.distance > found.size.max(near) {
+            true => (Severity::Error, found.size.max(near)),
+            false => (Severity::Warning, near),
+        };
+        (found.distance > limit).then(|| {
+            Finding::new(
+                severity,
+                "point-off-element",
+                &g.name,
+                format!(
+                    "{}:{}: the point stated for gauge `{}` lies {} {unit} from its element {element}, which is {} {unit} large: the strain is \
+                     that of the element",
+                    g.file, g.line, g.name, short(found.distance), short(found.size)
+                ),
+                "correct the point or the element, or state one of the two alone",
+            )
+            .with_numbers(found.distance, limit)
+        })
+    };
+    job.gauges.iter().filter_map(of).collect()
+}

@@ -1,0 +1,76 @@
+//! A number with its uncertainty, as a reader wants it.
+
+use super::number::number;
+
+/// Sizes between which a value is written without an exponent.
+const PLAIN: std::ops::Range<f64> = 1e-3..1e6;
+
+/// Returns a value with the half width of its 95 % interval: `4.53 ± 0.36`. The half width has two significant digits; the value ends at the
+/// same place, and has at most four significant digits. A dash stands for an unknown value.
+pub fn plus_minus(value: f64, half: f64) -> String {
+    if !value.is_finite() || !half.is_finite() || half <= 0.0 {
+        return match value.is_finite() && half.is_finite() {
+            true => number(value),
+            false => "-".into(),
+        };
+    }
+    if !PLAIN.contains(&value.abs().max(half)) {
+        return format!("{} ± {}", number(value), number(half));
+    }
+    let of_half = 1 - exponent(half);
+    let of_value = match value == 0.0 {
+        true => of_half,
+        false => of_half.min(3 - exponent(value)),
+    };
+    format!("{} ± {}", rounded(value, of_value), rounded(half, of_half))
+}
+
+/// Returns the half width of a 95 % interval, `± 0.36`, with two significant digits; a dash stands for an unknown one.
+pub fn half_width(half: f64) -> String {
+    match half.is_finite() && PLAIN.contains(&half) {
+        true => format!("± {}", rounded(half, 1 - exponent(half))),
+        false if half.is_finite() => format!("± {}", number(half)),
+        false => "-".into(),
+    }
+}
+
+fn exponent(x: f64) -> i32 {
+    // What rounds up to the next power of ten counts there.
+    let e = x.abs().log10().floor() as i32;
+    let two = x.abs() / 10f64.powi(e - 1);
+    if two.round() >= 100.0 { e + 1 } else { e }
+}
+
+/// A number that ends at a decimal place; negative places are those before the point.
+fn rounded(x: f64, places: i32) -> String {
+    let unit = 10f64.powi(-places);
+    // Zero without a sign.
+    let x = (x / unit).round() * unit + 0.0;
+    format!("{x:.*}", places.max(0) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn value_and_half_width_end_at_one_place() {
+        for (value, half, text) in [
+            (4.5321, 0.3612, "4.53 ± 0.36"),
+            (-38.0123, 2.2, "-38.0 ± 2.2"),
+            (38012.3, 1234.0, "38000 ± 1200"),
+            (0.00012, 0.36, "0.00 ± 0.36"),
+            (-0.00012, 0.36, "0.00 ± 0.36"),
+            (12.0, 0.0996, "12.00 ± 0.10"),
+            // Four digits of a value are enough, and its half width never becomes zero.
+            (123.456789, 0.0012, "123.5 ± 0.0012"),
+            (2.7e6, 1.2e4, "2.700e6 ± 12000"),
+            (0.0, 0.5, "0.00 ± 0.50"),
+            (f64::NAN, 1.0, "-"),
+        ] {
+            assert_eq!(plus_minus(value, half), text);
+        }
+        assert_eq!(half_width(0.3612), "± 0.36");
+        assert_eq!(half_width(f64::INFINITY), "-");
+    }
+}

@@ -1,0 +1,384 @@
+//! A recovered record against a record of loads: times are brought together, samples compared at the times of the recovered loads.
+
+use super::{Comparison, ComparisonShift, Differences, POINTS, Pair};
+use crate::estimate::NORMAL_95;
+use crate::finding::{Finding, Severity};
+use crate::host::fault::{Fault, Faults};
+use crate::host::outcome::finite;
+use crate::host::words::short;
+use crate::host::work::Work;
+use crate::job::{Compare, Job, TimeShift};
+use crate::measured::recorded_loads::{LoadRecord, RecordedLoads, quantity_of, read_recorded};
+use crate::measured::runs_file::read_runs;
+use crate::recovery::Gain as Estimate;
+use crate::series::record::Clock;
+use crate::series::shift::{NoShift, Sampled, ShiftRules, estimate_shift};
+use crate::workflow::recover::damage::{Counting, PIECE, damage_of_recorded};
+use crate::workflow::recover::sink::RecordHead;
+use crate::workflow::recover::task::Task;
+use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// Blocks of a record whose scatter shows how many of its samples are independent.
+const BLOCKS: usize = 20;
+
+/// A sample in which a gauge gives nothing, and the estimate from the others.
+pub type Gap = (usize, Option<Arc<Estimate>>);
+
+/// Opens the record of loads that a job names for its strain record; `None` where it names none. The runs file of a job is read for its faults.
+///
+/// # Errors
+/// Files that can't be read; a `[compare]` that names runs.
+pub fn record_of_job(
+    work: &mut Work,
+    task: &Task,
+    names: &[String],
+) -> Result<Option<LoadRecord>, Faults> {
+    let job = task.job;
+    if let Some(runs) = &job.runs {
+        read_runs(&mut work.inputs, job, runs)?;
+    }
+    let Some(compare) = &job.compare else {
+        return Ok(None);
+    };
+    match read_recorded(&mut work.inputs, job, compare, names)? {
+        RecordedLoads::Record(record) => {
+            work.findings.extend(record.findings.iter().cloned());
+            Ok(Some(record))
+        }
+        RecordedLoads::Runs(_) => Err(Fault::at(
+            &*job.file,
+            compare.line,
+            "compare.file",
+            "the recorded loads are of runs, and the strain file is a record",
+            "name a record of loads (a column `time`, or a format of records), or runs of strain",
+        )
+        .into()),
+    }
+}
+
+/// Loads of both records, report units.
+struct Both<'a> {
+    counting: Counting<'a>,
+    gaps: &'a [Gap],
+    recorded: LoadRecord,
+    /// Column of each recorded load among the recovered ones.
+    columns: Vec<usize>,
+    /// Time of the first recorded sample by the clock of the strain record, the shift included, s.
+    start_s: f64,
+    /// Standard deviation of the noise of each recorded load.
+    noise: Vec<f64>,
+    /// Standard deviation of each recovered load without loads: of noise alone.
+    quiet: Vec<f64>,
+}
+
+/// Compares a recovered record with the recorded loads; `clock` is that of the strain record.
+///
+/// # Errors
+/// No time shift that brings both together; no sample in common.
+pub fn record(
+    work: &mut Work,
+    job: &Job,
+    (counting, gaps): (Counting, &[Gap]),
+    (clock, mut recorded): (&Clock, LoadRecord),
+) -> Result<Comparison, Faults> {
+    let (head, compare) = (counting.head, job.compare.as_ref());
+    let Some(compare) = compare.filter(|_| counting.samples.n_samples() > 0) else {
+        return Ok(Comparison::default());
+    };
+    let (mut columns, mut noise) = (Vec::new(), Vec::new());
+    for (load, samples) in recorded.loads.iter().zip(&mut recorded.samples) {
+        let column = head.names.iter().position(|n| *n == load.name).unwrap_or(0);
+        let si = quantity_of(job, &load.name).map_or(1.0, |q| job.units.si(q));
+        let factor = head.units[column].factor / si;
+        samples
+            .iter_mut()
+            .for_each(|v| *v = (f64::from(*v) * factor) as f32);
+        columns.push(column);
+        noise.push(load.noise_si * factor);
+    }
+    let start_s = recorded.clock.start_s + recorded.epoch_after(clock);
+    let shift = shift_of(job, compare, counting, (&recorded, &columns, start_s))?;
+    work.findings.extend(shift_found(&shift));
+    let sigma = head.filter.sigma(&vec![0.0; head.n_loads()]);
+    let both = Both {
+        quiet: columns
+            .iter()
+            .map(|c| sigma[*c] * head.units[*c].factor)
+            .collect(),
+        start_s: start_s + shift.shift_s,
+        counting,
+        gaps,
+        recorded,
+        columns,
+        noise,
+    };
+    let range = both.common(head);
+    if range.len() < 2 {
+        return Err(both.nothing_common(job, compare).into());
+    }
+    let mut out = Comparison {
+        loads: Vec::new(),
+        shift: Some(shift),
+    };
+    for (i, (sums, curved)) in both.differences(&range).into_iter().enumerate() {
+        let (sigma, deviations) = (sums.sigma(), sums.deviations(false));
+        let column = both.columns[i];
+        let Some(mut found) = sums.found(&head.names[column], &head.units[column].name) else {
+            continue;
+        };
+        both.compare_damage(i, &range, &mut found);
+        work.findings.extend(found.outside(deviations));
+        work.findings
+            .extend(coarse(&both.recorded, &found.load, (curved, sigma)));
+        out.loads.push(found);
+    }
+    Ok(out)
+}
+
+impl Both<'_> {
+    fn sampled(&self) -> Sampled<'_> {
+        Sampled {
+            start_s: self.start_s,
+            rate_hz: self.recorded.clock.rate_hz,
+            signals: &self.recorded.samples,
+        }
+    }
+
+    /// Recovered samples between the first and the last recorded one.
+    fn common(&self, head: &RecordHead) -> Range<usize> {
+        let n = self.counting.samples.n_samples();
+        let last = self.recorded.clock.samples.saturating_sub(1) as f64;
+        let end_s = self.start_s + last / self.recorded.clock.rate_hz;
+        // Times are rounded: a sample that misses the end by a millionth of a step is at the end.
+        let place = |t: f64| (t - head.first_s) / head.step_s;
+        let from = (place(self.start_s) - 1e-6).ceil().max(0.0) as usize;
+        let to = ((place(end_s) + 1e-6).floor() + 1.0).max(0.0) as usize;
+        from.min(n)..to.min(n).max(from.min(n))
+    }
+
+    fn nothing_common(&self, job: &Job, compare: &Compare) -> Fault {
+        let head = self.counting.head;
+        let end = |first: f64, n: usize, step: f64| first + n.saturating_sub(1) as f64 * step;
+        let n = self.counting.samples.n_samples();
+        let clock = &self.recorded.clock;
+        let wrong = format!(
+            "no time in common: the strain record covers {} to {} s, the recorded loads {} to {} s with this shift",
+            short(head.first_s),
+            short(end(head.first_s, n, head.step_s)),
+            short(self.start_s),
+            short(end(self.start_s, clock.samples, 1.0 / clock.rate_hz)),
+        );
+        let remedy = "state another number, or shift_s = \"estimate\"";
+        Fault::at(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
+    }
+
+    /// By recorded load: sums of the differences, and the root mean square difference between curve and line through recorded samples.
+    fn differences(&self, range: &Range<usize>) -> Vec<(Differences, f64)> {
+        let pieces: Vec<usize> = range.clone().step_by(PIECE).collect();
+        let of_pieces: Vec<Vec<(Differences, f64)>> = pieces
+            .into_par_iter()
+            .map(|from| self.of_piece(from..(from + PIECE).min(range.end), range))
+            .collect();
+        let nothing = || (Differences::of_blocks(BLOCKS), 0.0);
+        let mut out: Vec<_> = self.columns.iter().map(|_| nothing()).collect();
+        for piece in &of_pieces {
+            for (sum, more) in out.iter_mut().zip(piece) {
+                sum.0.merge(&more.0);
+                sum.1 += more.1;
+            }
+        }
+        for (sums, curved) in &mut out {
+            *curved = (*curved / sums.n.max(1) as f64).sqrt();
+        }
+        out
+    }
+
+    fn of_piece(&self, piece: Range<usize>, range: &Range<usize>) -> Vec<(Differences, f64)> {
+        let Counting { head, samples, .. } = self.counting;
+        let k = head.n_loads();
+        let all: Vec<usize> = (0..k).collect();
+        let mut values = Vec::with_capacity(piece.len() * k);
+        samples.read(piece.start, piece.end, &all, &mut values);
+        let nothing = || (Differences::of_blocks(BLOCKS), 0.0);
+        let mut out: Vec<_> = self.columns.iter().map(|_| nothing()).collect();
+        let stride = range.len().div_ceil(POINTS).max(1);
+        let sampled = self.sampled();
+        let wider = head.filter.coverage_factor() / NORMAL_95;
+        for (at, row) in piece.zip(values.chunks_exact(k)) {
+            let of_job: Vec<f64> = row
+                .iter()
+                .zip(&head.units)
+                .map(|(v, u)| v / u.factor)
+                .collect();
+            let gap = self.gaps.binary_search_by_key(&at, |g| g.0).ok();
+            let gain = match gap.and_then(|g| self.gaps.get(g)) {
+                Some((_, gain)) => gain.as_deref(),
+                None => head.estimate_at(at),
+            };
+            let sigma = head.filter.sigma_at(at, gain, &of_job);
+            let time = head.first_s + at as f64 * head.step_s;
+            let place = at - range.start;
+            let block = place * BLOCKS / range.len();
+            for (i, (column, (sums, curved))) in self.columns.iter().zip(&mut out).enumerate() {
+                let Some([recorded, line]) = sampled.at(i, time) else {
+                    continue;
+                };
+                let recovered = row[*column];
+                let wide = wider * sigma[*column] * head.units[*column].factor;
+                if !(recovered.is_finite() && wide.is_finite()) {
+                    continue;
+                }
+                let pair = Pair {
+                    recovered,
+                    recorded,
+                    sigma: wide.hypot(self.noise[i]),
+                    own_sigma: (wider * self.quiet[i]).min(wide).hypot(self.noise[i]),
+                    factor: NORMAL_95,
+                };
+                sums.add(block, &pair);
+                *curved += (recorded - line) * (recorded - line);
+                if place.is_multiple_of(stride) {
+                    sums.points.push([recorded, recovered]);
+                }
+            }
+        }
+        out
+    }
+
+    /// Damage of recovered over recorded load between the same times, each from its own samples.
+    fn compare_damage(&self, i: usize, range: &Range<usize>, found: &mut super::LoadComparison) {
+        let head = self.counting.head;
+        let time = |at: usize| head.first_s + at as f64 * head.step_s;
+        let place = |t: f64| (t - self.start_s) * self.recorded.clock.rate_hz;
+        let from = (place(time(range.start)) - 1e-6).ceil().max(0.0) as usize;
+        let to = (place(time(range.end - 1)) + 1e-6).floor().max(0.0) as usize;
+        let samples = self.recorded.samples[i].get(from..=to).unwrap_or_default();
+        let values = samples.iter().map(|v| f64::from(*v));
+        let recorded = damage_of_recorded(values, self.counting.slope);
+        let recovered = self.counting.damage(self.columns[i], 0.0, range.clone());
+        let over = |damage: f64| finite(damage / recorded).filter(|_| recorded > 0.0);
+        found.damage_ratio = over(recovered.value);
+        found.damage_ratio_low = over(recovered.low);
+        found.damage_ratio_high = over(recovered.high);
+    }
+}
+
+/// The shift that the job states, or the one of recovered and recorded loads; `start_s`: first recorded sample without it.
+fn shift_of(
+    job: &Job,
+    compare: &Compare,
+    counting: Counting,
+    (recorded, columns, start_s): (&LoadRecord, &[usize], f64),
+) -> Result<ComparisonShift, Faults> {
+    let mut out = ComparisonShift {
+        file: recorded.file.clone(),
+        shift_s: 0.0,
+        half_width_s: None,
+        correlation: None,
+    };
+    if let TimeShift::Stated(seconds) = compare.shift {
+        out.shift_s = seconds;
+        return Ok(out);
+    }
+    let head = counting.head;
+    let recovered = recovered_columns(counting, columns);
+    let fixed = Sampled {
+        start_s: head.first_s,
+        rate_hz: 1.0 / head.step_s,
+        signals: &recovered,
+    };
+    let moving = Sampled {
+        start_s,
+        rate_hz: recorded.clock.rate_hz,
+        signals: &recorded.samples,
+    };
+    let found = estimate_shift(fixed, moving, &ShiftRules::default());
+    let found = found.map_err(|e| no_shift(job, compare, &recorded.file, e))?;
+    out.shift_s = found.seconds;
+    out.half_width_s = Some(found.half_width_s);
+    out.correlation = Some(found.correlation);
+    Ok(out)
+}
+
+/// The recovered loads of these columns, report units, in memory.
+fn recovered_columns(counting: Counting, columns: &[usize]) -> Vec<Vec<f32>> {
+    let n = counting.samples.n_samples();
+    let mut out = vec![Vec::with_capacity(n); columns.len()];
+    let mut values = Vec::new();
+    for from in (0..n).step_by(PIECE) {
+        values.clear();
+        counting
+            .samples
+            .read(from, (from + PIECE).min(n), columns, &mut values);
+        for row in values.chunks_exact(columns.len().max(1)) {
+            out.iter_mut().zip(row).for_each(|(c, v)| c.push(*v as f32));
+        }
+    }
+    out
+}
+
+fn no_shift(job: &Job, compare: &Compare, file: &str, e: NoShift) -> Fault {
+    let (wrong, remedy) = match e {
+        NoShift::Constant => (
+            format!(
+                "no load changes both in the strain record and in `{file}`: their time shift can't be estimated"
+            ),
+            "state it as a number of seconds: shift_s = 0.0",
+        ),
+        NoShift::Unlike(best) => (
+            format!(
+                "recovered loads and those of `{file}` do not agree at any time shift: the largest mean correlation coefficient is {best:.2}"
+            ),
+            "compare columns, signs and the times of both files, or state the shift as a number of seconds: shift_s = 0.0",
+        ),
+        NoShift::Ambiguous([first, second]) => (
+            format!(
+                "loads of `{file}` agree with the recovered ones at a time shift of {} s and as well at {} s: they repeat themselves",
+                short(first),
+                short(second)
+            ),
+            "state the shift as a number of seconds",
+        ),
+    };
+    Fault::at(&*job.file, compare.line, "compare.shift_s", wrong, remedy)
+}
+
+fn shift_found(shift: &ComparisonShift) -> Option<Finding> {
+    let half = shift.half_width_s?;
+    Some(Finding::new(
+        Severity::Info,
+        "time-shift-estimated",
+        &*shift.file,
+        format!(
+            "recorded loads are compared {:.5} ± {:.5} s after the times of their file, as recovered and recorded loads agree best; mean correlation \
+             coefficient {:.3}",
+            shift.shift_s,
+            half,
+            shift.correlation.unwrap_or(f64::NAN)
+        ),
+        "state the shift in the job if it is known from the loggers: [compare] shift_s",
+    ))
+}
+
+/// The warning of a load recorded at so low a rate that values between samples are not known to the interval of the recovered load.
+fn coarse(recorded: &LoadRecord, load: &str, (curved, sigma): (f64, f64)) -> Option<Finding> {
+    (curved > sigma).then(|| {
+        Finding::new(
+            Severity::Warning,
+            "recorded-samples-coarse",
+            format!("load `{load}`"),
+            format!(
+                "`{}` has {} samples a second. Between them the load curves by {} rms, more than the standard deviation {} of the recovered load: \
+                 differences and damage include what interpolation misses",
+                recorded.file,
+                short(recorded.clock.rate_hz),
+                short(curved),
+                short(sigma)
+            ),
+            "export the recorded loads at a higher rate",
+        )
+        .with_numbers(curved, sigma)
+    })
+}

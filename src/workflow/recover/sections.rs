@@ -1,0 +1,208 @@
+//! Loads of a record by section, and the duty cycle that the sections make.
+
+use super::damage::{Counting, PIECE};
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::words::short;
+use crate::job::{Job, RecordSection, SectionExtent};
+use crate::series::record::Clock;
+use rayon::prelude::*;
+use serde::Serialize;
+use std::ops::Range;
+
+/// Sections of a record.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sections {
+    /// By section, then by load.
+    pub sections: Vec<SectionLoad>,
+    /// By load: the sections, each as often as it occurs.
+    pub duty_cycle: Vec<DutyLoad>,
+}
+
+/// A load in a section, report units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SectionLoad {
+    /// Section.
+    pub section: String,
+    /// Load or combination.
+    pub load: String,
+    /// Report unit.
+    pub unit: String,
+    /// Samples of the section times the time between them.
+    pub seconds: f64,
+    /// How often the section occurs in the duty cycle.
+    pub repeats: f64,
+    /// Smallest sample.
+    pub min: f64,
+    /// Mean.
+    pub mean: f64,
+    /// Largest sample.
+    pub max: f64,
+    /// Pseudo-damage of the section once.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+}
+
+/// A load over the duty cycle.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DutyLoad {
+    /// Load or combination.
+    pub load: String,
+    /// Report unit.
+    pub unit: String,
+    /// Duration of the duty cycle, s.
+    pub seconds: f64,
+    /// Sum of repeats times damage of a section.
+    pub damage: f64,
+    /// Lower end of its 95 % interval.
+    pub damage_low: f64,
+    /// Upper end.
+    pub damage_high: f64,
+}
+
+/// The samples of a section of the strain record.
+pub(super) struct Part<'a> {
+    pub section: &'a RecordSection,
+    pub range: Range<usize>,
+}
+
+/// Refuses sections where there is no record.
+///
+/// # Errors
+/// A fault at the first section.
+pub(super) fn without_record(job: &Job) -> Result<(), Faults> {
+    let Some(first) = job.sections.first() else {
+        return Ok(());
+    };
+    let wrong = "sections are stretches of a record, and the strain file has runs";
+    let remedy = "drop the sections, or name a record: a column `time`, or a format of records";
+    Err(Fault::at(&*job.file, first.line, "section", wrong, remedy).into())
+}
+
+/// The sections of a job that are stretches of its strain record, with their samples.
+///
+/// # Errors
+/// A fault for each section that is beyond the record or has no sample.
+pub(super) fn parts<'a>(job: &'a Job, clock: &Clock) -> Result<Vec<Part<'a>>, Faults> {
+    let mut faults = FaultList::new();
+    let mut out = Vec::new();
+    let step = 1.0 / clock.rate_hz;
+    let end_s = clock.start_s + clock.samples as f64 * step;
+    // Times are rounded: a millionth of a step is no time.
+    let place = |t: f64| (((t - clock.start_s) / step - 1e-6).ceil()).max(0.0) as usize;
+    for section in &job.sections {
+        let SectionExtent::Times([from, to]) = section.extent else {
+            continue;
+        };
+        let range = place(from)..place(to).min(clock.samples);
+        let mut fault = |field: &str, wrong: String, remedy: &str| {
+            faults.push(Fault::at(&*job.file, section.line, field, wrong, remedy));
+        };
+        if from < clock.start_s - 1e-6 * step || to > end_s + 1e-6 * step {
+            let wrong = format!(
+                "section `{}` from {} to {} s is beyond the record, which covers {} to {} s",
+                section.name,
+                short(from),
+                short(to),
+                short(clock.start_s),
+                short(end_s)
+            );
+            fault(
+                "section.end_s",
+                wrong,
+                "correct the times, in s of the record's own clock",
+            );
+        } else if range.is_empty() {
+            let wrong = format!("no sample of the record is in section `{}`", section.name);
+            fault("section.start_s", wrong, "correct its times");
+        } else {
+            out.push(Part { section, range });
+        }
+    }
+    Faults::check(faults)?;
+    Ok(out)
+}
+
+/// Statistics and damage of every load in every section of the record.
+pub(super) fn count_all(counting: Counting, parts: &[Part]) -> Vec<SectionLoad> {
+    let counted = parts.iter();
+    counted
+        .flat_map(|p| count(counting, p.section, &p.range))
+        .collect()
+}
+
+/// Statistics and damage of every load in some samples of a record.
+pub(super) fn count(
+    counting: Counting,
+    section: &RecordSection,
+    range: &Range<usize>,
+) -> Vec<SectionLoad> {
+    let head = counting.head;
+    let one = |l: usize| {
+        let (mut n, mut sum) = (0.0, 0.0);
+        let [mut min, mut max] = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut values = Vec::with_capacity(PIECE);
+        for from in range.clone().step_by(PIECE) {
+            values.clear();
+            let to = (from + PIECE).min(range.end);
+            counting.samples.read(from, to, &[l], &mut values);
+            for v in values.iter().filter(|v| v.is_finite()) {
+                n += 1.0;
+                sum += v;
+                (min, max) = (min.min(*v), max.max(*v));
+            }
+        }
+        let known = |v: f64| if n > 0.0 { v } else { f64::NAN };
+        let damage = counting.damage(l, 0.0, range.clone());
+        SectionLoad {
+            section: section.name.clone(),
+            load: head.names[l].clone(),
+            unit: head.units[l].name.clone(),
+            seconds: range.len() as f64 * head.step_s,
+            repeats: section.repeats,
+            min: known(min),
+            mean: known(sum / n),
+            max: known(max),
+            damage: known(damage.value),
+            damage_low: known(damage.low),
+            damage_high: known(damage.high),
+        }
+    };
+    (0..head.n_loads()).into_par_iter().map(one).collect()
+}
+
+impl Sections {
+    /// Sections in the order of the job, and the duty cycle of them; `None` without any.
+    pub(super) fn of(job: &Job, counted: Vec<SectionLoad>) -> Option<Self> {
+        let place = |s: &SectionLoad| job.sections.iter().position(|j| j.name == s.section);
+        let mut sections = counted;
+        sections.sort_by_key(place);
+        let mut duty_cycle: Vec<DutyLoad> = Vec::new();
+        for s in &sections {
+            let at = duty_cycle.iter().position(|d| d.load == s.load);
+            let at = at.unwrap_or_else(|| {
+                duty_cycle.push(DutyLoad {
+                    load: s.load.clone(),
+                    unit: s.unit.clone(),
+                    seconds: 0.0,
+                    damage: 0.0,
+                    damage_low: 0.0,
+                    damage_high: 0.0,
+                });
+                duty_cycle.len() - 1
+            });
+            let sum = &mut duty_cycle[at];
+            sum.seconds += s.repeats * s.seconds;
+            sum.damage += s.repeats * s.damage;
+            // Errors of the model last: the ends of all sections move together.
+            sum.damage_low += s.repeats * s.damage_low;
+            sum.damage_high += s.repeats * s.damage_high;
+        }
+        (!sections.is_empty()).then_some(Self {
+            sections,
+            duty_cycle,
+        })
+    }
+}

@@ -1,0 +1,59 @@
+//! Console of a command: it fits a terminal, and its summary is that of `result.json` and of the page.
+
+use serde_json::Value;
+use std::path::Path;
+use std::process::Output;
+
+/// Lines of a command, findings included.
+const LINES: usize = 25;
+/// Columns where standard output is not a terminal.
+const COLUMNS: usize = 100;
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A text without line breaks, signs as in a terminal with UTF-8.
+fn on_one_line(text: &str) -> String {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    words.join(" ").replace("+-", "±")
+}
+
+/// Asserts that standard output and standard error fit a terminal together.
+pub fn assert_fits(done: &Output, command: &str) {
+    let all = text(&done.stdout) + &text(&done.stderr);
+    assert!(all.lines().count() <= LINES, "{command}:\n{all}");
+    for line in all.lines() {
+        assert!(line.chars().count() <= COLUMNS, "{command}: {line}\n{all}");
+    }
+}
+
+/// Asserts that the summary of `result.json` is a sentence of the console and of the page.
+pub fn assert_states_summary(done: &Output, folder: &Path, command: &str) {
+    let file = std::fs::read_to_string(folder.join("result.json")).unwrap();
+    let result: Value = serde_json::from_str(&file).unwrap();
+    let summary = on_one_line(result["summary"].as_str().unwrap());
+    assert!(summary.ends_with('.'), "{command}: {summary}");
+    let said = text(&done.stdout);
+    assert!(
+        on_one_line(&said).contains(&summary),
+        "{command}: {summary}\n{said}"
+    );
+    if let Ok(page) = std::fs::read_to_string(folder.join("report.html")) {
+        let escaped = summary
+            .replace('&', "&amp;")
+            .replace('<', "&lt;")
+            .replace('>', "&gt;");
+        assert!(
+            page.replace("+-", "±").contains(&escaped),
+            "{command}: {summary}"
+        );
+    }
+    let of_error = |f: &Value| f["severity"] == "error";
+    let is_error = result["findings"].as_array().unwrap().iter().any(of_error);
+    assert_eq!(
+        is_error,
+        summary.contains("cannot be relied on"),
+        "{summary}"
+    );
+}

@@ -1,0 +1,448 @@
+//! `[compare]`, load columns of `[runs]` and `[[section]]`: recovered against recorded loads, damage by section.
+
+use super::{S, as_is, codes, recover as by_command, strain, table};
+use serde_json::Value;
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use strainbridge::host::context::InMemory;
+use strainbridge::host::fault::Faults;
+use strainbridge::{Context, Job, recover};
+
+/// Noise of a reading that the jobs state, microstrain.
+const NOISE: f64 = 0.3;
+/// Rate of the strain record, Hz, and time of its first sample, s.
+const RATE: f64 = 100.0;
+const START: f64 = 5.0;
+
+/// Loads at a time by the clock of the strain record: sines whose periods have no common multiple.
+fn loads_at(t: f64) -> [f64; 2] {
+    let sum = |frequencies: [f64; 3]| -> f64 {
+        let sines = frequencies.iter().zip([100.0, 70.0, 40.0]);
+        sines.map(|(f, a)| a * (TAU * f * t).sin()).sum()
+    };
+    [300.0 + sum([0.31, 1.13, 2.71]), sum([0.47, 1.61, 2.23])]
+}
+
+/// A record of strain of `n` samples of these loads; `error` is added to the reading of a gauge.
+fn record(
+    n: usize,
+    start: f64,
+    loads: impl Fn(f64) -> [f64; 2],
+    mut error: impl FnMut() -> f64,
+) -> String {
+    let mut text = "time,G1,G2,G3,G4\n".to_owned();
+    for i in 0..n {
+        let t = start + i as f64 / RATE;
+        let [a, b] = loads(t);
+        let _ = write!(text, "{t:.4}");
+        for v in strain(a, b) {
+            let _ = write!(text, ",{:.9}", v + error());
+        }
+        text.push('\n');
+    }
+    text
+}
+
+fn files(strain: String, more: &str) -> InMemory {
+    let mut s = "gauge,A.FZ,B.FZ\n".to_owned();
+    for (g, row) in S.iter().enumerate() {
+        let _ = writeln!(s, "G{},{},{}", g + 1, row[0], row[1]);
+    }
+    let job = format!(
+        "units = \"m-kg-s\"\n[sensitivity]\nfile = \"S.csv\"\n\
+         [measured]\nstrain = \"strain.csv\"\nnoise_microstrain = {NOISE}\n{more}"
+    );
+    InMemory::default()
+        .with("job.toml", job)
+        .with("S.csv", s)
+        .with("strain.csv", strain)
+}
+
+/// `result.json` of a job without its frame: the answer, and its findings.
+fn answer(files: &InMemory) -> Result<(Value, Vec<(String, String)>), Faults> {
+    let job = Job::read("job.toml", files)?;
+    let outcome = recover(&job, &Context::new(files))?;
+    let findings = outcome.findings.iter();
+    let findings = findings.map(|f| (f.code.to_owned(), f.subject.clone()));
+    let findings = findings.collect();
+    Ok((serde_json::to_value(&outcome.answer).unwrap(), findings))
+}
+
+fn number(v: &Value) -> f64 {
+    v.as_f64().unwrap_or(f64::NAN)
+}
+
+fn of_load<'a>(answer: &'a Value, key: &str, load: &str) -> &'a Value {
+    let list = answer[key].as_array().unwrap();
+    list.iter().find(|c| c["load"] == load).unwrap()
+}
+
+/// Normal numbers: sums of twelve even ones.
+fn normal(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    let mut even = move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    move || (0..12).map(|_| even()).sum::<f64>() - 6.0
+}
+
+/// Recorded loads at 128 Hz, `shift` before the clock of the strain record, with errors of a mean of `off` at load A.
+fn recorded(shift: f64, off: f64, seconds: f64) -> String {
+    let mut text = "time [s],A.FZ [kN],Kraft B\n".to_owned();
+    for i in 0..(seconds * 128.0) as usize {
+        let t = i as f64 / 128.0;
+        let [a, b] = loads_at(t + shift);
+        let _ = writeln!(text, "{t:.7},{:.9},{:.6}", (a + off) / 1000.0, b);
+    }
+    text
+}
+
+#[test]
+fn a_shift_of_a_fraction_of_a_sample_and_an_offset_are_found_in_a_record() {
+    let more = "[compare]\nfile = \"wft.csv\"\ncolumns = { \"B.FZ\" = \"Kraft B\" }\n";
+    // 234.56 samples of the strain record.
+    let shift = START + 2.3456;
+    let strain = record(6000, START, loads_at, || 0.0);
+    let wft = recorded(shift, 2.0, 40.0);
+    let (found, findings) =
+        answer(&files(strain.clone(), more).with("wft.csv", wft.clone())).unwrap();
+    let estimated = &found["comparison_shift"];
+    // The cubic between samples errs by 3/128 (2 pi f / rate)^4 of a sine: 4e-4 of the fastest at 128 Hz is 1e-5 of its slope in s.
+    assert!(
+        (number(&estimated["shift_s"]) - shift).abs() < 2e-5,
+        "{estimated}"
+    );
+    assert!(number(&estimated["half_width_s"]) < 1e-4, "{estimated}");
+    let a = of_load(&found, "comparison", "A.FZ");
+    let b = of_load(&found, "comparison", "B.FZ");
+    // The recovered samples from 2.3456 s on, to the end of the recorded ones 40 s less a sample later.
+    let n = (234.56_f64 + (40.0 * 128.0 - 1.0) / 128.0 * RATE).floor() - 234.0;
+    assert_eq!((number(&a["n"]), number(&b["n"])), (n, n));
+    assert_eq!(a["unit"], "N");
+    for (v, expected) in [(&a["bias"], -2.0), (&a["rms"], 2.0), (&b["bias"], 0.0)] {
+        assert!((number(v) - expected).abs() < 5e-3, "{a} {b}");
+    }
+    // Sigma of load A is .23 N by hand (.3 microstrain over the norm of its column that B leaves), of B .2 N: the offset is outside.
+    assert_eq!(
+        (number(&a["share_within"]), number(&b["share_within"])),
+        (0.0, 1.0)
+    );
+    let outside: Vec<_> = findings
+        .iter()
+        .filter(|f| f.0 == "recorded-loads-outside-intervals")
+        .collect();
+    assert_eq!(outside.len(), 1);
+    assert_eq!(outside[0].1, "load `A.FZ`");
+    // An offset is in no range; peaks between samples are missed alike but for their squares.
+    for load in [a, b] {
+        assert!((number(&load["damage_ratio"]) - 1.0).abs() < 0.01, "{load}");
+        let [low, high] = ["damage_ratio_low", "damage_ratio_high"].map(|k| number(&load[k]));
+        assert!(low < 1.0 && high > 1.0, "{load}");
+    }
+    // A stated shift is used as it is.
+    let stated = format!("{more}shift_s = {shift}\n");
+    let (as_stated, _) = answer(&files(strain, &stated).with("wft.csv", wft)).unwrap();
+    assert_eq!(as_stated["comparison_shift"]["shift_s"], shift);
+    assert!(as_stated["comparison_shift"]["half_width_s"].is_null());
+    let a = of_load(&as_stated, "comparison", "A.FZ");
+    assert!((number(&a["rms"]) - 2.0).abs() < 5e-3, "{a}");
+}
+
+#[test]
+fn noise_as_stated_leaves_19_of_20_samples_inside_the_interval() {
+    let more =
+        "[compare]\nfile = \"wft.csv\"\ncolumns = { \"B.FZ\" = \"Kraft B\" }\nshift_s = 5.0\n";
+    let mut noise = normal(7);
+    let strain = record(5000, START, loads_at, || NOISE * noise());
+    let wft = recorded(START, 0.0, 60.0);
+    let (found, findings) = answer(&files(strain, more).with("wft.csv", wft)).unwrap();
+    for load in ["A.FZ", "B.FZ"] {
+        let load = of_load(&found, "comparison", load);
+        assert_eq!(load["n"], 5000);
+        // Three standard deviations of a share of 5,000, and 0.1 % of the recorded loads' own interpolation.
+        assert!(
+            (number(&load["share_within"]) - 0.95).abs() < 0.0103,
+            "{load}"
+        );
+        assert!(
+            number(&load["damage_ratio_low"]) < 1.0 && number(&load["damage_ratio_high"]) > 1.0
+        );
+    }
+    let outside = findings
+        .iter()
+        .any(|f| f.0 == "recorded-loads-outside-intervals");
+    assert!(!outside, "{findings:?}");
+}
+
+#[test]
+fn runs_are_compared_by_name_and_loads_that_nobody_recorded_are_not() {
+    let loads = |i: usize| loads_at(0.37 * i as f64);
+    let mut strains = "run,G1,G2,G3,G4\n".to_owned();
+    let mut runs = "run,B.FZ,A.FZ\n".to_owned();
+    for i in 0..12 {
+        let [a, b] = loads(i);
+        let [g1, g2, g3, g4] = strain(a, b);
+        let _ = writeln!(strains, "R{i},{g1},{g2},{g3},{g4}");
+        // B of the last two runs was not recorded; the order of the rows is another.
+        let j = 11 - i;
+        let [a, b] = loads(j);
+        let b = if j > 9 { String::new() } else { b.to_string() };
+        let _ = writeln!(runs, "R{j},{b},{}", a + 3.0);
+    }
+    let more = "[runs]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\n";
+    let in_compare = "[compare]\nfile = \"runs.csv\"\nunits = { force = \"N\" }\n";
+    for more in [more, in_compare] {
+        let (found, findings) =
+            answer(&files(strains.clone(), more).with("runs.csv", runs.clone())).unwrap();
+        let [a, b] = ["A.FZ", "B.FZ"].map(|l| of_load(&found, "comparison", l).clone());
+        assert_eq!((&a["n"], &b["n"]), (&Value::from(12), &Value::from(10)));
+        for (v, expected) in [
+            (&a["bias"], -3.0),
+            (&a["rms"], 3.0),
+            (&b["bias"], 0.0),
+            (&b["rms"], 0.0),
+        ] {
+            assert!((number(v) - expected).abs() < 1e-9, "{a} {b}");
+        }
+        assert_eq!(
+            (number(&a["share_within"]), number(&b["share_within"])),
+            (0.0, 1.0)
+        );
+        assert!(a["damage_ratio"].is_null() && found.get("comparison_shift").is_none());
+        assert!(
+            findings.iter().any(|f| f.1 == "load `A.FZ`"),
+            "{findings:?}"
+        );
+    }
+    // Noise of the recorded loads that the job states is in the interval.
+    let noisy = format!("{more}noise = {{ force = 3.0 }}\n");
+    let (found, _) = answer(&files(strains.clone(), &noisy).with("runs.csv", runs)).unwrap();
+    assert_eq!(
+        number(&of_load(&found, "comparison", "A.FZ")["share_within"]),
+        1.0
+    );
+    let (found, _) = answer(&files(strains, "")).unwrap();
+    assert!(found.get("comparison").is_none() && found.get("sections").is_none());
+}
+
+/// Load A: 25 periods of amplitude 100 from peak to peak, then 40 of amplitude 50; load B does not change.
+fn two_stretches(t: f64) -> [f64; 2] {
+    let a = match t < 10.005 {
+        true => 100.0 * (TAU * t / 0.4).cos(),
+        false => 50.0 * (TAU * (t - 10.01) / 0.2).cos(),
+    };
+    [a, 10.0]
+}
+
+/// From peak to peak, `n` periods are `n` cycles of twice the amplitude, whose damage is `n (2 a)^m` (ASTM E1049, half cycles added up).
+#[test]
+fn sections_have_the_damage_of_their_sines_and_add_up_to_the_duty_cycle() {
+    let more = "[[section]]\nname = \"smooth\"\nstart_s = 10.01\nend_s = 18.015\nrepeats = 10\n\
+                [[section]]\nname = \"rough\"\nstart_s = 0.0\nend_s = 10.005\nrepeats = 2.5\n\
+                [[section]]\nname = \"apart\"\nfile = \"apart.csv\"\n\
+                [recover]\nslope = 4.0\n";
+    let strain = record(2000, 0.0, two_stretches, || 0.0);
+    // Thirty periods from peak to peak in a record of its own.
+    let apart = record(601, 0.0, |t| [20.0 * (TAU * t / 0.2).cos(), 10.0], || 0.0);
+    let (found, _) = answer(&files(strain, more).with("apart.csv", apart)).unwrap();
+    let list = found["sections"].as_array().unwrap();
+    let names: Vec<&Value> = list.iter().map(|s| &s["section"]).collect();
+    assert_eq!(
+        names,
+        ["smooth", "smooth", "rough", "rough", "apart", "apart"]
+    );
+    let of = |section: &str, load: &str| {
+        let found = list
+            .iter()
+            .find(|s| s["section"] == section && s["load"] == load);
+        found.unwrap().clone()
+    };
+    let near = |v: &Value, expected: f64| {
+        // Samples are kept in single precision, and damage is a fourth power.
+        let limit = 1e-6 * expected.abs().max(100.0);
+        assert!((number(v) - expected).abs() < limit, "{v} {expected}");
+    };
+    let damage = |n: f64, amplitude: f64| n * (2.0 * amplitude).powi(4);
+    let expected = [
+        ("smooth", 40.0, 50.0, 801.0),
+        ("rough", 25.0, 100.0, 1001.0),
+        ("apart", 30.0, 20.0, 601.0),
+    ];
+    for (section, n, amplitude, samples) in expected {
+        let a = of(section, "A.FZ");
+        near(&a["damage"], damage(n, amplitude));
+        near(&a["seconds"], samples / RATE);
+        near(&a["min"], -amplitude);
+        near(&a["max"], amplitude);
+        // Whole periods, and one peak more.
+        near(&a["mean"], amplitude / samples);
+        assert!(number(&a["damage_low"]) < number(&a["damage"]));
+        let b = of(section, "B.FZ");
+        near(&b["mean"], 10.0);
+        assert!(number(&b["damage"]) < 1e-12, "{b}");
+    }
+    let duty = of_load(&found, "duty_cycle", "A.FZ");
+    near(
+        &duty["damage"],
+        10.0 * damage(40.0, 50.0) + 2.5 * damage(25.0, 100.0) + damage(30.0, 20.0),
+    );
+    near(&duty["seconds"], 80.1 + 2.5 * 10.01 + 6.01);
+}
+
+#[test]
+fn what_can_not_be_compared_or_cut_is_refused_with_its_line() {
+    let strain = record(3000, START, loads_at, || 0.0);
+    let wft = recorded(START, 0.0, 30.0);
+    let runs = "run,A.FZ,B.FZ\nR1,1,2\n";
+    let compare = "[compare]\nfile = \"wft.csv\"\n";
+    let section = |from: f64, to: f64| {
+        format!("[[section]]\nname = \"s{from}\"\nstart_s = {from}\nend_s = {to}\n")
+    };
+    let cases = [
+        (
+            "[runs]\nfile = \"none.csv\"\n".to_owned(),
+            "none.csv",
+            "no such file",
+        ),
+        (
+            "[compare]\nfile = \"none.rsp\"\n".to_owned(),
+            "none.rsp",
+            "no such file",
+        ),
+        (
+            format!("{compare}shift_s = 1e6\n"),
+            "compare.shift_s",
+            "no time in common",
+        ),
+        (
+            format!("{compare}shift_s = \"guess\"\n"),
+            "compare.shift_s",
+            "expected \"estimate\"",
+        ),
+        (
+            format!("{compare}columns = {{ \"A.FZ\" = \"F_A\" }}\n"),
+            "compare.columns.A.FZ",
+            "has no column `F_A`",
+        ),
+        (
+            "[compare]\nfile = \"other.csv\"\n".to_owned(),
+            "columns",
+            "no column is named after a load",
+        ),
+        (
+            "[compare]\nfile = \"runs.csv\"\n".to_owned(),
+            "compare.file",
+            "of runs",
+        ),
+        (
+            "[compare]\nfile = \"unlike.csv\"\n".to_owned(),
+            "compare.shift_s",
+            "do not agree at any time shift",
+        ),
+        (section(30.0, 36.0), "section.end_s", "beyond the record"),
+        (section(2.0, 8.0), "section.end_s", "beyond the record"),
+        (section(8.0, 8.0), "section.end_s", "is empty"),
+        (section(8.001, 8.002), "section.start_s", "no sample"),
+        (
+            section(6.0, 9.0) + &section(8.0, 10.0),
+            "section.start_s",
+            "overlaps section `s6`",
+        ),
+        (
+            "[[section]]\nname = \"a\"\n".to_owned(),
+            "section.start_s",
+            "no samples",
+        ),
+    ];
+    let mut unlike = "time,A.FZ\n".to_owned();
+    let mut noise = normal(3);
+    for i in 0..3000 {
+        let _ = writeln!(unlike, "{},{}", f64::from(i) * 0.01, noise());
+    }
+    for (more, field, words) in cases {
+        let files = files(strain.clone(), &more)
+            .with("wft.csv", wft.clone())
+            .with("runs.csv", runs)
+            .with("other.csv", "time,X\n0,1\n0.01,2\n0.02,3\n")
+            .with("unlike.csv", unlike.clone());
+        let faults = answer(&files).unwrap_err();
+        let said = faults.to_string();
+        assert!(
+            said.contains(field) && said.contains(words),
+            "{more}: {said}"
+        );
+    }
+    let of_runs = files(
+        "run,G1,G2,G3,G4\nR1,1,2,3,4\nR2,2,1,3,2\n".to_owned(),
+        &section(0.0, 1.0),
+    );
+    let said = answer(&of_runs).unwrap_err().to_string();
+    assert!(said.contains("the strain file has runs"), "{said}");
+}
+
+#[test]
+fn every_sample_is_in_the_table_and_the_job_thins_it() {
+    let rows = |dir: &std::path::Path| {
+        let csv = std::fs::read_to_string(dir.join("job.out/loads.csv")).unwrap();
+        csv.lines()
+            .skip(1)
+            .map(|l| l.split(',').next().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    let record = table("time", 300, as_is);
+    let (code, said, result, dir) = by_command("every-sample", &record, "");
+    assert_eq!(code, 0, "{said}");
+    assert_eq!(
+        (rows(&dir).len(), result["csv_every"].as_u64()),
+        (300, Some(1))
+    );
+    let (code, said, result, dir) =
+        by_command("every-seventh", &record, "[recover]\ncsv_every = 7\n");
+    assert_eq!(code, 0, "{said}");
+    let thinned = rows(&dir);
+    assert_eq!((thinned.len(), result["csv_every"].as_u64()), (43, Some(7)));
+    assert_eq!(thinned[1], "0.07");
+    assert!(codes(&result).contains(&"history-thinned".to_owned()));
+    assert!(dir.join("job.out/loads.bin").exists());
+}
+
+#[test]
+fn tables_page_and_console_state_comparison_and_sections() {
+    let more = "[runs]\nfile = \"runs.csv\"\n[compare]\nfile = \"wft.csv\"\nunits = { force = \"N\" }\nshift_s = 0\n\
+                [[section]]\nname = \"first, half\"\nstart_s = 0\nend_s = 1.5\n";
+    let mut wft = "time,A,B,GPS\n".to_owned();
+    for i in 0..300 {
+        let [a, b] = super::loads(i);
+        let _ = writeln!(wft, "{},{a},{b},1", i as f64 * 0.01);
+    }
+    let dir = super::folder("compared");
+    // The job is run once to make its files, then again with those that it names.
+    let (code, said, _, dir) = {
+        let _ = dir;
+        by_command("compared", &table("time", 300, as_is), more)
+    };
+    assert_eq!(code, 2);
+    assert!(said.contains("runs.csv"), "{said}");
+    std::fs::write(dir.join("runs.csv"), "run,A,B\nR0,1,2\n").unwrap();
+    std::fs::write(dir.join("wft.csv"), wft).unwrap();
+    let out = std::process::Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["recover", &dir.join("job.toml").display().to_string()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&[out.stdout, out.stderr].concat()).into_owned();
+    assert_eq!(out.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("damage ratio") && said.contains("column-not-read"),
+        "{said}"
+    );
+    let read = |name: &str| std::fs::read_to_string(dir.join("job.out").join(name)).unwrap();
+    let comparison = read("comparison.csv");
+    assert!(comparison.starts_with("load,unit,n,bias,rms,share_within,damage_ratio,"));
+    assert!(comparison.contains("\nA,N,300,"), "{comparison}");
+    assert!(read("sections.csv").contains("\n\"first, half\",A,N,1.5,1,"));
+    let page = read("report.html");
+    assert!(page.contains("Recovered against recorded loads") && page.contains("Duty cycle"));
+}
