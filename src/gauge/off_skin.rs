@@ -2,7 +2,6 @@
 
 use super::arms::{Gauge, Spot};
 use super::surface::to_side;
-use crate::fe::from_results::surface_z;
 use crate::finding::{Finding, Severity, few};
 use crate::model::{Model, ShellKind};
 
@@ -21,7 +20,7 @@ pub fn off_skin(model: &Model, gauges: &[Gauge]) -> Option<Finding> {
             let ShellKind::Homogeneous { .. } = property.kind else {
                 return None;
             };
-            let read = surface_z(model, shell)[surface.ix()];
+            let read = model.fibres(shell).centre[surface.ix()];
             let skin = to_side(model, shell, surface) - shell.zoffs;
             let off = (read - skin).abs();
             (off > 2.0 * ROUNDED * skin.abs()).then_some((shell.id, surface, read, skin))

@@ -4,7 +4,6 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::host::words::counted;
 use crate::job::Job;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;

@@ -6,7 +6,6 @@ use crate::finding::few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::host::words::counted;
 use crate::model::Model;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::Page;

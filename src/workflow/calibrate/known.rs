@@ -6,7 +6,6 @@ use crate::calibrate::KnownLoads;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
-use crate::job::suggest;
 use crate::job::table::{Table, read_table};
 use crate::job::{HoldOut, Job, Measured, Runs};
 use crate::measured::runs_columns::{
