@@ -17,6 +17,17 @@ pub struct Sampled<'a> {
     pub signals: &'a [Vec<f32>],
 }
 
+/// A value between samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Between {
+    /// By the cubic through the four nearest samples; next to a missing one, and at the ends, by the line.
+    pub value: f64,
+    /// By the straight line through two samples.
+    pub line: f64,
+    /// Standard deviation of the value for independent noise of 1 in each sample.
+    pub noise: f64,
+}
+
 /// A shift, added to the times of the moving signals to get those of the fixed ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shift {
@@ -77,9 +88,8 @@ const SETTLED: f64 = 1e-4;
 const ON_SAMPLE: f64 = 1e-6;
 
 impl Sampled<'_> {
-    /// Returns signal `s` at a time: by the cubic through the four nearest samples, and by the straight line through two of them. Where one
-    /// of the outer samples is missing, both are the line. `None` outside the recording and next to a missing sample.
-    pub fn at(&self, s: usize, time_s: f64) -> Option<[f64; 2]> {
+    /// Returns signal `s` at a time; `None` outside the recording and next to a missing sample.
+    pub fn at(&self, s: usize, time_s: f64) -> Option<Between> {
         let x = self.signals.get(s)?;
         let place = (time_s - self.start_s) * self.rate_hz;
         let near = place.round();
@@ -88,24 +98,35 @@ impl Sampled<'_> {
             v.is_finite().then_some(v)
         };
         if (place - near).abs() <= ON_SAMPLE {
-            let v = sample(near as isize)?;
-            return Some([v, v]);
+            let value = sample(near as isize)?;
+            return Some(Between {
+                value,
+                line: value,
+                noise: 1.0,
+            });
         }
         let below = place.floor();
         let (i, u) = (below as isize, place - below);
         let (b, c) = (sample(i)?, sample(i + 1)?);
         let line = b + u * (c - b);
-        let cubic = sample(i - 1).zip(sample(i + 2)).map(|(a, d)| {
-            let weights = [
-                -u * (u - 1.0) * (u - 2.0) / 6.0,
-                (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0,
-                -(u + 1.0) * u * (u - 2.0) / 2.0,
-                (u + 1.0) * u * (u - 1.0) / 6.0,
-            ];
-            let four = [a, b, c, d];
-            weights.iter().zip(four).map(|(w, v)| w * v).sum()
-        });
-        Some([cubic.unwrap_or(line), line])
+        let Some((a, d)) = sample(i - 1).zip(sample(i + 2)) else {
+            return Some(Between {
+                value: line,
+                line,
+                noise: (1.0 - u).hypot(u),
+            });
+        };
+        let weights = [
+            -u * (u - 1.0) * (u - 2.0) / 6.0,
+            (u + 1.0) * (u - 1.0) * (u - 2.0) / 2.0,
+            -(u + 1.0) * u * (u - 2.0) / 2.0,
+            (u + 1.0) * u * (u - 1.0) / 6.0,
+        ];
+        Some(Between {
+            value: weights.iter().zip([a, b, c, d]).map(|(w, v)| w * v).sum(),
+            line,
+            noise: weights.iter().map(|w| w * w).sum::<f64>().sqrt(),
+        })
     }
 
     fn n_samples(&self) -> usize {
@@ -364,7 +385,7 @@ impl<'a> Fine<'a> {
                 let x = &self.fixed.signals[s];
                 let [before, here, after] = [i - side, i, i + side].map(|i| f64::from(x[i]));
                 let slope = (after - before) / (2.0 * span_s);
-                let moving = |t: f64| self.moving.at(s, t).map(|v| v[0]);
+                let moving = |t: f64| self.moving.at(s, t).map(|v| v.value);
                 let (Some(m), Some(low), Some(high)) =
                     (moving(time), moving(time - span_s), moving(time + span_s))
                 else {
@@ -474,10 +495,17 @@ mod tests {
             signals: &samples,
         };
         let x: f64 = 3.25;
-        let [cubic, line] = sampled.at(0, 2.0 + x / 4.0).unwrap();
-        assert!((cubic - (x * x * x - 5.0 * x * x)).abs() < 1e-12);
-        assert!((line - (-18.0 + 0.25 * 2.0)).abs() < 1e-12, "{line}");
-        assert_eq!(sampled.at(0, 2.0 + 7.0 / 4.0), Some([98.0, 98.0]));
+        let found = sampled.at(0, 2.0 + x / 4.0).unwrap();
+        assert!((found.value - (x * x * x - 5.0 * x * x)).abs() < 1e-12);
+        assert!(
+            (found.line - (-18.0 + 0.25 * 2.0)).abs() < 1e-12,
+            "{found:?}"
+        );
+        // In the middle the weights are -1/16, 9/16, 9/16, -1/16: squares sum to 164/256.
+        let middle = sampled.at(0, 2.0 + 3.5 / 4.0).unwrap();
+        assert!((middle.noise * middle.noise - 164.0 / 256.0).abs() < 1e-12);
+        let last = sampled.at(0, 2.0 + 7.0 / 4.0).map(|v| (v.value, v.noise));
+        assert_eq!(last, Some((98.0, 1.0)));
         assert_eq!(sampled.at(0, 2.0 + 7.5 / 4.0), None);
     }
 }

@@ -157,14 +157,19 @@ impl Counting<'_> {
     }
 }
 
-/// Counts a load that was recorded, in the unit of its values.
-pub(super) fn damage_of_recorded(values: impl Iterator<Item = f64>, slope: f64) -> f64 {
+/// Counts a load that was recorded with samples of this noise, 1 sd, in the unit of its values.
+pub(super) fn damage_of_recorded(
+    values: impl Iterator<Item = f64>,
+    noise: f64,
+    slope: f64,
+) -> Damage {
     let mut damage = Damage::new(slope, 0.0);
-    let mut add = |cycle: Cycle| damage.add(&cycle, 0.0);
+    let of_range = std::f64::consts::SQRT_2 * noise;
+    let mut add = |cycle: Cycle| damage.add(&cycle, of_range);
     let mut count = Rainflow::default();
     for (at, value) in values.enumerate() {
         count.push(Point { at, value }, &mut add);
     }
     count.finish(&mut add);
-    damage.value
+    damage
 }

@@ -108,11 +108,11 @@ fn percent(share: f64) -> String {
 
 /// Damage ratio with its interval; a dash of runs.
 fn ratio(l: &LoadComparison) -> String {
-    match (l.damage_ratio, l.damage_ratio_low, l.damage_ratio_high) {
-        (Some(ratio), Some(low), Some(high)) => {
-            format!("{} ({} to {})", number(ratio), number(low), number(high))
-        }
-        _ => "-".to_owned(),
+    let or_dash = |v: Option<f64>| v.map_or_else(|| "-".to_owned(), number);
+    let ends = [l.damage_ratio_low, l.damage_ratio_high].map(or_dash);
+    match l.damage_ratio {
+        Some(ratio) => format!("{} ({} to {})", number(ratio), ends[0], ends[1]),
+        None => "-".to_owned(),
     }
 }
 

@@ -222,9 +222,10 @@ impl Both<'_> {
             let place = at - range.start;
             let block = place * BLOCKS / range.len();
             for (i, (column, (sums, curved))) in self.columns.iter().zip(&mut out).enumerate() {
-                let Some([recorded, line]) = sampled.at(i, time) else {
+                let Some(between) = sampled.at(i, time) else {
                     continue;
                 };
+                let (recorded, noise) = (between.value, between.noise * self.noise[i]);
                 let recovered = row[*column];
                 let wide = wider * sigma[*column] * head.units[*column].factor;
                 if !(recovered.is_finite() && wide.is_finite()) {
@@ -233,12 +234,12 @@ impl Both<'_> {
                 let pair = Pair {
                     recovered,
                     recorded,
-                    sigma: wide.hypot(self.noise[i]),
-                    own_sigma: (wider * self.quiet[i]).min(wide).hypot(self.noise[i]),
+                    sigma: wide.hypot(noise),
+                    own_sigma: (wider * self.quiet[i]).min(wide).hypot(noise),
                     factor: NORMAL_95,
                 };
                 sums.add(block, &pair);
-                *curved += (recorded - line) * (recorded - line);
+                *curved += (recorded - between.line).powi(2);
                 if place.is_multiple_of(stride) {
                     sums.points.push([recorded, recovered]);
                 }
@@ -256,12 +257,21 @@ impl Both<'_> {
         let to = (place(time(range.end - 1)) + 1e-6).floor().max(0.0) as usize;
         let samples = self.recorded.samples[i].get(from..=to).unwrap_or_default();
         let values = samples.iter().map(|v| f64::from(*v));
-        let recorded = damage_of_recorded(values, self.counting.slope);
+        let slope = self.counting.slope;
+        let recorded = damage_of_recorded(values, self.noise[i], slope);
         let recovered = self.counting.damage(self.columns[i], 0.0, range.clone());
-        let over = |damage: f64| finite(damage / recorded).filter(|_| recorded > 0.0);
-        found.damage_ratio = over(recovered.value);
-        found.damage_ratio_low = over(recovered.low);
-        found.damage_ratio_high = over(recovered.high);
+        let Some(ratio) = finite(recovered.value / recorded.value).filter(|r| *r > 0.0) else {
+            return;
+        };
+        // The relative errors of both damages are independent: their squares add up.
+        let below = |low: f64, value: f64| (value / low).ln();
+        let lower =
+            below(recovered.low, recovered.value).hypot(below(recorded.value, recorded.high));
+        let upper =
+            below(recovered.value, recovered.high).hypot(below(recorded.low, recorded.value));
+        found.damage_ratio = Some(ratio);
+        found.damage_ratio_low = finite(ratio * (-lower).exp());
+        found.damage_ratio_high = finite(ratio * upper.exp());
     }
 }
 
