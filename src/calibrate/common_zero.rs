@@ -48,7 +48,10 @@ pub(super) fn extended(task: &Task) -> Task {
 
 /// The result without that column.
 pub(super) fn reduced(mut found: Calibration, k: usize) -> Calibration {
-    found.undetermined.iter_mut().for_each(|u| u.terms.truncate(k));
+    found
+        .undetermined
+        .iter_mut()
+        .for_each(|u| u.terms.truncate(k));
     found.range.loads.truncate(k);
     found
 }
@@ -70,7 +73,9 @@ impl KnownLoads {
 pub(super) fn zero_of(task: &Task, posterior: &Posterior) -> Vec<f64> {
     let k = posterior.k;
     match task.is_extended() {
-        true => (0..posterior.n).map(|g| posterior.mean[g * k + k - 1]).collect(),
+        true => (0..posterior.n)
+            .map(|g| posterior.mean[g * k + k - 1])
+            .collect(),
         false => vec![0.0; posterior.n],
     }
 }

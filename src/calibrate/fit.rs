@@ -1,13 +1,11 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
-use super::exchanged::Exchanged;
 use super::common_zero::{extended, reduced, zero_of};
+use super::exchanged::Exchanged;
 use super::state::State;
-use super::types::{
-    Calibration, CalibratedRange, CommonZero, Coverage, LeftOut, ModelError, Task,
-};
+use super::types::{CalibratedRange, Calibration, CommonZero, Coverage, LeftOut, ModelError, Task};
 use super::{
-    excluded, exchanged, glued, held_out, identical, lack_of_fit, recorded, runs, shift,
+    exchanged, excluded, glued, held_out, identical, lack_of_fit, recorded, runs, shift,
     undetermined,
 };
 use crate::finding::{Finding, Severity};

@@ -11,7 +11,9 @@ const DIFFERENT_LOADS: usize = 2;
 pub(super) fn findings(task: &Task) -> Vec<Finding> {
     let of_gauge = |g: usize| task.runs.iter().map(|r| r.strain[g]).collect();
     let readings: Vec<Vec<f64>> = (0..task.gauges.len()).map(of_gauge).collect();
-    let mut out: Vec<Finding> = identical_readings(&task.gauges, &readings).into_iter().collect();
+    let mut out: Vec<Finding> = identical_readings(&task.gauges, &readings)
+        .into_iter()
+        .collect();
     let k = task.loads.len();
     let known = |l: usize| -> Vec<f64> {
         let runs = task.runs.iter();

@@ -6,8 +6,8 @@
 use super::common_zero::{less_zero, zero_of};
 use super::loading::{Loading, loadings};
 use super::state::{State, sensitivity_of};
-use super::types::{HeldOutError, LackOfFit, Task, Term, TermTest};
 use super::terms_held_out::held_out;
+use super::types::{HeldOutError, LackOfFit, Task, Term, TermTest};
 use super::unknown::project_out;
 use crate::estimate::f_tail;
 use crate::finding::{Finding, Severity};
@@ -72,7 +72,13 @@ pub(super) fn check(task: &Task, state: &State) -> Found {
     };
     let first = tests(&[]);
     let mut answer = LackOfFit {
-        tests: first.iter().map(|t| TermTest { term: t.candidate.term, p: t.p }).collect(),
+        tests: first
+            .iter()
+            .map(|t| TermTest {
+                term: t.candidate.term,
+                p: t.p,
+            })
+            .collect(),
         held_out: held_out(task, &loadings),
     };
     answer.tests.sort_by_key(|t| t.term);
@@ -100,7 +106,13 @@ pub(super) fn check(task: &Task, state: &State) -> Found {
         let kind: Vec<&Tested> = (found.iter())
             .filter(|t| (t.candidate.term == Term::CommonZero) == of_zero)
             .collect();
-        out.findings.extend(finding(task, state, &loadings, (&added, &kind), out.answer.held_out));
+        out.findings.extend(finding(
+            task,
+            state,
+            &loadings,
+            (&added, &kind),
+            out.answer.held_out,
+        ));
     }
     out
 }
@@ -140,7 +152,10 @@ fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> 
     let n = loadings.first().map_or(0, |l| l.strain.len());
     let mut best: BTreeMap<Term, (Tested, usize)> = BTreeMap::new();
     for gauge in 0..n {
-        let read: Vec<&Loading> = loadings.iter().filter(|l| l.strain[gauge].is_finite()).collect();
+        let read: Vec<&Loading> = loadings
+            .iter()
+            .filter(|l| l.strain[gauge].is_finite())
+            .collect();
         let root: Vec<f64> = read.iter().map(|l| l.weight[gauge].sqrt()).collect();
         let weighted = |of: &dyn Fn(&Loading) -> f64| -> Vec<f64> {
             read.iter().zip(&root).map(|(l, w)| w * of(l)).collect()
@@ -225,7 +240,11 @@ fn changes(loadings: &[Loading], added: &[Candidate]) -> Vec<Vec<f64>> {
             .collect();
         let read: Vec<&Loading> = at.iter().map(|i| &loadings[*i]).collect();
         let root: Vec<f64> = read.iter().map(|l| l.weight[gauge].sqrt()).collect();
-        let y: Vec<f64> = read.iter().zip(&root).map(|(l, w)| w * l.strain[gauge]).collect();
+        let y: Vec<f64> = read
+            .iter()
+            .zip(&root)
+            .map(|(l, w)| w * l.strain[gauge])
+            .collect();
         let fitted = |basis: &[Vec<f64>]| -> Vec<f64> {
             let mut rest = y.clone();
             project_out(&mut rest, basis);
@@ -267,15 +286,25 @@ fn zero_by_gauge(loadings: &[Loading], added: &[Candidate]) -> Vec<f64> {
         .copied()
         .collect();
     let of = |gauge: usize| {
-        let read: Vec<&Loading> = loadings.iter().filter(|l| l.strain[gauge].is_finite()).collect();
+        let read: Vec<&Loading> = loadings
+            .iter()
+            .filter(|l| l.strain[gauge].is_finite())
+            .collect();
         let root: Vec<f64> = read.iter().map(|l| l.weight[gauge].sqrt()).collect();
         let basis = basis(&read, &root, &others);
         let mut one = root.clone();
         project_out(&mut one, &basis);
-        let y: Vec<f64> = read.iter().zip(&root).map(|(l, w)| w * l.strain[gauge]).collect();
+        let y: Vec<f64> = read
+            .iter()
+            .zip(&root)
+            .map(|(l, w)| w * l.strain[gauge])
+            .collect();
         spd::dot(&one, &y) / spd::dot(&one, &one)
     };
-    (0..n).map(of).map(|z| if z.is_finite() { z } else { 0.0 }).collect()
+    (0..n)
+        .map(of)
+        .map(|z| if z.is_finite() { z } else { 0.0 })
+        .collect()
 }
 
 /// The finding on the terms of a kind, with what they do to the loads.
@@ -298,7 +327,11 @@ fn finding(
         true => vec![vec![0.0; task.gauges.len()]; loadings.len()],
         false => changes(loadings, &rest),
     };
-    let differences: Vec<Vec<f64>> = with.iter().zip(&without).map(|(a, b)| less_zero(a, b)).collect();
+    let differences: Vec<Vec<f64>> = with
+        .iter()
+        .zip(&without)
+        .map(|(a, b)| less_zero(a, b))
+        .collect();
     let (load, share) = largest_effect(task, state, loadings, &differences)?;
     let load = &task.loads[load].name;
     let gauge = &task.gauges[clearest.gauge];
@@ -330,7 +363,11 @@ fn finding(
                 .iter()
                 .map(|c| {
                     let [a, b] = c.loads.map(|l| task.loads[l].name.as_str());
-                    if a == b { format!("{a}^2") } else { format!("{a} {b}") }
+                    if a == b {
+                        format!("{a}^2")
+                    } else {
+                        format!("{a} {b}")
+                    }
                 })
                 .collect();
             (

@@ -39,7 +39,9 @@ pub(super) fn loadings(task: &Task, state: &State) -> Vec<Loading> {
         };
         let k = state.scales.len();
         Loading {
-            phi: (0..k).map(|l| mean(&members, &|i| state.equations[i].phi[l]).0).collect(),
+            phi: (0..k)
+                .map(|l| mean(&members, &|i| state.equations[i].phi[l]).0)
+                .collect(),
             strain: (0..n).map(|g| strain(g).0).collect(),
             weight: (0..n).map(weight).collect(),
         }

@@ -168,7 +168,12 @@ pub(super) fn sensitivity_of(
     let mut center = Vec::new();
     if task.is_extended() {
         let centred = Centred::of(posterior);
-        center = centred.center.iter().zip(scales).map(|(c, s)| c * s).collect();
+        center = centred
+            .center
+            .iter()
+            .zip(scales)
+            .map(|(c, s)| c * s)
+            .collect();
         additive.resize(n * n, 0.0);
         let both = additive.iter_mut().zip(&centred.covariance);
         both.for_each(|(a, c)| *a += c);

@@ -48,7 +48,9 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
             let (x, w) = (row(l), of_loading(l));
             spd::add_outer(&mut gram, &x, w);
             for (out, x) in both.chunks_exact_mut(n).zip(&x) {
-                out.iter_mut().zip(&l.strain).for_each(|(o, y)| *o += w * x * y);
+                out.iter_mut()
+                    .zip(&l.strain)
+                    .for_each(|(o, y)| *o += w * x * y);
             }
         }
         let inverse = Precision::of(&gram, p)?;
@@ -59,7 +61,10 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
         for (g, s) in rows.iter().enumerate() {
             spd::add_outer(&mut gram, &s[..k], weight[g]);
             let net = left.strain[g] - s.get(k).copied().unwrap_or(0.0);
-            right.iter_mut().zip(s).for_each(|(r, s)| *r += weight[g] * s * net);
+            right
+                .iter_mut()
+                .zip(s)
+                .for_each(|(r, s)| *r += weight[g] * s * net);
         }
         let found = Precision::of(&gram, k)?.apply(&right);
         for l in 0..k {

@@ -22,7 +22,9 @@ pub fn identical_pairs(columns: &[Vec<f64>], different_at_least: usize) -> Vec<[
             continue;
         }
         // All gaps are alike.
-        let bits = column.iter().map(|v| if v.is_finite() { v.to_bits() } else { u64::MAX });
+        let bits = column
+            .iter()
+            .map(|v| if v.is_finite() { v.to_bits() } else { u64::MAX });
         let kept = *first.entry(bits.collect()).or_insert(i);
         if kept != i {
             out.push([kept, i]);
@@ -72,7 +74,10 @@ mod tests {
         assert_eq!(identical_pairs(&columns, DIFFERENT_READINGS), [[0, 3]]);
         let names: Vec<String> = (0..7).map(|i| format!("G{i}")).collect();
         let finding = identical_readings(&names, &columns).unwrap();
-        assert_eq!((finding.code, &*finding.subject), ("columns-identical", "G0 and G3"));
+        assert_eq!(
+            (finding.code, &*finding.subject),
+            ("columns-identical", "G0 and G3")
+        );
         assert!(identical_readings(&names[1..3], &columns[1..3]).is_none());
     }
 }

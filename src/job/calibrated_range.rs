@@ -10,7 +10,9 @@ pub fn calibrated_range(job: &Job, load: &str) -> Option<[f64; 2]> {
     let range = given.range.get(load)?;
     let stated = job.loads.iter().find(|l| l.name == load);
     let quantity = stated.and_then(JobLoad::quantity);
-    let per = given.per.unit(quantity.unwrap_or_else(|| quantity_of_name(load)));
+    let per = given
+        .per
+        .unit(quantity.unwrap_or_else(|| quantity_of_name(load)));
     let unit = factor(job.units, per);
     Some(range.map(|v| v / unit))
 }

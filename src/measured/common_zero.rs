@@ -15,11 +15,17 @@ pub(crate) fn common_zero(
     job: &Job,
     gauges: &[String],
 ) -> Result<Vec<f64>, Faults> {
-    let named = job.sensitivity.as_ref().and_then(|s| s.common_zero.as_ref());
+    let named = job
+        .sensitivity
+        .as_ref()
+        .and_then(|s| s.common_zero.as_ref());
     let Some(named) = named else {
         return Ok(vec![0.0; gauges.len()]);
     };
-    let text = work.inputs.read_named_text(job, named).map_err(Faults::from)?;
+    let text = work
+        .inputs
+        .read_named_text(job, named)
+        .map_err(Faults::from)?;
     let table = read_table(&named.given, &text)?;
     let column = |name: &str| {
         table.column(&[name]).ok_or_else(|| {

@@ -2,8 +2,8 @@ use super::gauge_columns::{StrainColumn, find_gauge_columns};
 use super::{runs_file, strain_file, strain_table, strain_text};
 use crate::host::fault::Faults;
 use crate::host::files::Inputs;
-use crate::job::tests::read_text;
 use crate::job::read_job;
+use crate::job::tests::read_text;
 use crate::series::record::{Column, name_and_unit};
 use std::path::{Path, PathBuf};
 

@@ -4,8 +4,8 @@
 //! gauge's zero is taken as straight over the rows of the file, before the first and after the last as constant. How far it wanders from
 //! row to row is seen between them, and the readings count with that much more noise.
 
-use super::common_zero::common_zero;
 use super::columns::{columns_of, gauges_without_strain, strain_without_gauge};
+use super::common_zero::common_zero;
 use super::faults::no_runs;
 use super::means::is_long_record;
 use super::means::read_strain_file;

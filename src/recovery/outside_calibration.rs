@@ -120,7 +120,14 @@ pub fn check_load(
             message,
             "calibrate with known loads of this size, or use the loads within the range alone",
         )
-        .with_numbers(ratio, if severity == Severity::Error { rules.error_from } else { 1.0 }),
+        .with_numbers(
+            ratio,
+            if severity == Severity::Error {
+                rules.error_from
+            } else {
+                1.0
+            },
+        ),
     )
 }
 
@@ -181,12 +188,26 @@ mod tests {
         assert!(check([4e3, 12e3], &[(1e3, 10.0), (12.1e3, 10.0)]).is_none());
         let (severity, ratio, message) = check([4e3, 12e3], &[(11e3, 10.0), (15e3, 10.0)]).unwrap();
         assert_eq!((severity, ratio), (Severity::Warning, 1.25));
-        assert!(message.contains("reaches 15 kN in `R1`") && message.contains("4 to 12 kN"), "{message}");
-        assert_eq!(check([4e3, 12e3], &[(18e3, 10.0)]).unwrap().0, Severity::Error);
+        assert!(
+            message.contains("reaches 15 kN in `R1`") && message.contains("4 to 12 kN"),
+            "{message}"
+        );
+        assert_eq!(
+            check([4e3, 12e3], &[(18e3, 10.0)]).unwrap().0,
+            Severity::Error
+        );
         // The other way, as far as the load went the one way.
-        assert_eq!(check([0.0, 12e3], &[(-6e3, 10.0)]).unwrap().0, Severity::Error);
-        assert_eq!(check([-12e3, 12e3], &[(-13e3, 10.0)]).unwrap().0, Severity::Warning);
-        let many: Vec<(f64, f64)> = (0..20).map(|i| (13e3 + 10.0 * f64::from(i), 10.0)).collect();
+        assert_eq!(
+            check([0.0, 12e3], &[(-6e3, 10.0)]).unwrap().0,
+            Severity::Error
+        );
+        assert_eq!(
+            check([-12e3, 12e3], &[(-13e3, 10.0)]).unwrap().0,
+            Severity::Warning
+        );
+        let many: Vec<(f64, f64)> = (0..20)
+            .map(|i| (13e3 + 10.0 * f64::from(i), 10.0))
+            .collect();
         assert!(check([0.0, 12e3], &many).unwrap().2.contains(" more"));
     }
 

@@ -95,7 +95,9 @@ fn the_covariance_of_strain_counts_errors_of_s_from_its_center() {
     let found = known.strain_covariance(2, &f);
     for g in 0..2 {
         for i in 0..2 {
-            let of_s: f64 = (0..4).map(|at| h[at / 2] * h[at % 2] * covariance[(g * 2 + at / 2, i * 2 + at % 2)]).sum();
+            let of_s: f64 = (0..4)
+                .map(|at| h[at / 2] * h[at % 2] * covariance[(g * 2 + at / 2, i * 2 + at % 2)])
+                .sum();
             let expected = q2 * known.scatter[g * 2 + i] + known.additive[g * 2 + i] + of_s;
             assert!((found[g * 2 + i] - expected).abs() < 1e-12);
         }

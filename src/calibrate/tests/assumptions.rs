@@ -22,9 +22,10 @@ fn runs(
     let one = |i: usize| {
         let f = [0; 2].map(|_| random.random_range(20.0..100.0));
         let factor = 1.0 + bend * (f[0] + f[1]);
-        let strain = s.row_iter().zip(zero).map(|(row, z)| {
-            factor * (row[0] * f[0] + row[1] * f[1]) + z + NOISE * normal(random)
-        });
+        let strain = s
+            .row_iter()
+            .zip(zero)
+            .map(|(row, z)| factor * (row[0] * f[0] + row[1] * f[1]) + z + NOISE * normal(random));
         KnownRun {
             run: format!("R{i}"),
             strain: strain.collect(),
@@ -47,7 +48,10 @@ fn chances(found: &Calibration) -> Vec<(&'static str, f64)> {
 fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
     let mut random = ChaCha8Rng::seed_from_u64(43);
     let s = lanes(&mut random);
-    let zero: Vec<f64> = s.row_iter().map(|_| 20.0 * NOISE * normal(&mut random)).collect();
+    let zero: Vec<f64> = s
+        .row_iter()
+        .map(|_| 20.0 * NOISE * normal(&mut random))
+        .collect();
     let mut all = runs(&s, 40, (&zero, 0.0), &mut random);
     let new = all.split_off(16);
     let linear = calibrate(&task(2, all.clone(), None)).unwrap();
@@ -61,7 +65,11 @@ fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
         ..task(2, all, None)
     };
     let found = calibrate(&sought).unwrap();
-    assert!(found.findings.iter().all(|f| f.severity == Severity::Info), "{:?}", found.findings);
+    assert!(
+        found.findings.iter().all(|f| f.severity == Severity::Info),
+        "{:?}",
+        found.findings
+    );
     for (a, b) in found.common_zero.iter().zip(&zero) {
         assert!((a - b).abs() < 8.0 * NOISE, "{a} {b}");
     }
@@ -69,10 +77,18 @@ fn a_common_zero_is_found_and_an_intercept_is_what_it_was() {
     let mut halves = [0.0; 2];
     let mut held = [0, 0];
     for run in &new {
-        let net: Vec<f64> = run.strain.iter().zip(&found.common_zero).map(|(y, z)| y - z).collect();
-        for (i, (s, strain)) in [(&linear.sensitivity, run.strain.clone()), (&found.sensitivity, net)]
-            .into_iter()
-            .enumerate()
+        let net: Vec<f64> = run
+            .strain
+            .iter()
+            .zip(&found.common_zero)
+            .map(|(y, z)| y - z)
+            .collect();
+        for (i, (s, strain)) in [
+            (&linear.sensitivity, run.strain.clone()),
+            (&found.sensitivity, net),
+        ]
+        .into_iter()
+        .enumerate()
         {
             for (found, known) in weighed(s, strain, NOISE).iter().zip(&run.loads.mean) {
                 halves[i] += found[2];
@@ -91,10 +107,21 @@ fn strain_that_bends_is_reported_and_a_straight_line_is_not() {
     let s = lanes(&mut random);
     let none = vec![0.0; s.nrows()];
     let straight = calibrate(&task(2, runs(&s, 20, (&none, 0.0), &mut random), None)).unwrap();
-    assert!(chances(&straight).iter().all(|c| c.1 > 1e-3), "{:?}", chances(&straight));
-    assert!(severe(&straight, "lack-of-fit").is_none() && severe(&straight, "common-zero").is_none());
+    assert!(
+        chances(&straight).iter().all(|c| c.1 > 1e-3),
+        "{:?}",
+        chances(&straight)
+    );
+    assert!(
+        severe(&straight, "lack-of-fit").is_none() && severe(&straight, "common-zero").is_none()
+    );
     // 10 % at full load.
-    let bent = calibrate(&task(2, runs(&s, 20, (&none, 0.1 / 200.0), &mut random), None)).unwrap();
+    let bent = calibrate(&task(
+        2,
+        runs(&s, 20, (&none, 0.1 / 200.0), &mut random),
+        None,
+    ))
+    .unwrap();
     assert_eq!(severe(&bent, "lack-of-fit").unwrap().0, Severity::Warning);
 }
 
@@ -139,9 +166,14 @@ fn one_run_a_load_is_an_error_and_no_gauge_is_named_by_what_it_taught() {
         group: i,
     };
     let taught = [[100.0, 0.0], [0.0, 100.0]];
-    let taught: Vec<KnownRun> = (0..2).map(|i| known(i, taught[i], read(taught[i]))).collect();
+    let taught: Vec<KnownRun> = (0..2)
+        .map(|i| known(i, taught[i], read(taught[i])))
+        .collect();
     let found = calibrate(&task(2, taught, None)).unwrap();
-    assert_eq!(severe(&found, "coverage-not-tested").unwrap().0, Severity::Error);
+    assert_eq!(
+        severe(&found, "coverage-not-tested").unwrap().0,
+        Severity::Error
+    );
     let readings: Vec<Readings> = (0..20)
         .map(|i| Readings {
             run: format!("N{i}"),
@@ -157,7 +189,13 @@ fn one_run_a_load_is_an_error_and_no_gauge_is_named_by_what_it_taught() {
     let codes: Vec<&str> = recovered.findings.iter().map(|f| &*f.code).collect();
     assert!(codes.contains(&"coverage-not-tested"), "{codes:?}");
     let gauges = &found.sensitivity.gauges;
-    assert!(recovered.findings.iter().all(|f| !gauges.contains(&f.subject)), "{codes:?}");
+    assert!(
+        recovered
+            .findings
+            .iter()
+            .all(|f| !gauges.contains(&f.subject)),
+        "{codes:?}"
+    );
 }
 
 #[test]
@@ -169,10 +207,21 @@ fn check_runs_are_recovered_as_new_runs_are() {
     let checks = all.split_off(12);
     let found = calibrate(&task(2, all, None)).unwrap();
     for c in recover_checks(&found, NOISE, &checks) {
-        for (v, w) in c.estimate.values.iter().zip(weighed(&found.sensitivity, c.run.strain.clone(), NOISE)) {
+        for (v, w) in
+            c.estimate
+                .values
+                .iter()
+                .zip(weighed(&found.sensitivity, c.run.strain.clone(), NOISE))
+        {
             assert!((v - w[0]).abs() < 1e-9 * v.abs());
         }
     }
     assert_eq!(found.range.loads.len(), 2);
-    assert!(found.range.loads.iter().all(|r| r[0] >= 20.0 && r[1] <= 100.0 && r[0] < r[1]));
+    assert!(
+        found
+            .range
+            .loads
+            .iter()
+            .all(|r| r[0] >= 20.0 && r[1] <= 100.0 && r[0] < r[1])
+    );
 }

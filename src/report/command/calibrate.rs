@@ -72,7 +72,13 @@ impl Report for Outcome<Calibrated> {
         let halves = s.half_widths();
         out.declare(
             "coefficients.csv",
-            [("gauge", ""), ("load", ""), ("value", ""), ("half_width", ""), ("unit", "")],
+            [
+                ("gauge", ""),
+                ("load", ""),
+                ("value", ""),
+                ("half_width", ""),
+                ("unit", ""),
+            ],
         );
         out.write("coefficients.csv", |w| {
             writeln!(w, "gauge,load,value,half_width,unit")?;
@@ -86,7 +92,10 @@ impl Report for Outcome<Calibrated> {
             Ok(())
         })?;
         if !self.found.common_zero.is_empty() {
-            out.declare("common_zero.csv", [("gauge", ""), ("common_zero", "microstrain")]);
+            out.declare(
+                "common_zero.csv",
+                [("gauge", ""), ("common_zero", "microstrain")],
+            );
             out.write("common_zero.csv", |w| {
                 writeln!(w, "gauge,common_zero")?;
                 for (gauge, zero) in s.gauges.iter().zip(&self.found.common_zero) {

@@ -67,7 +67,11 @@ fn checks(answer: &Calibrated) -> Option<Section> {
             l.run.clone(),
             l.load.clone(),
             number(l.applied),
-            format!("{} ± {}", number(l.recovered), number((l.high - l.low) / 2.0)),
+            format!(
+                "{} ± {}",
+                number(l.recovered),
+                number((l.high - l.low) / 2.0)
+            ),
             l.unit.clone(),
             if l.inside { "inside" } else { "outside" }.to_owned(),
         ]
@@ -140,7 +144,9 @@ fn lack_of_fit(answer: &Calibrated) -> Section {
         "Terms beyond the straight line",
         &["terms", "chance without such a term"],
         &rows,
-        &format!("The clearest term over all gauges; its chance is corrected for their number. A term is taken for one below 0.001.{held_out}"),
+        &format!(
+            "The clearest term over all gauges; its chance is corrected for their number. A term is taken for one below 0.001.{held_out}"
+        ),
     )
 }
 

@@ -24,8 +24,15 @@ impl Asked {
         faults: &mut FaultList,
     ) -> Self {
         let list = job.calibration.runs.as_ref();
-        let asked = list.map(|l| asked_rows((job, "calibration.runs", l), table, key, strain, faults));
-        let checks = check_rows((job, headers), (table, key), strain, asked.as_deref(), faults);
+        let asked =
+            list.map(|l| asked_rows((job, "calibration.runs", l), table, key, strain, faults));
+        let checks = check_rows(
+            (job, headers),
+            (table, key),
+            strain,
+            asked.as_deref(),
+            faults,
+        );
         Self { asked, checks }
     }
 }

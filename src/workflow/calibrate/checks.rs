@@ -55,7 +55,9 @@ pub(super) fn compared(checked: &[CheckedRun], listed: &Listed) -> Vec<CheckLoad
 pub(super) fn finding(checks: &[CheckLoad]) -> Option<Finding> {
     let outside: Vec<&CheckLoad> = checks.iter().filter(|c| !c.inside).collect();
     let deviation = |c: &&CheckLoad| (c.recovered - c.applied).abs() / (0.5 * (c.high - c.low));
-    let worst = outside.iter().max_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
+    let worst = outside
+        .iter()
+        .max_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
     let inside = (checks.len() - outside.len()) as u64;
     let chance = Binomial::new(HELD, checks.len() as u64).ok()?.cdf(inside);
     let most = deviation(worst);
@@ -65,7 +67,10 @@ pub(super) fn finding(checks: &[CheckLoad]) -> Option<Finding> {
         c if c <= SELDOM => Severity::Warning,
         _ => return None,
     };
-    let names: Vec<String> = outside.iter().map(|c| format!("{} in {}", c.load, c.run)).collect();
+    let names: Vec<String> = outside
+        .iter()
+        .map(|c| format!("{} in {}", c.load, c.run))
+        .collect();
     Some(
         Finding::new(
             severity,

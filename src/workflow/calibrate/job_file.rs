@@ -38,11 +38,17 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
     s.insert("covariance".into(), Value::String("calibration.bin".into()));
     s.remove("common_zero");
     if !answer.found.common_zero.is_empty() {
-        s.insert("common_zero".into(), Value::String("common_zero.csv".into()));
+        s.insert(
+            "common_zero".into(),
+            Value::String("common_zero.csv".into()),
+        );
     }
     let range = &answer.found.range;
     let loads = answer.sensitivity.loads.iter().map(|l| l.name.as_str());
-    s.insert("range".into(), ranges(loads.zip(range.loads.iter().copied())));
+    s.insert(
+        "range".into(),
+        ranges(loads.zip(range.loads.iter().copied())),
+    );
     let gauges = answer.sensitivity.gauges.iter().map(String::as_str);
     let strain = range.strain.iter().map(|r| r.map(|v| v / MICROSTRAIN));
     s.insert("strain_range".into(), ranges(gauges.zip(strain)));

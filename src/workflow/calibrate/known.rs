@@ -6,7 +6,6 @@ use crate::calibrate::KnownLoads;
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
-use crate::job::suggest;
 use crate::job::table::{Table, read_table};
 use crate::job::{HoldOut, Job, Measured, Runs};
 use crate::measured::runs_columns::{
@@ -129,7 +128,9 @@ pub(super) fn read_known(
         let Some(known) = known else {
             if listed || is_check {
                 let line = table.rows.get(at).map_or(0, |r| r.0);
-                let wrong = format!("the loads of run `{run}` are not known, and it is a calibration or a check run");
+                let wrong = format!(
+                    "the loads of run `{run}` are not known, and it is a calibration or a check run"
+                );
                 faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs` or `check`"));
             } else if stated
                 .iter()

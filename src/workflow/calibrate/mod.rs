@@ -1,8 +1,8 @@
 //! `calibrate`: S from runs of known load, fused with the model's where there is one; the job that the other workflows run with it.
 
-mod glued;
 mod asked;
 mod checks;
+mod glued;
 mod job_file;
 mod known;
 mod outcome;

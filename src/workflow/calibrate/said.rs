@@ -245,7 +245,11 @@ pub(super) fn words(
             .collect(),
         repeat_scatter_rel: found.repeat_scatter_rel,
         noise_rel: found.noise_rel,
-        range: ranges(listed, task.loads.iter().map(|l| l.name.as_str()), &found.range.loads),
+        range: ranges(
+            listed,
+            task.loads.iter().map(|l| l.name.as_str()),
+            &found.range.loads,
+        ),
         strain_range: (task.gauges.iter().zip(&found.range.strain))
             .filter(|(_, r)| r[0].is_finite())
             .map(|(g, r)| (g.clone(), r.map(|v| v / MICROSTRAIN)))
@@ -313,7 +317,9 @@ fn residuals(task: &Task, found: &Calibration, listed: &Listed) -> Vec<LoadResid
             let known = known_of(task, run, &[(l, 1.0)])?;
             Some(100.0 * (value - known) / full)
         };
-        let of_fit = fitted.iter().filter_map(|(run, c)| percent(*run, c.estimate.values[l]));
+        let of_fit = fitted
+            .iter()
+            .filter_map(|(run, c)| percent(*run, c.estimate.values[l]));
         let of_fit: Vec<f64> = of_fit.filter(|v| v.is_finite()).collect();
         let left = found.left_out.iter().filter_map(|o| {
             let off = percent(o.number, o.estimate.values[l])?;

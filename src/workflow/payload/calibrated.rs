@@ -55,7 +55,8 @@ fn of_run<'a>(task: &Task, run: &'a WeighedRun, parts: [f64; 3]) -> Reached<'a> 
     let [dx, dy] = run.shift.map(|d| d / task.length);
     let arm = parts[0] + parts[1] * dx + parts[2] * dy;
     let [xx, xy, _, yy] = run.shift_covariance.map(|c| c / task.length.powi(2));
-    let of_place = parts[1] * parts[1] * xx + 2.0 * parts[1] * parts[2] * xy + parts[2] * parts[2] * yy;
+    let of_place =
+        parts[1] * parts[1] * xx + 2.0 * parts[1] * parts[2] * xy + parts[2] * parts[2] * yy;
     Reached {
         run: &run.run,
         value: weight * arm,

@@ -9,8 +9,8 @@ use super::dead_parts::{Living, without_dead_parts};
 use super::dynamic::{Motion, rested};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
-use super::sink::{Block, RecordHead, RecordSink};
 use super::runs::identical;
+use super::sink::{Block, RecordHead, RecordSink};
 use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
@@ -111,7 +111,12 @@ pub(super) fn record(
     let ends: Vec<f64> = (sums.min.iter().zip(&sums.max))
         .map(|(a, b)| a.abs().max(b.abs()))
         .collect();
-    let halves: Vec<f64> = head.filter.sigma(&ends).iter().map(|s| NORMAL_95 * s).collect();
+    let halves: Vec<f64> = head
+        .filter
+        .sigma(&ends)
+        .iter()
+        .map(|s| NORMAL_95 * s)
+        .collect();
     work.findings.extend(calibrated::of_record(
         task.job,
         &sensitivity,
