@@ -5,10 +5,11 @@ use super::posterior::{Equation, Posterior, solve};
 use super::prior::{RowPrior, rows};
 use super::scatter::{Left, Scatter};
 use super::state::{State, left, sensitivity_of};
-use super::types::{Coverage, KnownLoads, LeftOut, Task};
+use super::types::{Coverage, KnownLoads, KnownRun, LeftOut, Task};
 use super::unknown::{SPANNED, UNKNOWN, wide_directions};
 use crate::linalg::spd;
-use crate::recovery::{ErrorModel, Readings, estimate};
+use crate::recovery::{ErrorModel, Readings, RunEstimate, estimate};
+use crate::sensitivity::Sensitivity;
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
@@ -95,16 +96,7 @@ pub(super) fn against(
         1.0,
         &state.lack,
     );
-    let readings = Readings {
-        run: run.run.clone(),
-        strain: less_zero(&run.strain, &zero_of(task, &posterior)),
-        noise_factor: run.noise_factor,
-    };
-    let errors = ErrorModel {
-        noise: task.noise,
-        model_rel: 0.0,
-    };
-    let found = estimate(&s, &readings, errors);
+    let found = recovered(task, run, &s, &zero_of(task, &posterior));
     let k = s.loads.len();
     let loads = &loads.first(k);
     if found.rank < k {
@@ -155,6 +147,20 @@ pub(super) fn against(
         known: loads.mean.clone(),
         estimate: found.estimate,
     })
+}
+
+/// A run recovered by S, its readings less the common zero.
+fn recovered(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunEstimate {
+    let readings = Readings {
+        run: run.run.clone(),
+        strain: less_zero(&run.strain, zero),
+        noise_factor: run.noise_factor,
+    };
+    let errors = ErrorModel {
+        noise: task.noise,
+        model_rel: 0.0,
+    };
+    estimate(s, &readings, errors)
 }
 
 /// What is known of a run's wanted loads.
@@ -276,9 +282,9 @@ fn expected_ratio(dof: f64) -> f64 {
     }
 }
 
-/// Factor where scatter was learnt: few left-out runs that are far off need not be significantly so. The variance of intervals over that of the
-/// scatter is its posterior mean, of `dof` degrees of freedom with which the scatter is known and says 1, and of the left-out runs, whose largest mean
-/// square is `z2`: `(dof + runs z2) / (dof + runs)`, at least 1. The more runs, the less it adds to the test of [`judge`].
+/// Factor where scatter was learnt: few left-out runs that are far off need not be significantly so. The variance of the intervals over that of the
+/// scatter is its posterior mean: `dof` degrees of freedom, with which the scatter is known, say 1, and the left-out runs say `z2`, their largest
+/// mean square. It is `(dof + runs z2) / (dof + runs)`, at least 1. The more runs, the less it adds to the test of [`judge`].
 ///
 /// # Reference
 /// A. Gelman and others, Bayesian Data Analysis (3rd ed., 2013), section 2.6: a variance with a scaled inverse chi-square prior.
