@@ -87,11 +87,11 @@ def test_every_outcome_has_a_piece(name, strip_folder):
     assert read.texts["h3"][0].strip()
 
 
-def test_a_proposal_shows_its_words_and_the_job(strip_folder):
+def test_a_proposal_shows_its_summary_and_the_job(strip_folder):
     (strip_folder / "job.toml").unlink()
     out = sb.init("strip.bdf")
     _, read = shown(out)
-    assert out.words.strip() in [text.strip() for text in read.texts["p"]]
+    assert out.summary in out._repr_html_()
     out.save(strip_folder)
     job = (strip_folder / "job.toml").read_text().splitlines()
     lines = [line for text in read.texts["pre"] for line in text.splitlines()]

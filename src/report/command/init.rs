@@ -30,7 +30,8 @@ impl Report for Outcome<Proposal> {
 
     /// What a notebook shows; no file is written of it, for a job is read where it stands.
     fn page(&self) -> Option<Page> {
-        let mut proposed = vec![Block::Text(self.summary())];
+        let next = self.console().next.map(Block::Text);
+        let mut proposed: Vec<Block> = next.into_iter().collect();
         if !self.loads.is_empty() {
             proposed.push(Block::Stressed("Loads:".into(), self.loads.join(", ")));
         }
