@@ -13,7 +13,7 @@ use strainbridge::fe::from_results::{ReadOptions, solution_from_results};
 use strainbridge::fe::shell_frame::{ShellPlace, shell_axes};
 use strainbridge::fe::strain_rows::components;
 use strainbridge::fe::strain_tensor::basic_tensor;
-use strainbridge::fe::{CaseResult, PlaneStrain, Solution, from_results::surface_z};
+use strainbridge::fe::{CaseResult, PlaneStrain, Solution};
 use strainbridge::model::{GridIx, Model, ShellIx, Vec3};
 
 /// Relative to the column's largest value.
@@ -181,7 +181,7 @@ fn shell_strain_of_every_case_agrees_in_the_element_frame() {
                 let grid = row[3].as_u64().unwrap() as u32;
                 let ix = model.shell_ix(element).unwrap();
                 let strain = at(&model, result, element, grid);
-                let z = surface_z(&model, &model.shells[ix.us()]);
+                let z = model.fibres(&model.shells[ix.us()]).centre;
                 let ours = as_row(strain, z, 1 + (i % 2) as usize, is_fibre);
                 for k in 0..3 {
                     let name = format!("{} row {}", ["exx", "eyy", "gxy"][k], i % 2 + 1);
@@ -224,7 +224,7 @@ fn strain_of_quads_in_the_basic_frame_agrees_in_every_case() {
             // Curvature rows state the fibre distances 0 and -1; no shell has its surfaces there.
             let which = row["row"].as_u64().unwrap() as usize;
             let fibre = row["fiber"].as_f64().unwrap();
-            let z = surface_z(&model, shell);
+            let z = model.fibres(shell).centre;
             let is_fibre = (fibre - z[which - 1]).abs() <= 1e-4 * (z[1] - z[0]);
             let strain = as_row(at(&model, result, element, 0), z, which, is_fibre);
             let axes = shell_axes(&model, shell, ShellPlace::Centre).unwrap();
