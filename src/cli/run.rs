@@ -231,7 +231,11 @@ impl Run {
         let summary = outcome.summary();
         let texts = Texts {
             // Faults go to standard error, and so does what they mean.
-            summary: if faults.is_empty() { &summary } else { "" },
+            summary: if faults.is_empty() {
+                summary.as_str()
+            } else {
+                ""
+            },
             findings: &outcome.findings,
             notes: &notes,
             paths: &paths,
