@@ -227,8 +227,15 @@ impl Run {
             path.is_file().then(|| path.display().to_string())
         });
         let paths: Vec<String> = paths.collect();
+        let faults = outcome.answer.faults();
+        let summary = outcome.summary();
         let texts = Texts {
-            summary: &outcome.summary(),
+            // Faults go to standard error, and so does what they mean.
+            summary: if faults.is_empty() {
+                summary.as_str()
+            } else {
+                ""
+            },
             findings: &outcome.findings,
             notes: &notes,
             paths: &paths,
@@ -236,9 +243,9 @@ impl Run {
         let voice = Voice::of(&self.common);
         let is_printed = voice.outcome(&console, &texts, &json);
         voice.seconds(&outcome.seconds);
-        let faults = outcome.answer.faults();
         if !faults.is_empty() {
             voice.fault_lines(faults);
+            voice.note(&summary);
             return ExitCode::from(2);
         }
         match outcome.findings.worst() {

@@ -49,7 +49,7 @@ pub fn lay_out(console: &Console, texts: &Texts, room: &Room) -> Layout {
     let used: usize = findings.iter().map(|f| f.lines.len()).sum();
     let for_table = room.lines.map(|l| l.saturating_sub(fixed + used));
     let mut answer = table::lines(&console, width, for_table);
-    if !answer.is_empty() {
+    if !answer.is_empty() && !summary.is_empty() {
         answer.push(String::new());
     }
     answer.extend(summary);
