@@ -160,8 +160,8 @@ fn each_kind_of_bad_model_has_a_message_of_its_own_at_its_line() {
     refused(
         "no_set",
         &strip("").replace("LOAD = 1", "LOAD = 8"),
-        "SOL 101",
-        &[],
+        "  LOAD = 8",
+        &["LOAD = 8"],
     );
 }
 
