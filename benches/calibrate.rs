@@ -4,7 +4,9 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use strainbridge::calibrate::{KnownLoads, KnownRun, ModelPrior, Task, calibrate, next_runs};
+use strainbridge::calibrate::{
+    CommonZero, KnownLoads, KnownRun, ModelPrior, Task, calibrate, next_runs,
+};
 use strainbridge::linalg::Matrix;
 use strainbridge::sensitivity::Load;
 
@@ -71,6 +73,8 @@ fn task(scatter: f64) -> Task {
         }),
         runs,
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     }
 }
 

@@ -1,5 +1,6 @@
 //! The guide in `docs/`: every command in a `sh` box is run, in order, in one folder; files that a page names are there afterwards.
 
+#[path = "console/fits.rs"]
 mod console;
 #[path = "../nastran/tests/support/mod.rs"]
 mod support;

@@ -1,31 +1,18 @@
 //! Console of a command: it fits a terminal, and its summary is that of `result.json` and of the page.
 
+mod fits;
+
+pub use fits::assert_fits;
+
+use fits::text;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Output;
-
-/// Lines of a command, findings included.
-const LINES: usize = 25;
-/// Columns where standard output is not a terminal.
-const COLUMNS: usize = 100;
-
-fn text(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).into_owned()
-}
 
 /// A text without line breaks, signs as in a terminal with UTF-8.
 fn on_one_line(text: &str) -> String {
     let words: Vec<&str> = text.split_whitespace().collect();
     words.join(" ").replace("+-", "±")
-}
-
-/// Asserts that standard output and standard error fit a terminal together.
-pub fn assert_fits(done: &Output, command: &str) {
-    let all = text(&done.stdout) + &text(&done.stderr);
-    assert!(all.lines().count() <= LINES, "{command}:\n{all}");
-    for line in all.lines() {
-        assert!(line.chars().count() <= COLUMNS, "{command}: {line}\n{all}");
-    }
 }
 
 /// Asserts that the summary of `result.json` is a sentence of the console and of the page.

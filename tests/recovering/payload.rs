@@ -2,7 +2,7 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use strainbridge::calibrate::{KnownLoads, KnownRun, Task, calibrate};
+use strainbridge::calibrate::{CommonZero, KnownLoads, KnownRun, Task, calibrate};
 use strainbridge::linalg::Matrix;
 use strainbridge::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
 use strainbridge::recovery::{ErrorModel, Readings, recover};
@@ -75,6 +75,8 @@ fn calibrated(lot: &mut Lot, loads: usize) -> Sensitivity {
         model: None,
         runs: runs.collect(),
         sums: Vec::new(),
+        common_zero: CommonZero::None,
+        scale_sd: 0.0,
     };
     calibrate(&task).unwrap().sensitivity
 }

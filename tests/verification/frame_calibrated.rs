@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::collections::HashMap;
-use strainbridge::calibrate::{KnownLoads, KnownRun, ModelPrior, Task, calibrate};
+use strainbridge::calibrate::{CommonZero, KnownLoads, KnownRun, ModelPrior, Task, calibrate};
 use strainbridge::linalg::Matrix;
 use strainbridge::recovery::{ErrorModel, Readings, estimate};
 use strainbridge::sensitivity::{Load, Sensitivity};
@@ -124,6 +124,8 @@ fn trial(model: &Matrix, fine: &Matrix, m: usize, seed: u64) -> Trial {
             }),
             runs: runs.clone(),
             sums: Vec::new(),
+            common_zero: CommonZero::None,
+            scale_sd: 0.0,
         };
         calibrate(&task).unwrap().sensitivity
     };

@@ -119,22 +119,8 @@ pub(super) fn record(
         gaps,
     } = stream(work, (&record, channels.as_ref()), &head, sink)?;
     sink.end(sums.missing.samples())?;
-    let ends: Vec<f64> = (sums.min.iter().zip(&sums.max))
-        .map(|(a, b)| a.abs().max(b.abs()))
-        .collect();
-    let halves: Vec<f64> = head
-        .filter
-        .sigma(&ends)
-        .iter()
-        .map(|s| NORMAL_95 * s)
-        .collect();
-    work.findings.extend(calibrated::of_record(
-        task.job,
-        &sensitivity,
-        &head.units,
-        (&head.file, sums.missing.samples()),
-        (&sums.min, &sums.max, &halves),
-    ));
+    work.findings
+        .extend(beyond_calibration(task, &sensitivity, &head, &sums));
     let validation = match &channels {
         Some(c) => c.found(&compared, head.filter.whole()),
         None => Vec::new(),
@@ -171,6 +157,27 @@ pub(super) fn record(
     about_files(work, task, &head, &sums, (&sensitivity, blank));
     let extras = (content, motion, damage);
     Ok((answer(sensitivity, head, sums, spans, extras), beside))
+}
+
+/// Findings on loads beyond the range of a calibrated S, by the smallest and the largest load of the record.
+fn beyond_calibration(
+    task: &Task,
+    sensitivity: &Sensitivity,
+    head: &RecordHead,
+    sums: &Sums,
+) -> Vec<Finding> {
+    let ends: Vec<f64> = (sums.min.iter().zip(&sums.max))
+        .map(|(a, b)| a.abs().max(b.abs()))
+        .collect();
+    let sigma = head.filter.sigma(&ends);
+    let halves: Vec<f64> = sigma.iter().map(|s| NORMAL_95 * s).collect();
+    calibrated::of_record(
+        task.job,
+        sensitivity,
+        &head.units,
+        (&head.file, sums.missing.samples()),
+        (&sums.min, &sums.max, &halves),
+    )
 }
 
 /// Adds the findings on files and on gaps; `blank` samples are blank for the filter of [dynamic] alone, which its own finding states.
