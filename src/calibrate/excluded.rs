@@ -65,7 +65,7 @@ mod tests {
         assert!(held_too_few(&tally(0, 0)).is_none());
         let found = held_too_few(&tally(15, 20)).unwrap();
         assert_eq!(
-            (found.severity, &*found.code),
+            (found.severity, found.code),
             (Severity::Error, "calibration-coverage-low")
         );
         assert!(held_too_few(&tally(283, 338)).is_some());

@@ -20,7 +20,7 @@ pub(crate) enum RecordedLoads {
     /// Of static runs.
     Runs(Vec<RunRow>),
     /// Of a record.
-    Record(LoadRecord),
+    Record(Box<LoadRecord>),
 }
 
 /// A record of loads, in memory: four bytes a number.
@@ -69,7 +69,7 @@ pub(crate) fn read_recorded(
         return read_runs(inputs, job, runs).map(RecordedLoads::Runs);
     }
     let record = read_load_record(inputs, job, (runs, compare.time_unit_s), bytes, names)?;
-    Ok(RecordedLoads::Record(record))
+    Ok(RecordedLoads::Record(Box::new(record)))
 }
 
 /// Reads a record of loads from the bytes of its file; `time_unit_s` counts where the file states no unit of time.

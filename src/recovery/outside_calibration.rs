@@ -57,20 +57,20 @@ pub struct Reached<'a> {
 
 impl CalibratedLoad<'_> {
     /// Range with the state without load in it, and the largest size in it.
-    fn from_zero(&self) -> ([f64; 2], f64) {
+    fn span_with_zero(&self) -> ([f64; 2], f64) {
         let [low, high] = [self.range[0].min(0.0), self.range[1].max(0.0)];
         ([low, high], high.max(-low))
     }
 
     /// Size over the largest of the calibration, `1 + (f - high) / largest` beyond `high` and alike below `low`; at most 1 within the range.
     fn ratio(&self, value: f64) -> f64 {
-        let ([low, high], largest) = self.from_zero();
+        let ([low, high], largest) = self.span_with_zero();
         1.0 + (value - high).max(low - value) / largest
     }
 
     /// Whether a load is beyond the range by more than its noise, `factor` half widths.
     fn is_beyond(&self, reached: &Reached, factor: f64, rules: &RangeRules) -> bool {
-        let ([low, high], largest) = self.from_zero();
+        let ([low, high], largest) = self.span_with_zero();
         let beyond = (reached.value - high).max(low - reached.value);
         beyond > factor * reached.half + rules.margin * largest
     }
@@ -84,7 +84,7 @@ pub fn check_load(
     values: usize,
     rules: &RangeRules,
 ) -> Option<Finding> {
-    if !(load.from_zero().1 > 0.0) {
+    if !(load.span_with_zero().1 > 0.0) {
         return None;
     }
     let share = rules.chance / values.max(1) as f64;

@@ -79,7 +79,7 @@ impl Shell {
     pub fn with_thickness_times(&self, factor: f64) -> Option<Shell> {
         let stated = !self.tflag && self.thickness.iter().any(Option::is_some);
         let thickness = self.thickness.map(|t| t.map(|t| t * factor));
-        stated.then(|| Shell { thickness, ..*self })
+        stated.then_some(Shell { thickness, ..*self })
     }
 }
 

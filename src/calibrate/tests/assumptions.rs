@@ -186,7 +186,7 @@ fn one_run_a_load_is_an_error_and_no_gauge_is_named_by_what_it_taught() {
         model_rel: 0.0,
     };
     let recovered = recover(&found.sensitivity, &readings, errors);
-    let codes: Vec<&str> = recovered.findings.iter().map(|f| &*f.code).collect();
+    let codes: Vec<&str> = recovered.findings.iter().map(|f| f.code).collect();
     assert!(codes.contains(&"coverage-not-tested"), "{codes:?}");
     let gauges = &found.sensitivity.gauges;
     assert!(

@@ -29,7 +29,7 @@ pub(super) fn least_lines(tables: &[ConsoleTable], width: usize) -> usize {
 /// Returns the lines of the first table that fits; if none fits, the first rows of the last table and the number of the others.
 pub(super) fn lines(console: &Console, width: usize, limit: Option<usize>) -> Vec<String> {
     let tables = || console.tables.iter().filter(|t| !t.rows.is_empty());
-    let Some(last) = tables().last() else {
+    let Some(last) = tables().next_back() else {
         return Vec::new();
     };
     let laid = tables().find_map(|t| laid(t, width, limit));

@@ -45,7 +45,7 @@ pub fn record_of_job(
     match read_recorded(&mut work.inputs, job, compare, names)? {
         RecordedLoads::Record(record) => {
             work.findings.extend(record.findings.iter().cloned());
-            Ok(Some(record))
+            Ok(Some(*record))
         }
         RecordedLoads::Runs(_) => Err(Fault::at(
             &*job.file,
