@@ -282,7 +282,7 @@ fn runs_that_do_not_determine_s_are_said_so_and_known_loads_that_are_missing_are
     let (code, _, said) = run("calibrate", &job, &folder.join("out"));
     assert_eq!(code, Some(2));
     assert!(
-        said.contains("runs.csv:14: run: run `R13` is to teach and its loads are not known"),
+        said.contains("runs.csv:14: run: the loads of run `R13` are not known"),
         "{said}"
     );
 }

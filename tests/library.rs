@@ -455,6 +455,7 @@ fn loads_of_a_record_stay_in_memory_sample_by_sample() {
         [
             "condition_number",
             "condition_number_scaled",
+            "csv_every",
             "damage",
             "duration_s",
             "gaps",

@@ -69,7 +69,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
         }
     }
     for p in &model.solid_properties {
-        if p.options[3].as_deref() == Some("PFLUID") {
+        if (p.options[3].as_deref()).is_some_and(|w| w.starts_with("PFLU")) {
             refuse(
                 format!("PSOLID {}", p.id),
                 p.at,

@@ -43,7 +43,10 @@ impl Builder<'_> {
             let options = p.options.clone();
             for (found, (field, known)) in options.iter().zip(OPTIONS) {
                 let expected = known.join(", ");
-                if let Some(found) = found.clone().filter(|w| !known.contains(&w.as_str())) {
+                // The geometry of an OP2 has the first four letters of a word.
+                let is = |w: &str, k: &str| k == w || w.len() == 4 && k.starts_with(w);
+                let unknown = |w: &String| !known.iter().any(|k| is(w, k));
+                if let Some(found) = found.clone().filter(unknown) {
                     let kind = FaultKind::Unsupported {
                         what: format!("`{found}` (not one of {expected})"),
                         remedy: "write a word of the quick reference guide",

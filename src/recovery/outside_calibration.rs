@@ -189,7 +189,7 @@ mod tests {
         let (severity, ratio, message) = check([4e3, 12e3], &[(11e3, 10.0), (15e3, 10.0)]).unwrap();
         assert_eq!((severity, ratio), (Severity::Warning, 1.25));
         assert!(
-            message.contains("reaches 15 kN in `R1`") && message.contains("4 to 12 kN"),
+            message.contains("reaches 15.00 kN in `R1`") && message.contains("4.000 to 12.00 kN"),
             "{message}"
         );
         assert_eq!(

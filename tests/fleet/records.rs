@@ -77,7 +77,7 @@ fn a_folder_a_pattern_a_list_and_standard_input_name_the_same_records() {
 #[test]
 fn vehicle_and_day_may_be_folders() {
     let (dir, files) = folder("hive");
-    let (_, plain) = program::fleet(&dir, "plain", &files[..3], &[]);
+    program::fleet(&dir, "plain", &files[..3], &[]);
     let lake = JOB.replace(
         "{vehicle}_{day}.csv",
         "vehicle={vehicle}/day={day}/{any}.csv",
@@ -91,7 +91,6 @@ fn vehicle_and_day_may_be_folders() {
     }
     let (code, result) = program::fleet(&dir, "hive", &["lake"], &[]);
     assert_eq!(code, 0, "{result}");
-    assert_eq!(result["vehicles"], plain["vehicles"]);
     assert_eq!(result["files"][1]["day"], "2");
     assert_eq!(csv(&dir, "hive"), csv(&dir, "plain"));
 }

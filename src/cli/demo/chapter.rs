@@ -1,6 +1,7 @@
 //! A chapter of the story, and the deck that it is told of.
 
 use crate::host::outcome::Findings;
+use crate::report::page::Card;
 use serde_json::Value;
 
 /// The model, as in models/truck-shell.
@@ -12,6 +13,10 @@ pub(in crate::cli) const DECK_NAME: &str = "truck.bdf";
 pub(super) struct Chapter {
     pub folder: &'static str,
     pub words: String,
+    /// What the card of the chapter is headed.
+    pub title: &'static str,
+    /// Two numbers with what they are.
+    pub numbers: Vec<(String, String)>,
     pub command: &'static str,
     pub step: Step,
 }
@@ -20,8 +25,8 @@ pub(super) struct Chapter {
 pub(super) struct Step {
     /// The answer as `result.json` has it.
     pub result: Value,
-    /// Sentence that states the result of the command.
-    pub summary: String,
     pub findings: Findings,
+    /// The result in short, with a picture of its report.
+    pub card: Card,
     pub seconds: f64,
 }

@@ -9,6 +9,7 @@ mod simulated_measurements;
 pub(super) use chapter::DECK_NAME;
 
 use super::run::recover_and_save;
+use crate::estimate::NORMAL_95;
 use crate::fe::SolveOptions;
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
@@ -18,7 +19,7 @@ use crate::host::work::Work;
 use crate::job::Job;
 use crate::report::command::{Report, save, write_page};
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::Page;
+use crate::report::page::{Card, Page};
 use crate::units::{UnitSystem, number};
 use crate::workflow;
 use chapter::{Chapter, DECK, Step};
@@ -102,7 +103,7 @@ impl Report for Outcome<Story> {
     }
 
     fn page(&self) -> Option<Page> {
-        Some(page::page(&self.chapters))
+        Some(page::page(self))
     }
 
     fn console(&self) -> Console {
@@ -139,6 +140,14 @@ fn planned(
     let step = play(work, "solve", folder, "1-solve", &plan)?;
     story.push(Chapter {
         folder: "1-solve",
+        title: "Solve",
+        numbers: vec![
+            number_of(&step.result["dofs"], "unknowns"),
+            (
+                format!("{:.1} s", step.seconds),
+                "of computation".to_owned(),
+            ),
+        ],
         words: format!(
             "Nine unit loads on the free truck: {} unknowns, one factor.",
             step.result["dofs"]
@@ -155,6 +164,14 @@ fn planned(
     let gauges = simulated_measurements::Glued::of(&step.result);
     story.push(Chapter {
         folder: "2-place",
+        title: "Place",
+        numbers: vec![
+            (
+                percent(step.result["efficiency_bound"].as_f64().unwrap_or(0.0)),
+                "of the best possible layout, proved".to_owned(),
+            ),
+            number_of(&step.result["candidates"]["rows"], "candidates"),
+        ],
         words: format!(
             "{} gauges chosen out of {} candidates; at least {:.1} % of the best possible layout.",
             gauges.len(),
@@ -183,6 +200,11 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let before = measured.error_of(&step.result);
     story.push(Chapter {
         folder: "3-recover",
+        title: "Recover",
+        numbers: vec![
+            (percent(before), "error of the wheel loads".to_owned()),
+            number_of(&step.result["residual_rms_microstrain"], "microstrain residual"),
+        ],
         words: format!(
             "Wheel loads are off by {:.1} % (rms against what was measured), and the residual says that they can't be trusted.",
             100.0 * before
@@ -201,6 +223,17 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let gap = &step.result["gap"];
     story.push(Chapter {
         folder: "4-reconcile",
+        title: "Reconcile",
+        numbers: vec![
+            (
+                percent(gap["before"].as_f64().unwrap_or(f64::NAN)),
+                "gap on runs never fitted, before".to_owned(),
+            ),
+            (
+                percent(gap["after"].as_f64().unwrap_or(f64::NAN)),
+                "after".to_owned(),
+            ),
+        ],
         words: format!(
             "Hidden was {}. Named: {}. Gap on runs never fitted: {:.1} % before, {:.1} % after.",
             measured.hidden,
@@ -225,6 +258,14 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let after = measured.error_of(&step.result);
     story.push(Chapter {
         folder: "5-recover-again",
+        title: "Recover again",
+        numbers: vec![
+            (percent(after), "error of the wheel loads".to_owned()),
+            number_of(
+                &step.result["residual_rms_microstrain"],
+                "microstrain residual",
+            ),
+        ],
         words: format!(
             "With the effect in the model the wheel loads are off by {:.1} %.",
             100.0 * after
@@ -237,6 +278,17 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let off = measured.payload_error_of(&step.result);
     story.push(Chapter {
         folder: "6-payload",
+        title: "Payload",
+        numbers: vec![
+            (percent(off), "error of the payload".to_owned()),
+            (
+                step.result["payload"]
+                    .as_array()
+                    .map_or(0, Vec::len)
+                    .to_string(),
+                "runs".to_owned(),
+            ),
+        ],
         words: format!(
             "Payload size and place from strain and wheel forces: off by {:.1} % (rms).",
             100.0 * off
@@ -249,11 +301,16 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let hottest = &step.result["elements"][0];
     story.push(Chapter {
         folder: "7-respond",
+        title: "Respond",
+        numbers: vec![
+            number_of(&hottest["max_von_mises"], "MPa, largest stress"),
+            number_of(&hottest["element"], "is its element"),
+        ],
         words: format!(
             "Hottest element {}: {:.0} ± {:.0} MPa in run {}.",
             hottest["element"],
             hottest["max_von_mises"].as_f64().unwrap_or(f64::NAN),
-            hottest["sigma"].as_f64().unwrap_or(f64::NAN),
+            NORMAL_95 * hottest["sigma"].as_f64().unwrap_or(f64::NAN),
             hottest["at"].as_str().unwrap_or("")
         ),
         command: "respond",
@@ -273,6 +330,19 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         chapters: story,
         folder: folder.to_owned(),
     })
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// A number of a result with what it is.
+fn number_of(value: &serde_json::Value, what: &str) -> (String, String) {
+    let shown = match value.as_f64() {
+        Some(v) if value.is_f64() => number(v),
+        _ => value.to_string(),
+    };
+    (shown, what.to_owned())
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {
@@ -330,8 +400,8 @@ where
 {
     Step {
         result: serde_json::to_value(&outcome.answer).unwrap_or_default(),
-        summary: outcome.summary(),
         findings: outcome.findings.clone(),
+        card: Card::of_page("", outcome.page().as_ref(), A::COMMAND == "recover"),
         seconds: outcome.seconds.total(),
     }
 }

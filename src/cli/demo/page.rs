@@ -1,32 +1,70 @@
 //! The page that leads through the story.
 
 use super::chapter::Chapter;
+use super::{Story, percent};
 use crate::finding::Severity;
-use crate::report::page::{Block, Page, Section};
+use crate::report::page::{Block, Card, Page, Section};
 
-/// One part a chapter, with links to its report and files.
-pub(super) fn page(story: &[Chapter]) -> Page {
+/// The truck with its gauges, then a card a step.
+pub(super) fn page(story: &Story) -> Page {
+    let chapters = &story.chapters;
+    let sections = vec![
+        Section::new("The truck", vec![Block::Cards(head(story))]),
+        Section::new(
+            "Step by step",
+            vec![
+                Block::Cards(chapters.iter().map(card).collect()),
+                Block::Note(
+                    "Every step is a folder with its job, tables and report: start your own from them.".to_owned(),
+                ),
+            ],
+        ),
+    ];
     Page::new(
-        "The truck story",
-        "Strain gauges and a finite element model in, wheel loads with intervals out: every folder holds the job, its tables and its report",
+        "A truck becomes its own load cell",
+        "Strain gauges and a finite element model give wheel loads with intervals",
         &[],
-        story.iter().map(section).collect(),
+        sections,
     )
 }
 
-fn section(c: &Chapter) -> Section {
+/// The plan of the gauges, large, with what came of it.
+fn head(story: &Story) -> Vec<Card> {
+    let plan = story.chapters.iter().find(|c| c.command == "place");
+    let found = match story.named.contains(&story.hidden) {
+        true => "found",
+        false => "not found",
+    };
+    let of = |c: &Chapter| {
+        let gauges = c.step.result["gauges"].as_array().map_or(0, Vec::len);
+        let mut card = c.step.card.clone();
+        card.title =
+            format!("{gauges} gauges, nine loads, one gauge with reversed polarity: {found}");
+        card.text = "Strokes lie along the gauges, arrows are the loads. One gauge is wired the wrong way round on purpose.".to_owned();
+        let number = |share: f64, what: &str| (percent(share), what.to_owned());
+        card.numbers = vec![
+            number(
+                story.wheel_force_error.before,
+                "error of the wheel loads as measured",
+            ),
+            number(story.wheel_force_error.after, "with the gauge put right"),
+            number(story.payload_error, "error of the payload"),
+        ];
+        card
+    };
+    plan.map(of).into_iter().collect()
+}
+
+fn card(c: &Chapter) -> Card {
     let link = |words: &str, file: &str| (words.to_owned(), format!("{}/{file}", c.folder));
-    let mut blocks = vec![
-        Block::Text(c.words.to_owned()),
-        Block::Text(c.step.summary.clone()),
-        Block::Links(vec![
-            link("report", "report.html"),
-            link("result.json", "result.json"),
-        ]),
-        Block::Note(format!("strainbridge {}", c.command)),
+    let mut card = c.step.card.clone();
+    card.title = format!("{} ({})", c.title, c.folder);
+    card.text.clone_from(&c.words);
+    card.numbers.clone_from(&c.numbers);
+    card.links = vec![
+        link("report", "report.html"),
+        link("numbers", "result.json"),
     ];
-    let serious = c.step.findings.iter();
-    let serious = serious.filter(|f| f.severity >= Severity::Warning).take(4);
-    blocks.extend(serious.map(|f| Block::Note(format!("{}: {}", f.code, f.message))));
-    Section::new(c.folder, blocks)
+    card.is_bad = (c.step.findings.iter()).any(|f| f.severity == Severity::Error);
+    card
 }

@@ -73,6 +73,7 @@ impl Room {
             Block::Lines(text) => lines(text),
             // There are no files beside a notebook.
             Block::Links(_) => html! {},
+            Block::Cards(_) => block_html(b),
             Block::Folded { summary, blocks } => {
                 let blocks = self.blocks(blocks);
                 html! { details { summary { (summary) } @for b in &blocks { (b) } } }

@@ -1,6 +1,8 @@
 //! What a page is made of. Plain text throughout: each rendering escapes it in its own way.
 
 use crate::finding::Finding;
+use crate::report::drawing::picture::Picture;
+use crate::report::drawing::pictures;
 use crate::report::figure::Figure;
 use crate::report::scene::SceneView;
 use crate::workflow::cases::from_folder;
@@ -113,6 +115,8 @@ pub enum Block {
     Scene(SceneView),
     /// Lines as they are, in type of one width.
     Lines(String),
+    /// Cards side by side; one alone is as wide as the page.
+    Cards(Vec<Card>),
     /// Links of a page to files beside it: words, path.
     Links(Vec<(String, String)>),
     /// What only some look for: folded away under `summary` on a screen, in full on paper.
@@ -146,6 +150,53 @@ impl Block {
     pub fn pairs(numbers: &[(String, String)]) -> Self {
         let row = |(name, value): &(String, String)| vec![name.clone(), value.clone()];
         Self::table(&[], numbers.iter().map(row).collect())
+    }
+}
+
+/// A result in short: its picture, a sentence, a few numbers, where to read more.
+#[derive(Clone, Debug)]
+pub struct Card {
+    /// Heading.
+    pub title: String,
+    /// Sentence.
+    pub text: String,
+    /// Numbers with what they are.
+    pub numbers: Vec<(String, String)>,
+    /// Words and paths of files.
+    pub links: Vec<(String, String)>,
+    /// Whether the result cannot be relied on.
+    pub is_bad: bool,
+    pub(in crate::report) picture: Option<Picture>,
+}
+
+impl Card {
+    /// A card with the first picture of a report: of the model, or where it is `of_numbers` of its first figure.
+    pub fn of_page(title: impl Into<String>, page: Option<&Page>, of_numbers: bool) -> Self {
+        let blocks = || {
+            page.iter()
+                .flat_map(|p| &p.sections)
+                .flat_map(|s| &s.blocks)
+        };
+        let still = blocks().find_map(|b| match b {
+            Block::Scene(s) => Some(s.still.clone()),
+            _ => None,
+        });
+        let figure = blocks().find_map(|b| match b {
+            Block::Figure(f) => pictures(f).into_iter().next(),
+            _ => None,
+        });
+        let picture = match of_numbers {
+            true => figure.or(still),
+            false => still.or(figure),
+        };
+        Self {
+            title: title.into(),
+            text: String::new(),
+            numbers: Vec::new(),
+            links: Vec::new(),
+            is_bad: false,
+            picture,
+        }
     }
 }
 

@@ -1,8 +1,9 @@
 //! A page as one HTML file: no script from elsewhere, findings first.
 
-use super::block::{Block, Page, Table};
+use super::block::{Block, Card, Page, Table};
 use crate::finding::{Finding, Severity};
-use crate::report::drawing::to_svg;
+use crate::report::drawing::picture::Picture;
+use crate::report::drawing::{pictures, to_svg};
 use crate::report::figure::scripts;
 use crate::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -27,6 +28,7 @@ impl Page {
                     meta name="viewport" content="width=device-width,initial-scale=1";
                     title { (self.title) }
                     style { (PreEscaped(STYLE)) }
+                    noscript { style { ".controls,.pick,.bar,.tools,.canvas{display:none}" } }
                 }
                 body {
                     h1 { (self.title) }
@@ -55,21 +57,52 @@ pub(in crate::report) fn block(b: &Block) -> Markup {
         Block::Stressed(lead, rest) => html! { p { b { (lead) } " " (rest) } },
         Block::Note(t) => html! { p.muted { (t) } },
         Block::Table(t) => table(t),
-        Block::Figure(f) => html! { (f) },
+        Block::Figure(f) => html! {
+            (f)
+            noscript { @for p in pictures(f) { (still(&p, &f.label)) } }
+        },
         Block::Scene(s) => html! {
             (s.markup)
-            noscript { figure.plot { (to_svg(&s.still, "the model with its gauges and loads")) } }
+            noscript { (still(&s.still, "the model with its gauges and loads")) }
         },
         Block::Lines(t) => html! { pre { (t) } },
-        Block::Links(links) => html! {
-            p.muted { @for (i, (words, path)) in links.iter().enumerate() {
-                @if i > 0 { " · " }
-                a href=(path) { (words) }
-            } }
-        },
+        Block::Cards(cards) => html! { div.cards { @for c in cards { (card(c)) } } },
+        Block::Links(links) => html! { p.muted { (list_of_links(links)) } },
         Block::Folded { summary, blocks } => html! {
             details { summary { (summary) } @for b in blocks { (block(b)) } }
         },
+    }
+}
+
+fn list_of_links(links: &[(String, String)]) -> Markup {
+    html! {
+        @for (i, (words, path)) in links.iter().enumerate() {
+            @if i > 0 { " · " }
+            a href=(path) { (words) }
+        }
+    }
+}
+
+/// A picture that needs no script.
+fn still(picture: &Picture, label: &str) -> Markup {
+    html! {
+        figure.plot {
+            @if !picture.title.is_empty() { b { (picture.title) } }
+            (to_svg(picture, label))
+            @if !picture.caption.is_empty() { figcaption.muted { (picture.caption) } }
+        }
+    }
+}
+
+fn card(c: &Card) -> Markup {
+    html! {
+        article.card.bad[c.is_bad] {
+            h3 { (c.title) }
+            @if let Some(p) = &c.picture { (to_svg(p, &c.title)) }
+            p { (c.text) }
+            p.numbers { @for (value, what) in &c.numbers { span { b { (value) } " " (what) } } }
+            p { (list_of_links(&c.links)) }
+        }
     }
 }
 

@@ -4,5 +4,7 @@ mod block;
 mod html;
 
 pub use crate::units::number;
-pub use block::{Block, CellLink, Page, Paper, Section, Table, figure_section, table_section};
+pub use block::{
+    Block, Card, CellLink, Page, Paper, Section, Table, figure_section, table_section,
+};
 pub(in crate::report) use html::{block as block_html, judged};

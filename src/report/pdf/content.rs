@@ -6,7 +6,7 @@ use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{STROKES, pictures, views};
-use crate::report::page::{Block, Page, Paper, Section, Table, number};
+use crate::report::page::{Block, Card, Page, Paper, Section, Table, number};
 use serde_json::{Value, json};
 
 /// Where a report comes from.
@@ -129,6 +129,7 @@ fn block(b: &Block) -> Vec<Value> {
             let lines: Vec<String> = t.lines().take(MOST_ROWS).map(printable).collect();
             vec![json!({ "kind": "lines", "lines": lines })]
         }
+        Block::Cards(cards) => cards.iter().flat_map(card).collect(),
         // Paper has no links.
         Block::Links(_) => Vec::new(),
         Block::Folded { summary, blocks } => {
@@ -137,6 +138,15 @@ fn block(b: &Block) -> Vec<Value> {
             out
         }
     }
+}
+
+fn card(c: &Card) -> Vec<Value> {
+    let words = |kind: &str, t: &str| json!({ "kind": kind, "text": breakable(t, IN_TEXT) });
+    let mut out = vec![words("heading", &c.title), words("text", &c.text)];
+    out.extend(drawn(c.picture.iter().cloned().collect()));
+    let number = |(value, what): &(String, String)| words("note", &format!("{value} {what}"));
+    out.extend(c.numbers.iter().map(number));
+    out
 }
 
 fn drawn(pictures: Vec<Picture>) -> Vec<Value> {
