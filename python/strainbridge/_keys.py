@@ -20,7 +20,7 @@ class BallastKeys(Section):
     max_mass: _Key[Any]
     """Largest single mass [job unit of mass]; default: none."""
     properties: _Key[Any]
-    """Properties whose grids may carry the masses; default: all shells; bars if there are no shells."""
+    """Properties whose grids may carry the masses, ids or names; default: all shells; bars if there are no shells."""
     region: _Key[Any]
     """Region in which the masses may sit, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
     run: _Key[Any]
@@ -32,6 +32,9 @@ class CalibrationKeys(Section):
 
     angle_tolerance_deg: _Key[Any]
     """How far gauges may be turned from their drawing, one standard deviation: stated, their angle is found from the runs [deg]; default: 0."""
+    check: _Key[Any]
+    """Runs of known load that S is not calibrated with, but that are recovered and compared with it. A column `check` of the runs file (true or
+    false) does the same; default: none."""
     depends_on: _Key[Any]
     """Column of the runs file, such as speed: whether loads come out larger with it is tested; default: none."""
     model_uncertainty_rel: _Key[Any]
@@ -43,6 +46,11 @@ class CalibrationKeys(Section):
     """Columns of the runs file: runs alike in these are repeats, and what they have in common counts once; default: runs of equal loads."""
     runs: _Key[Any]
     """Runs that teach; default: every run of [measured] whose loads [runs] gives."""
+    scale_sd: _Key[Any]
+    """Relative error that the known loads of all runs share, one standard deviation, a fraction: one scale or one load cell measured them all.
+    Columns <load>_sd state errors that are independent from run to run; default: 0."""
+    terms: _Key[Any]
+    """Model of the strain: 'linear' is S f, 'intercept' adds the strain that each gauge reads without load; default: linear."""
 
 
 class CandidatesKeys(Section):
@@ -63,7 +71,7 @@ class CandidatesKeys(Section):
     exclude_elements: _Key[Any]
     """Elements left out; default: none."""
     exclude_properties: _Key[Any]
-    """Properties left out; default: none."""
+    """Properties left out, ids or names; default: none."""
     file: _Key[Any]
     """TOML file with a section [candidates] whose lists of properties and elements (properties, elements, exclude_properties, exclude_elements,
     wanted_elements) are added to those of the job; default: none."""
@@ -72,7 +80,7 @@ class CandidatesKeys(Section):
     each gauge, its spread over the grid counts as scatter; S and the strain by load of the chosen gauges are averaged over the grid. A place
     where the grid does not fit is replaced [job unit of length]; default: 0."""
     properties: _Key[Any]
-    """Property ids; default: all."""
+    """Property ids, or names of the deck as `check` shows them; default: all."""
     rosette: _Key[Any]
     """Rosettes too; default: none."""
     sets: _Key[Any]
@@ -90,6 +98,25 @@ class CombinationKeys(Section):
     """Name of the combination in tables and reports of `recover`, `calibrate`, `place` and `fleet`; required."""
     terms: _Key[Any]
     """Factor by load, such as { 'LF.FZ' = 1, 'RF.FZ' = 1 }; required."""
+
+
+class CompareKeys(Section):
+    """Keys of ``compare``."""
+
+    columns: _Key[Any]
+    """Column of a load, where the file names it otherwise; default: the name of the load."""
+    file: _Key[Any]
+    """Record of loads (any format of records), or runs with a column `run`; required."""
+    noise: _Key[Any]
+    """Noise of the recorded loads, one standard deviation: it widens the intervals that `share_within` counts by [the file's units]; default:
+    none."""
+    shift_s: _Key[Any]
+    """Time added to the times of the file to get those of the strain record: a number, or 'estimate' from the loads of both [s]; default:
+    estimate."""
+    time_unit: _Key[Any]
+    """Unit of the column `time`, where the file states none; default: s, or what the size of the times shows."""
+    units: _Key[Any]
+    """Units of the file; a column that states another one is a fault; default: the units of the columns, else report_units."""
 
 
 class CorrectionKeys(Section):
@@ -178,9 +205,9 @@ class GaugeKeys(Section):
     """Place along a bar or beam, share of its length from end A; only together with `point`. Results must contain the station where PLOAD1 acts
     on the bar or its section changes; default: 0."""
     surface: _Key[Any]
-    """Side of a shell: top is Z2, bottom is Z1; default: top; the nearest skin for a position."""
+    """Side of a shell: top is Z2, bottom is Z1; default: with `position` the side of the nearest skin, else top."""
     surface2: _Key[Any]
-    """Side of the other pair of a bridge; default: the opposite."""
+    """Side of the other pair of a bridge; default: the side that faces away from the first pair."""
     transverse_sensitivity: _Key[Any]
     """Transverse sensitivity Kt, a fraction; default: 0."""
 
@@ -347,12 +374,15 @@ class ReconcileKeys(Section):
     tolerance: _Key[Any]
     """How well gauges were glued, one standard deviation; default: none."""
     zones: _Key[Any]
-    """Properties whose stiffness may be wrong together, such as { L4 = [14] }; default: each property with gauges."""
+    """Properties whose stiffness may be wrong together, ids or names of the deck, such as { L4 = [14], left = 'RailLeft' }; default: each
+    property with gauges."""
 
 
 class RecoverKeys(Section):
     """Keys of ``recover``."""
 
+    csv_every: _Key[Any]
+    """`loads.csv` has a row for every so many samples; default: 1."""
     files: _Key[Any]
     """Which of them; default: all, but for long histories."""
     slope: _Key[Any]
@@ -382,7 +412,11 @@ class RespondKeys(Section):
     hottest: _Key[Any]
     """How many of the hottest; default: 20."""
     loads: _Key[Any]
-    """Table or record of loads [report units]; default: recovered from [measured]."""
+    """Table or record of loads, as `recover` writes them (loads.csv, loads.bin, loads.rsp, loads.parquet) or reads them; a record has no
+    intervals, and its loads count as exact [report units]; default: recovered from [measured]."""
+    slope: _Key[Any]
+    """Power of the stress range in pseudo-damage: with it `fatigue.csv` has the damage of each reported place over the history of loads;
+    default: no damage."""
 
 
 class RunsKeys(Section):
@@ -404,19 +438,43 @@ class RunsKeys(Section):
     """Where wheel forces come from: measured, or computed for flat ground (then they prove nothing); default: measured."""
 
 
+class SectionKeys(Section):
+    """Keys of ``section``."""
+
+    end_s: _Key[Any]
+    """Time at which it ends; a sample at this time belongs to the next section [s]; required without `file`."""
+    file: _Key[Any]
+    """A separate strain record, instead of times, with the columns, zero and corrections of [measured]; default: none."""
+    name: _Key[Any]
+    """Name of the section; required."""
+    repeats: _Key[Any]
+    """How often it occurs in the duty cycle; default: 1."""
+    start_s: _Key[Any]
+    """Time of its first sample [s]; required without `file`."""
+
+
 class SensitivityKeys(Section):
     """Keys of ``sensitivity``."""
 
     columns: _Key[Any]
     """Column of a load, where the file names it otherwise; default: the name of the load or channel."""
+    common_zero: _Key[Any]
+    """CSV with the columns gauge and common_zero: strain that the gauges read without load, as `calibrate` writes it with terms = 'intercept';
+    it is subtracted from all readings [microstrain]; default: none."""
     covariance: _Key[Any]
     """How far that S may be off: calibration.bin, as `calibrate` writes it; default: exact."""
     file: _Key[Any]
     """CSV: a row a gauge (column gauge), a column a load [microstrain per load]; required."""
     per: _Key[Any]
     """Units of the loads that S counts by; default: job units, not report_units."""
+    range: _Key[Any]
+    """Smallest and largest load of the calibration by load, such as { 'LF.FZ' = [0, 12] }, as `calibrate` writes it: `recover` and `payload`
+    report loads beyond it [the units of `per`]; default: not tested."""
     signatures: _Key[Any]
     """Signatures of effects of size one, computed elsewhere; default: none."""
+    strain_range: _Key[Any]
+    """Smallest and largest reading of the calibration by gauge, as `calibrate` writes it: `recover` reports readings far beyond it
+    [microstrain]; default: not tested."""
 
 
 class StudyKeys(Section):
@@ -483,6 +541,8 @@ class Keys:
     """Where `place` may put gauges; default: all shells."""
     combination: _Key[Items[CombinationKeys]]
     """A sum of loads, recovered with its own 95 % interval."""
+    compare: _Key[CompareKeys]
+    """Recorded loads that `recover` compares its loads with."""
     correction: _Key[Items[CorrectionKeys]]
     """Known fault of a channel, corrected in every reading and record of the job."""
     dynamic: _Key[DynamicKeys]
@@ -514,6 +574,8 @@ class Keys:
     """Strain and stress anywhere from recovered loads."""
     runs: _Key[RunsKeys]
     """Other measurements of each run: wheel forces, payload."""
+    section: _Key[Items[SectionKeys]]
+    """A section of the record (a stretch of road, an event): `recover` reports loads, statistics and damage for each."""
     sensitivity: _Key[SensitivityKeys]
     """S computed elsewhere, instead of [model]; together with [model] only where `covariance` states a calibrated S."""
     study: _Key[StudyKeys]
