@@ -2,6 +2,7 @@
 
 use crate::host::outcome::Findings;
 use crate::report::page::Card;
+use crate::units::number;
 use serde_json::Value;
 
 /// The model, as in models/truck-shell.
@@ -29,4 +30,18 @@ pub(super) struct Step {
     /// The result in short, with a picture of its report.
     pub card: Card,
     pub seconds: f64,
+}
+
+/// A share in percent.
+pub(super) fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
+/// A number of a result with what it is.
+pub(super) fn number_of(value: &serde_json::Value, what: &str) -> (String, String) {
+    let shown = match value.as_f64() {
+        Some(v) if value.is_f64() => number(v),
+        _ => value.to_string(),
+    };
+    (shown, what.to_owned())
 }

@@ -22,7 +22,8 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Card, Page};
 use crate::units::{UnitSystem, number};
 use crate::workflow;
-use chapter::{Chapter, DECK, Step};
+use chapter::{Chapter, DECK, Step, number_of, percent};
+use page::Figures;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -103,7 +104,13 @@ impl Report for Outcome<Story> {
     }
 
     fn page(&self) -> Option<Page> {
-        Some(page::page(self))
+        let figures = Figures {
+            found: self.named.contains(&self.hidden),
+            before: self.wheel_force_error.before,
+            after: self.wheel_force_error.after,
+            payload: self.payload_error,
+        };
+        Some(page::page(&self.chapters, &figures))
     }
 
     fn console(&self) -> Console {
@@ -182,6 +189,61 @@ fn planned(
         step,
     });
     Ok(gauges)
+}
+
+/// Payload and stress with the corrected gauge; the error of the payload.
+fn used(
+    folder: &Path,
+    work: &mut Work,
+    story: &mut Vec<Chapter>,
+    corrected: &dyn Fn(String) -> String,
+    measured: &simulated_measurements::Simulated,
+) -> Result<f64, Faults> {
+    let strain = "strain.csv";
+    let job = write(folder, "payload.toml", &corrected(jobs::payload(strain)))?;
+    let step = play(work, "payload", folder, "6-payload", &job)?;
+    let off = measured.payload_error_of(&step.result);
+    story.push(Chapter {
+        folder: "6-payload",
+        title: "Payload",
+        numbers: vec![
+            (percent(off), "error of the payload".to_owned()),
+            (
+                step.result["payload"]
+                    .as_array()
+                    .map_or(0, Vec::len)
+                    .to_string(),
+                "runs".to_owned(),
+            ),
+        ],
+        words: format!(
+            "Payload size and place from strain and wheel forces: off by {:.1} % (rms).",
+            100.0 * off
+        ),
+        command: "payload",
+        step,
+    });
+    let job = write(folder, "respond.toml", &corrected(jobs::respond(strain)))?;
+    let step = play(work, "respond", folder, "7-respond", &job)?;
+    let hottest = &step.result["elements"][0];
+    story.push(Chapter {
+        folder: "7-respond",
+        title: "Respond",
+        numbers: vec![
+            number_of(&hottest["max_von_mises"], "MPa, largest stress"),
+            number_of(&hottest["element"], "is its element"),
+        ],
+        words: format!(
+            "Hottest element {}: {:.0} ± {:.0} MPa in run {}.",
+            hottest["element"],
+            hottest["max_von_mises"].as_f64().unwrap_or(f64::NAN),
+            NORMAL_95 * hottest["sigma"].as_f64().unwrap_or(f64::NAN),
+            hottest["at"].as_str().unwrap_or("")
+        ),
+        command: "respond",
+        step,
+    });
+    Ok(off)
 }
 
 fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
@@ -273,49 +335,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         command: "recover",
         step,
     });
-    let job = write(folder, "payload.toml", &corrected(jobs::payload(strain)))?;
-    let step = play(work, "payload", folder, "6-payload", &job)?;
-    let off = measured.payload_error_of(&step.result);
-    story.push(Chapter {
-        folder: "6-payload",
-        title: "Payload",
-        numbers: vec![
-            (percent(off), "error of the payload".to_owned()),
-            (
-                step.result["payload"]
-                    .as_array()
-                    .map_or(0, Vec::len)
-                    .to_string(),
-                "runs".to_owned(),
-            ),
-        ],
-        words: format!(
-            "Payload size and place from strain and wheel forces: off by {:.1} % (rms).",
-            100.0 * off
-        ),
-        command: "payload",
-        step,
-    });
-    let job = write(folder, "respond.toml", &corrected(jobs::respond(strain)))?;
-    let step = play(work, "respond", folder, "7-respond", &job)?;
-    let hottest = &step.result["elements"][0];
-    story.push(Chapter {
-        folder: "7-respond",
-        title: "Respond",
-        numbers: vec![
-            number_of(&hottest["max_von_mises"], "MPa, largest stress"),
-            number_of(&hottest["element"], "is its element"),
-        ],
-        words: format!(
-            "Hottest element {}: {:.0} ± {:.0} MPa in run {}.",
-            hottest["element"],
-            hottest["max_von_mises"].as_f64().unwrap_or(f64::NAN),
-            NORMAL_95 * hottest["sigma"].as_f64().unwrap_or(f64::NAN),
-            hottest["at"].as_str().unwrap_or("")
-        ),
-        command: "respond",
-        step,
-    });
+    let off = used(folder, work, &mut story, &corrected, &measured)?;
     let step = |c: &Chapter| StepTold {
         command: c.command,
         folder: c.folder,
@@ -330,19 +350,6 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         chapters: story,
         folder: folder.to_owned(),
     })
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
-}
-
-/// A number of a result with what it is.
-fn number_of(value: &serde_json::Value, what: &str) -> (String, String) {
-    let shown = match value.as_f64() {
-        Some(v) if value.is_f64() => number(v),
-        _ => value.to_string(),
-    };
-    (shown, what.to_owned())
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {

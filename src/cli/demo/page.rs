@@ -1,15 +1,24 @@
 //! The page that leads through the story.
 
-use super::chapter::Chapter;
-use super::{Story, percent};
+use super::chapter::{Chapter, percent};
 use crate::finding::Severity;
 use crate::report::page::{Block, Card, Page, Section};
 
+/// What the story comes to.
+pub(super) struct Figures {
+    /// Whether the hidden effect was named.
+    pub found: bool,
+    /// Error of the wheel loads, rms, relative: as measured, and with the effect in the model.
+    pub before: f64,
+    pub after: f64,
+    /// Error of the payload, rms, relative.
+    pub payload: f64,
+}
+
 /// The truck with its gauges, then a card a step.
-pub(super) fn page(story: &Story) -> Page {
-    let chapters = &story.chapters;
+pub(super) fn page(chapters: &[Chapter], figures: &Figures) -> Page {
     let sections = vec![
-        Section::new("The truck", vec![Block::Cards(head(story))]),
+        Section::new("The truck", vec![Block::Cards(head(chapters, figures))]),
         Section::new(
             "Step by step",
             vec![
@@ -29,9 +38,9 @@ pub(super) fn page(story: &Story) -> Page {
 }
 
 /// The plan of the gauges, large, with what came of it.
-fn head(story: &Story) -> Vec<Card> {
-    let plan = story.chapters.iter().find(|c| c.command == "place");
-    let found = match story.named.contains(&story.hidden) {
+fn head(chapters: &[Chapter], figures: &Figures) -> Vec<Card> {
+    let plan = chapters.iter().find(|c| c.command == "place");
+    let found = match figures.found {
         true => "found",
         false => "not found",
     };
@@ -43,12 +52,9 @@ fn head(story: &Story) -> Vec<Card> {
         card.text = "Strokes lie along the gauges, arrows are the loads. One gauge is wired the wrong way round on purpose.".to_owned();
         let number = |share: f64, what: &str| (percent(share), what.to_owned());
         card.numbers = vec![
-            number(
-                story.wheel_force_error.before,
-                "error of the wheel loads as measured",
-            ),
-            number(story.wheel_force_error.after, "with the gauge put right"),
-            number(story.payload_error, "error of the payload"),
+            number(figures.before, "error of the wheel loads as measured"),
+            number(figures.after, "with the gauge put right"),
+            number(figures.payload, "error of the payload"),
         ];
         card
     };
