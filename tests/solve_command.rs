@@ -354,7 +354,7 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
     }
     let path = dir.join("job.toml");
     let run = |command: &str| {
-        let done = strainbridge(&[command, path.to_str().unwrap()]);
+        let done = strainbridge(&[command, path.to_str().unwrap(), "-v"]);
         let err = text(&done.stderr);
         // Three gauges read in a proportion that no load makes.
         let is_wrong = command == "recover";

@@ -62,10 +62,9 @@ impl CalibratedLoad<'_> {
         ([low, high], high.max(-low))
     }
 
-    /// Size over the largest of the calibration, `1 + (f - high) / largest` beyond `high` and alike below `low`; at most 1 within the range.
+    /// Size over the largest of the calibration, whichever the direction.
     fn ratio(&self, value: f64) -> f64 {
-        let ([low, high], largest) = self.span_with_zero();
-        1.0 + (value - high).max(low - value) / largest
+        value.abs() / self.span_with_zero().1
     }
 
     /// Whether a load is beyond the range by more than its noise, `factor` half widths.
@@ -196,9 +195,13 @@ mod tests {
             check([4e3, 12e3], &[(18e3, 10.0)]).unwrap().0,
             Severity::Error
         );
-        // The other way, as far as the load went the one way.
+        // The other way: a warning as far as the load went the one way.
         assert_eq!(
             check([0.0, 12e3], &[(-6e3, 10.0)]).unwrap().0,
+            Severity::Warning
+        );
+        assert_eq!(
+            check([0.0, 12e3], &[(-18e3, 10.0)]).unwrap().0,
             Severity::Error
         );
         assert_eq!(

@@ -186,7 +186,9 @@ impl DeckEntry {
 
     /// Mass and centre of gravity in words.
     fn weight(&self) -> String {
-        if !self.mass.is_finite() || self.cg.iter().any(|v| !v.is_finite()) {
+        // In kilogrammes too.
+        let scale = self.shown.map_or(1.0, |u| u.system.mass_kg());
+        if !(self.mass * scale).is_finite() || self.cg.iter().any(|v| !v.is_finite()) {
             return "more than numbers can be".to_owned();
         }
         let wtmass = match self.wtmass == 1.0 {
