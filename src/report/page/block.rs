@@ -71,6 +71,12 @@ impl Page {
         self
     }
 
+    /// Whether it leads to other reports, which have their findings.
+    pub(super) fn is_of_cards(&self) -> bool {
+        let mut blocks = self.sections.iter().flat_map(|s| &s.blocks);
+        blocks.any(|b| matches!(b, Block::Cards(_)))
+    }
+
     /// The findings, the worst first, else in the order of the stages.
     pub fn worst_first(&self) -> Vec<&Finding> {
         let mut sorted: Vec<&Finding> = self.findings.iter().collect();

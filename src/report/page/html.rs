@@ -34,8 +34,10 @@ impl Page {
                     h1 { (self.title) }
                     @if !self.summary.is_empty() { p.summary { b { (self.summary) } } }
                     p.muted { (self.lead) }
-                    h2 { "Findings" }
-                    (judged(&findings))
+                    @if !(findings.is_empty() && self.is_of_cards()) {
+                        h2 { "Findings" }
+                        (judged(&findings))
+                    }
                     (sections)
                     (PreEscaped(scripts))
                 }

@@ -85,10 +85,14 @@ pub(super) fn still(scene: &Scene) -> Picture {
         (faces.iter().flat_map(|f| f.corners))
             .chain(bars.iter().flatten().copied())
             .chain(scene.marks.iter().map(|m| flat(m.at))),
+        match scene.arrows.is_empty() {
+            true => AROUND,
+            false => AROUND.max(UPRIGHT * ARROW),
+        },
     );
     let place = |x: Vec3| frame.place(flat(x));
     let mut picture = Picture {
-        size: [UPRIGHT, frame.tall + 2.0 * AROUND],
+        size: [UPRIGHT, frame.tall + 2.0 * frame.above],
         ..Picture::default()
     };
     let lines = bars.iter().map(|l| l.map(|p| frame.place(p)).to_vec());
@@ -230,11 +234,13 @@ struct Frame {
     low: [f64; 2],
     scale: f64,
     aside: f64,
+    above: f64,
     tall: f64,
 }
 
 impl Frame {
-    fn about(points: impl Iterator<Item = [f64; 2]>) -> Self {
+    /// Holds the points, with so much space above and below them.
+    fn about(points: impl Iterator<Item = [f64; 2]>, above: f64) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
         for p in points.filter(|p| p.iter().all(|v| v.is_finite())) {
             for k in 0..2 {
@@ -257,6 +263,7 @@ impl Frame {
             low: low.map(|v| if v.is_finite() { v } else { 0.0 }),
             scale,
             aside: (UPRIGHT - wide[0] * scale) / 2.0,
+            above,
             tall: wide[1] * scale,
         }
     }
@@ -264,7 +271,7 @@ impl Frame {
     fn place(&self, p: [f64; 2]) -> [f64; 2] {
         [
             self.aside + self.scale * (p[0] - self.low[0]),
-            AROUND + self.scale * (p[1] - self.low[1]),
+            self.above + self.scale * (p[1] - self.low[1]),
         ]
     }
 }
