@@ -10,7 +10,7 @@ use crate::recovery::{ErrorModel, Readings, recover};
 pub struct CheckedRun {
     /// Recovered loads.
     pub estimate: LoadEstimate,
-    /// What was applied.
+    /// Applied load.
     pub run: KnownRun,
 }
 

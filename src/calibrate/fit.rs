@@ -38,7 +38,7 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     }
 }
 
-/// The same with the common zero, where one is sought, as a column.
+/// Calibrates with the common zero as one more column, if the task asks for it.
 fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     let mut fitted = Fitted::of(task, &[])?;
     let mut shifts = shift::check(task, &fitted.state);

@@ -140,7 +140,7 @@ struct Tested {
     candidate: Candidate,
     /// Gauge at which it is clearest.
     gauge: usize,
-    /// Its chance times gauges and terms of its kind (Bonferroni), at most 1.
+    /// Chance of a term so large, times gauges and terms of its kind (Bonferroni), at most 1.
     p: f64,
 }
 

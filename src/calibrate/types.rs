@@ -158,7 +158,7 @@ pub enum Term {
 }
 
 impl Term {
-    /// As in result.json.
+    /// Word of `result.json`.
     pub fn name(self) -> &'static str {
         match self {
             Self::CommonZero => "common zero",
@@ -289,7 +289,7 @@ pub enum ShiftWord {
 }
 
 impl ShiftWord {
-    /// As in result.json.
+    /// Word of `result.json`.
     pub fn name(self) -> &'static str {
         match self {
             Self::None => "none",

@@ -246,7 +246,7 @@ pub struct VerifyArguments {
     pub common: CommonArguments,
 }
 
-/// What is done with kept solutions.
+/// Tasks on the cache of solutions.
 #[derive(clap::Args, Debug)]
 pub struct CacheArguments {
     /// The task

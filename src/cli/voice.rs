@@ -16,7 +16,7 @@ use std::process::ExitCode;
 enum Level {
     /// Faults, and findings of severity error.
     Quiet,
-    /// What fits a terminal; of findings with one code the first.
+    /// Lines that fit a terminal, and of findings with one code the first.
     Plain,
     /// Every row, every finding, and seconds by stage.
     Verbose,

@@ -39,7 +39,7 @@ pub struct Outcome<A> {
     pub inputs: Vec<Input>,
     /// Where they stand, and other files that the answer came from: what is written never replaces one.
     pub sources: Vec<PathBuf>,
-    /// What is to be known of the answer, the worst first.
+    /// Findings on the answer, the worst first.
     pub findings: Findings,
     /// Seconds by stage.
     pub seconds: Seconds,

@@ -17,9 +17,9 @@ use std::sync::Arc;
 
 /// Recorded loads.
 pub(crate) enum RecordedLoads {
-    /// Of static runs.
+    /// Loads of static runs.
     Runs(Vec<RunRow>),
-    /// Of a record.
+    /// Loads of a record.
     Record(Box<LoadRecord>),
 }
 

@@ -7,7 +7,7 @@ use nastran::place::Place;
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// What a repeated card is called in a message.
+/// Names of a repeated card for messages.
 struct Words<'a> {
     card: &'a dyn Fn() -> String,
     field: &'static str,

@@ -31,7 +31,7 @@ pub struct Gain {
     /// Loads and factors behind every row of `gain`: itself, or a sum of loads.
     rows: Vec<Vec<(usize, f64)>>,
     errors: ErrorModel,
-    /// Of a calibrated S, for the gauges used; and the variance of each row of `gain` as a function of the loads of S.
+    /// Covariance of a calibrated S for the gauges used, and the variance of each row of `gain` as a function of the loads of S.
     calibrated: Option<(Uncertainty, LoadForms)>,
 }
 

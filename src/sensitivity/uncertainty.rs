@@ -2,7 +2,7 @@
 
 use crate::linalg::Matrix;
 
-/// What stands behind the interval of a load besides noise: `Cov(eps | f) = q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k) + A`, `h = f - center`.
+/// Covariance of strain under loads, besides noise: `Cov(eps | f) = q(f)^2 C + sum_jk h_j h_k Cov(S_.j, S_.k) + A`, `h = f - center`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Uncertainty {
     /// Covariance of the entries of S, `(n k) x (n k)` by rows, entry `g k + l` for gauge `g` and load `l`; strain^2 per load^2.
@@ -118,7 +118,7 @@ impl Uncertainty {
         out
     }
 
-    /// The same without a center: what the errors of S make of it is in the additive part, larger than before at loads beyond the half of it.
+    /// Returns the uncertainty without a center: what the errors of S make of it is in the additive part, larger than before at loads beyond the half of it.
     fn without_center(&self) -> Self {
         if self.center.is_empty() {
             return self.clone();
@@ -281,7 +281,7 @@ impl Uncertainty {
 pub struct LoadForms {
     /// `k x k` matrix `B` by rows a row of the filter: `f' B f`.
     loads: Vec<f64>,
-    /// The same for the loads less `center`; empty without a center.
+    /// Errors of S for loads less `center`; empty without a center.
     from_center: Vec<f64>,
     /// See [`Uncertainty::center`].
     center: Vec<f64>,

@@ -6,7 +6,7 @@ use super::line::text_of;
 use super::vocabulary::{case_word, effect_of_card};
 use crate::place::Place;
 
-/// What BEGIN may begin.
+/// Sections that a BEGIN statement names.
 ///
 /// # Reference
 /// MSC Nastran 2022.4 and Simcenter Nastran quick reference guides, BEGIN BULK.

@@ -14,7 +14,7 @@ pub(in crate::cli) const DECK_NAME: &str = "truck.bdf";
 pub(super) struct Chapter {
     pub folder: &'static str,
     pub words: String,
-    /// What the card of the chapter is headed.
+    /// Heading of the card of the chapter.
     pub title: &'static str,
     /// Two numbers with what they are.
     pub numbers: Vec<(String, String)>,

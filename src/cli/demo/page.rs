@@ -4,7 +4,7 @@ use super::chapter::{Chapter, percent};
 use crate::finding::Severity;
 use crate::report::page::{Block, Card, Page, Section};
 
-/// What the story comes to.
+/// Errors before and after the correction, for the head of the page.
 pub(super) struct Figures {
     /// Whether the hidden effect was named.
     pub found: bool,

@@ -51,7 +51,7 @@ impl Console {
         }
     }
 
-    /// The same with the next step of the user.
+    /// Adds the next step of the user.
     pub fn next(self, step: impl Into<String>) -> Self {
         Self {
             next: Some(step.into()),
@@ -59,13 +59,13 @@ impl Console {
         }
     }
 
-    /// The same with a shorter table of the same result.
+    /// Adds a shorter table of the same result, for lack of room.
     pub fn or(mut self, table: ConsoleTable) -> Self {
         self.tables.push(table);
         self
     }
 
-    /// The same with every text changed by `change`.
+    /// Changes every text by `change`.
     pub(super) fn map(&self, change: fn(&str) -> String) -> Self {
         let all = |list: &[String]| list.iter().map(|t| change(t)).collect();
         let table = |t: &ConsoleTable| ConsoleTable {

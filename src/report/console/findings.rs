@@ -18,7 +18,7 @@ pub struct FindingLines {
 /// Spaces before the later lines of a finding.
 const INDENT: usize = 4;
 
-/// What is left out, in this order, until the findings fit: the mildest severity shown, lines a finding.
+/// Cuts tried in this order until the findings fit: the mildest severity shown, lines for each finding.
 const ATTEMPTS: [(Severity, usize); 10] = [
     (Severity::Info, 8),
     (Severity::Info, 4),

@@ -9,7 +9,7 @@ use serde_json::json;
 pub struct CrossPlot<'a> {
     /// Load.
     pub name: &'a str,
-    /// Its unit.
+    /// Unit of both axes.
     pub unit: &'a str,
     /// Points.
     pub points: &'a [[f64; 2]],

@@ -54,7 +54,7 @@ impl Page {
         Self { paper, ..self }
     }
 
-    /// The same page with the sentence that states the result.
+    /// Adds the sentence that states the result.
     pub fn with_summary(self, summary: String) -> Self {
         Self { summary, ..self }
     }

@@ -10,7 +10,7 @@ use maud::Markup;
 pub struct SceneView {
     /// In three dimensions, for a browser.
     pub markup: Markup,
-    /// What it shows before anybody turns it.
+    /// Still picture of the scene from its first point of view.
     pub(in crate::report) still: Picture,
     /// Outline of the shells and axes of the bars, basic frame.
     pub lines: Vec<[Vec3; 2]>,

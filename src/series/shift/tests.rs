@@ -76,7 +76,7 @@ fn constant_unlike_and_periodic_signals_have_no_shift() {
     assert!(matches!(found, Err(NoShift::Ambiguous(_))), "{found:?}");
 }
 
-/// Of a cubic the four samples give every value; of a parabola a straight line misses `u (1 - u)` of half the second difference.
+/// Four samples determine every value of a cubic. Of a parabola a straight line misses `u (1 - u)` of half the second difference.
 #[test]
 fn values_between_samples_are_those_of_the_cubic() {
     let samples: Vec<Vec<f32>> = vec![(0..8).map(|i| (i * i * i - 5 * i * i) as f32).collect()];

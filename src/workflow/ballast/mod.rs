@@ -123,7 +123,7 @@ fn asked(job: &Job) -> Result<&Ballast, Faults> {
     })
 }
 
-/// What the job asks for, and its deck, whose findings go to the work.
+/// Checks what the job asks for and reads its deck; findings of the deck go to the work.
 fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
     asked(job)?;
     let files = job

@@ -12,7 +12,7 @@ use statrs::distribution::{Binomial, DiscreteCDF};
 const HELD: f64 = 0.95;
 /// Chance of so few check loads within their intervals, where these are right, up to which they are reported.
 const SELDOM: f64 = 0.05;
-/// The same from which the intervals are wrong.
+/// Chance of so few check loads within their intervals, below which the intervals are wrong.
 const TOO_FEW: f64 = 0.01;
 /// Half widths by which a check load is off beyond chance: four standard deviations.
 const FAR: f64 = 2.0;

@@ -121,7 +121,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// What the job states of strain without load.
+/// Returns how strain without load is treated: not at all, or as a common zero that is estimated.
 ///
 /// # Errors
 /// An intercept beside a model, whose S goes through zero.

@@ -209,7 +209,7 @@ pub struct LeftOutSummary {
 #[allow(missing_docs)]
 pub struct LeftOutLoad {
     pub name: String,
-    /// As `[runs]` gives it; `None` where it does not.
+    /// Known load of the runs table; `None` where it does not.
     pub known: Option<f64>,
     pub value: f64,
     pub sigma: f64,
@@ -261,7 +261,7 @@ pub struct LoadResidual {
     pub load: String,
     /// Largest known load.
     pub full_scale: f64,
-    /// Its unit.
+    /// Unit of the load.
     pub unit: String,
     /// Root mean square over the runs that S was calibrated with.
     pub rms_percent: f64,
@@ -271,7 +271,7 @@ pub struct LoadResidual {
     pub left_out_rms_percent: Option<f64>,
     /// The largest of them.
     pub left_out_max_percent: Option<f64>,
-    /// Its run.
+    /// Run.
     pub left_out_max_run: Option<String>,
 }
 
@@ -282,9 +282,9 @@ pub struct CheckLoad {
     pub run: String,
     /// Load or combination.
     pub load: String,
-    /// As `[runs]` gives it.
+    /// Applied load, from the runs table.
     pub applied: f64,
-    /// As recovered with the calibrated S.
+    /// Load recovered with the calibrated S.
     pub recovered: f64,
     /// Lower end of the 95 % interval of the difference, around `recovered`: the error of the applied load is in it.
     pub low: f64,

@@ -9,7 +9,7 @@ use crate::host::words::counted;
 use crate::job::Candidates;
 use serde::{Serialize, Serializer};
 
-/// What was found in all files.
+/// Contents and faults of all files that were checked.
 #[derive(Default, Serialize)]
 pub struct Checked {
     /// Decks.
@@ -27,7 +27,7 @@ pub struct Checked {
     /// Jobs in words.
     #[serde(skip)]
     pub jobs: Vec<String>,
-    /// What the last job says of where gauges may go.
+    /// Candidates that the last job allows.
     #[serde(skip)]
     pub candidates: Option<Candidates>,
     #[serde(skip)]

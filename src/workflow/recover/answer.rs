@@ -18,7 +18,7 @@ use crate::units::{MICROSTRAIN, half_width};
 use serde::Serialize;
 use std::sync::Arc;
 
-/// What is compared and counted in addition to the loads.
+/// Validation, comparison and sections: results besides the loads.
 #[derive(Default)]
 pub(super) struct Beside {
     pub validation: Vec<ValidationGauge>,

@@ -101,7 +101,7 @@ pub(super) fn extremes(head: &RecordHead, sums: &Sums, l: usize) -> [f64; 2] {
     })
 }
 
-/// What cycles of a record are counted from, and the power of their range.
+/// Samples of a record whose cycles are counted, with the slope of the S-N line.
 #[derive(Clone, Copy)]
 pub(super) struct Counting<'a> {
     pub head: &'a RecordHead,

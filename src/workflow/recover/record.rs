@@ -283,7 +283,7 @@ fn unusable(task: &Task) -> Fault {
     )
 }
 
-/// What a pass over the record leaves.
+/// Results of one pass over the record.
 struct Streamed {
     sums: Sums,
     spans: Spans,

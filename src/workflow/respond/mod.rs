@@ -187,7 +187,7 @@ fn damage_of(
     places.iter().zip(found).map(one).collect()
 }
 
-/// What pseudo-damage of stress is.
+/// Returns the note that explains pseudo-damage of stress.
 fn about_damage(slope: f64) -> Finding {
     Finding::new(
         Severity::Info,

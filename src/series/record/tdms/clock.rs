@@ -94,7 +94,7 @@ pub(super) fn is_over_time(c: &Channel) -> bool {
 /// Refuses a channel whose segments do not follow each other: its times begin again, or its time between samples changes.
 ///
 /// # Errors
-/// As said.
+/// A part that begins elsewhere than where the part before it ends.
 pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
     let Some(step_s) = step(c) else {
         return Ok(());
@@ -141,7 +141,7 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
 /// Refuses channels on even steps next to a channel of times in their group that states another rate.
 ///
 /// # Errors
-/// As said.
+/// A time channel that contradicts the increment of the waveforms.
 pub(super) fn check_clocks(
     all: &[Channel],
     together: &[bool],

@@ -123,7 +123,7 @@ pub struct Restart {
     pub first: usize,
     /// Name of the property.
     pub key: String,
-    /// Its value from there on.
+    /// Value of the property from there on.
     pub value: Value,
 }
 

@@ -53,7 +53,7 @@ pub struct Dataset {
     unit: String,
     /// What may be its name: the first line of its head, the label of its numbers, grid and direction.
     titles: [String; 3],
-    /// Its name, where other data sets have the same one: a number goes with it in [`Self::column`].
+    /// Name that several data sets have: [`Self::column`] adds a number to it.
     pub twice: Option<String>,
     /// Time of the first sample, s.
     pub start_s: f64,
