@@ -1,15 +1,11 @@
 //! Runs that a calibration does not use or does not contain: with many of them, the model does not fit.
 
 use super::types::Coverage;
+use crate::estimate::{COVERAGE, TOO_FEW, chance_of_so_few};
 use crate::finding::{Finding, Severity};
-use statrs::distribution::{Binomial, DiscreteCDF};
 
 /// Share of the runs that may be excluded as suspect: labels and zeros are wrong in one run of twenty, seldom in one of ten.
 const MOST: f64 = 0.1;
-/// Chance of so few left-out runs within their 95 % regions, under which the regions are too narrow.
-const TOO_FEW: f64 = 0.01;
-/// Chance of a 95 % region.
-const HELD: f64 = 0.95;
 
 /// An error where more than a tenth of the runs is excluded as suspect.
 pub(super) fn too_many(excluded: usize, runs: usize) -> Option<Finding> {
@@ -30,8 +26,8 @@ pub(super) fn too_many(excluded: usize, runs: usize) -> Option<Finding> {
 
 /// An error where significantly fewer than 95 % of the left-out runs lie within their 95 % regions.
 pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
-    let of = u64::try_from(coverage.of).ok().filter(|n| *n > 0)?;
-    let chance = Binomial::new(HELD, of).ok()?.cdf(coverage.held as u64);
+    let of = coverage.of;
+    let chance = chance_of_so_few(coverage.held, of);
     (chance < TOO_FEW).then(|| {
         let share = coverage.held as f64 / of as f64;
         Finding::new(
@@ -45,7 +41,7 @@ pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
             ),
             "look for runs with a wrong label or zero, for loads that the job does not name, and for strain that is not proportional to the loads",
         )
-        .with_numbers(share, HELD)
+        .with_numbers(share, COVERAGE)
     })
 }
 

@@ -7,6 +7,7 @@ use super::scatter::{Left, Scatter};
 use super::state::{State, left, sensitivity_of};
 use super::types::{Coverage, KnownLoads, KnownRun, LeftOut, Task};
 use super::unknown::{SPANNED, UNKNOWN, wide_directions};
+use crate::estimate::COVERAGE;
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, RunEstimate, estimate};
 use crate::sensitivity::Sensitivity;
@@ -20,8 +21,6 @@ const WIDEN: f64 = 0.05;
 pub(super) const REFUSE: f64 = 1e-6;
 /// Chance, over all runs together, under which a run is named and does not widen the intervals of the others.
 pub(super) const SUSPECT: f64 = 1e-3;
-/// Chance of a 95 % region.
-const HELD: f64 = 0.95;
 
 /// Every run that the others determine, recovered without itself.
 pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
@@ -355,9 +354,9 @@ fn score(distances: impl Iterator<Item = (f64, usize)>) -> (f64, f64) {
 fn region(loads: usize, dof: f64) -> f64 {
     let k = loads.max(1) as f64;
     if dof.is_finite() {
-        FisherSnedecor::new(k, dof.max(1.0)).map_or(f64::INFINITY, |d| k * d.inverse_cdf(HELD))
+        FisherSnedecor::new(k, dof.max(1.0)).map_or(f64::INFINITY, |d| k * d.inverse_cdf(COVERAGE))
     } else {
-        ChiSquared::new(k).map_or(f64::INFINITY, |d| d.inverse_cdf(HELD))
+        ChiSquared::new(k).map_or(f64::INFINITY, |d| d.inverse_cdf(COVERAGE))
     }
 }
 

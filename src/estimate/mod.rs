@@ -20,4 +20,4 @@ pub use intervals::{NORMAL_95, student, student_95};
 pub use linear::{LinearEstimate, LinearGaussian, ReadingErrors};
 pub use loads::LoadEstimate;
 pub use statistics::{median, rms, weighted_median};
-pub use tails::{chi_square_tail, f_tail, student_tail};
+pub use tails::{COVERAGE, TOO_FEW, chance_of_so_few, chi_square_tail, f_tail, student_tail};

@@ -1,6 +1,8 @@
 //! Chances of a value at least as large, for any number that arithmetic may come to: not a number (nothing over nothing) tells nothing, 1.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor, StudentsT};
+use statrs::distribution::{
+    Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, FisherSnedecor, StudentsT,
+};
 
 /// A ratio beyond which the chance is 0 to every digit, and whose square and products don't overflow.
 const FAR: f64 = 1e100;
@@ -13,6 +15,16 @@ fn of(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
     } else {
         tail(x.max(-FAR)).filter(|p| !p.is_nan()).unwrap_or(1.0)
     }
+}
+
+/// Chance of a stated interval or region to contain the truth.
+pub const COVERAGE: f64 = 0.95;
+/// Chance of so few intervals that hold, under which they are too narrow.
+pub const TOO_FEW: f64 = 0.01;
+
+/// Returns the chance that at most `held` of `of` independent 95 % intervals contain the truth; 1 of none.
+pub fn chance_of_so_few(held: usize, of: usize) -> f64 {
+    Binomial::new(COVERAGE, of as u64).map_or(1.0, |b| b.cdf(held as u64))
 }
 
 /// Of chi-square with `dof` degrees of freedom; 1 without any.

@@ -2,18 +2,13 @@
 
 use super::outcome::CheckLoad;
 use crate::calibrate::CheckedRun;
-use crate::estimate::NORMAL_95;
+use crate::estimate::{NORMAL_95, TOO_FEW, chance_of_so_few};
 use crate::finding::{Finding, Severity, few};
 use crate::units::number;
 use crate::workflow::recover::Listed;
-use statrs::distribution::{Binomial, DiscreteCDF};
 
-/// Chance of a 95 % interval.
-const HELD: f64 = 0.95;
 /// Chance of so few check loads within their intervals, where these are right, up to which they are reported.
 const SELDOM: f64 = 0.05;
-/// Chance of so few check loads within their intervals, below which the intervals are wrong.
-const TOO_FEW: f64 = 0.01;
 /// Half widths by which a check load is off beyond chance: four standard deviations.
 const FAR: f64 = 2.0;
 
@@ -58,8 +53,8 @@ pub(super) fn finding(checks: &[CheckLoad]) -> Option<Finding> {
     let worst = outside
         .iter()
         .max_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
-    let inside = (checks.len() - outside.len()) as u64;
-    let chance = Binomial::new(HELD, checks.len() as u64).ok()?.cdf(inside);
+    let inside = checks.len() - outside.len();
+    let chance = chance_of_so_few(inside, checks.len());
     let most = deviation(worst);
     let severity = match chance {
         _ if most > FAR => Severity::Error,
