@@ -170,10 +170,10 @@ pub struct FleetArguments {
     /// The job, with [fleet] file_name
     #[arg(value_name = "JOB")]
     pub job: PathBuf,
-    /// Records, folders of records, or patterns such as data/**/*.parquet; none: what the output folder holds is merged
+    /// Records, folders of records, or patterns such as data/**/*.parquet; without any, the results in the output folder are merged
     #[arg(value_name = "FILES")]
     pub files: Vec<PathBuf>,
-    /// A text file with a path a line, or - for standard input; what it names is done beside FILES
+    /// A text file with a path a line, or - for standard input; its records are processed in addition to FILES
     #[arg(long = "files", value_name = "LIST")]
     pub list: Option<PathBuf>,
     /// Do one part of the files, such as 3/64

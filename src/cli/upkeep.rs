@@ -13,8 +13,10 @@ use std::process::{Command, ExitCode, Stdio};
 
 /// Runs the command that made a folder anew, into another, and compares.
 pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
-    let scratch =
-        Scratch(std::env::temp_dir().join(format!("strainbridge-verify-{}", std::process::id())));
+    // A sibling of the folder: paths in the jobs that a command writes are relative to it.
+    let folder = std::fs::canonicalize(&a.folder).unwrap_or_else(|_| a.folder.clone());
+    let beside = format!(".strainbridge-verify-{}", std::process::id());
+    let scratch = Scratch(folder.with_file_name(beside));
     Run::of(&a.common, &a.folder).question(a.common.out.as_deref(), |cx| {
         let anew = |made: &Made, main: &Path| again(&a.folder, made, main, &scratch.0);
         crate::workflow::verify::verify(&a.folder, anew, cx)

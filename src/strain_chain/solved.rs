@@ -391,14 +391,15 @@ fn kept(
         .map(|s| read_solution(s, &key, grids, fields));
     let kept = match read {
         Some(Ok(Some(solved))) => {
-            work.notes.push(
-                "the solution is taken from those kept (`--no-cache` solves anew)".to_owned(),
-            );
+            let note = "the solution is taken from those kept (`--no-cache` solves again)";
+            if !work.notes.iter().any(|n| n == note) {
+                work.notes.push(note.to_owned());
+            }
             store = None;
             Some(solved)
         }
         Some(Err(why)) => {
-            work.notes.push(format!("solved anew: {why}"));
+            work.notes.push(format!("solved again: {why}"));
             None
         }
         Some(Ok(None)) | None => None,

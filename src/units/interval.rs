@@ -4,6 +4,8 @@ use super::number::number;
 
 /// Sizes between which a value is written without an exponent.
 const PLAIN: std::ops::Range<f64> = 1e-3..1e6;
+/// Half width below which it is written with an exponent: there would be more zeros than digits.
+const TINY: f64 = 1e-6;
 
 /// Returns a value with the half width of its 95 % interval: `4.53 ± 0.36`. The half width has two significant digits; the value ends at the
 /// same place, and has at most four significant digits. A dash stands for an unknown value.
@@ -14,8 +16,8 @@ pub fn plus_minus(value: f64, half: f64) -> String {
             false => "-".into(),
         };
     }
-    if !PLAIN.contains(&value.abs().max(half)) {
-        return format!("{} ± {}", number(value), number(half));
+    if !PLAIN.contains(&value.abs().max(half)) || half < TINY {
+        return format!("{} ± {half:.1e}", number(value));
     }
     let of_half = 1 - exponent(half);
     let of_value = match value == 0.0 {
@@ -29,7 +31,7 @@ pub fn plus_minus(value: f64, half: f64) -> String {
 pub fn half_width(half: f64) -> String {
     match half.is_finite() && PLAIN.contains(&half) {
         true => format!("± {}", rounded(half, 1 - exponent(half))),
-        false if half.is_finite() => format!("± {}", number(half)),
+        false if half.is_finite() => format!("± {half:.1e}"),
         false => "-".into(),
     }
 }
@@ -64,7 +66,7 @@ mod tests {
             (12.0, 0.0996, "12.00 ± 0.10"),
             // Four digits of a value are enough, and its half width never becomes zero.
             (123.456789, 0.0012, "123.5 ± 0.0012"),
-            (2.7e6, 1.2e4, "2.700e6 ± 12000"),
+            (2.7e6, 1.2e4, "2.700e6 ± 1.2e4"),
             (0.0, 0.5, "0.00 ± 0.50"),
             (f64::NAN, 1.0, "-"),
         ] {

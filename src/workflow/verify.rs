@@ -210,7 +210,8 @@ impl Verified {
         let first = self.differs.first()?;
         let n = self.differs.len();
         let message = format!(
-            "{n} differences from what its inputs give now, the first in `{}`",
+            "{} from the result that its inputs give now, the first in `{}`",
+            counted(n, "difference"),
             first.file
         );
         let finding = Finding::new(
@@ -243,10 +244,18 @@ impl Verified {
         }
         let is_table = name.ends_with(".csv") || name.ends_with(".bdf");
         let (Ok(a), Ok(b)) = (std::str::from_utf8(was), std::str::from_utf8(now)) else {
-            return self.file(name, &size(was), &format!("{}, others", size(now)));
+            return self.file(
+                name,
+                &size(was),
+                &format!("{}, different content", size(now)),
+            );
         };
         if !is_table {
-            return self.file(name, &size(was), &format!("{}, others", size(now)));
+            return self.file(
+                name,
+                &size(was),
+                &format!("{}, different content", size(now)),
+            );
         }
         let (mut a, mut b) = (a.lines(), b.lines());
         let mut listed = 0;

@@ -20,9 +20,9 @@ use crate::job::Job;
 use crate::report::command::{Report, save, write_page};
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Card, Page};
-use crate::units::{UnitSystem, number};
+use crate::units::UnitSystem;
 use crate::workflow;
-use chapter::{Chapter, DECK, Step, number_of, percent};
+use chapter::{Chapter, DECK, Step, number_of, percent, percent_at_least};
 use page::Figures;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -85,16 +85,17 @@ impl Answer for Story {
     const RESULT: &'static str = "The story";
 
     fn verdict(&self) -> String {
-        let found = match self.named.contains(&self.hidden) {
-            true => format!("The hidden effect {} is found", self.hidden),
-            false => format!("The hidden effect {} is not found", self.hidden),
-        };
-        let percent = |share: f64| number(100.0 * share);
-        format!(
-            "{found}: with it in the model, the error of the wheel loads falls from {} % to {} % (rms).",
-            percent(self.wheel_force_error.before),
-            percent(self.wheel_force_error.after)
-        )
+        let [before, after] = [self.wheel_force_error.before, self.wheel_force_error.after];
+        let (hidden, before) = (&self.hidden, percent(before));
+        match self.named.contains(hidden) {
+            true => format!(
+                "The hidden effect {hidden} is found: with it in the model, the error of the wheel loads falls from {before} to {} (rms).",
+                percent(after)
+            ),
+            false => format!(
+                "The hidden effect {hidden} is not found: the error of the wheel loads is {before} (rms)."
+            ),
+        }
     }
 }
 
@@ -174,7 +175,7 @@ fn planned(
         title: "Place",
         numbers: vec![
             (
-                percent(step.result["efficiency_bound"].as_f64().unwrap_or(0.0)),
+                percent_at_least(step.result["efficiency_bound"].as_f64().unwrap_or(0.0)),
                 "of the best possible layout, proved".to_owned(),
             ),
             number_of(&step.result["candidates"]["rows"], "candidates"),
@@ -231,7 +232,7 @@ fn used(
         title: "Respond",
         numbers: vec![
             number_of(&hottest["max_von_mises"], "MPa, largest stress"),
-            number_of(&hottest["element"], "is its element"),
+            number_of(&hottest["element"], "element with the largest stress"),
         ],
         words: format!(
             "Hottest element {}: {:.0} ± {:.0} MPa in run {}.",
@@ -268,7 +269,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
             number_of(&step.result["residual_rms_microstrain"], "microstrain residual"),
         ],
         words: format!(
-            "Wheel loads are off by {:.1} % (rms against what was measured), and the residual says that they can't be trusted.",
+            "Wheel loads are off by {:.1} % (rms against what was measured), and the residual shows that they are unreliable.",
             100.0 * before
         ),
         command: "recover",
@@ -289,7 +290,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         numbers: vec![
             (
                 percent(gap["before"].as_f64().unwrap_or(f64::NAN)),
-                "gap on runs never fitted, before".to_owned(),
+                "gap on held-out runs, before".to_owned(),
             ),
             (
                 percent(gap["after"].as_f64().unwrap_or(f64::NAN)),
@@ -297,7 +298,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
             ),
         ],
         words: format!(
-            "Hidden was {}. Named: {}. Gap on runs never fitted: {:.1} % before, {:.1} % after.",
+            "Hidden effect {}, identified {}. Gap on held-out runs: {:.1} % before, {:.1} % after.",
             measured.hidden,
             if named.is_empty() {
                 "nothing".to_owned()

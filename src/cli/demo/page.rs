@@ -48,12 +48,12 @@ fn head(chapters: &[Chapter], figures: &Figures) -> Vec<Card> {
         let gauges = c.step.result["gauges"].as_array().map_or(0, Vec::len);
         let mut card = c.step.card.clone();
         card.title =
-            format!("{gauges} gauges, nine loads, one gauge with reversed polarity: {found}");
-        card.text = "Strokes lie along the gauges, arrows are the loads. One gauge is wired the wrong way round on purpose.".to_owned();
+            format!("{gauges} gauges, nine loads; the gauge with reversed polarity is {found}");
+        card.text = "Strokes show the gauges, arrows the loads. One gauge has reversed polarity on purpose.".to_owned();
         let number = |share: f64, what: &str| (percent(share), what.to_owned());
         card.numbers = vec![
             number(figures.before, "error of the wheel loads as measured"),
-            number(figures.after, "with the gauge put right"),
+            number(figures.after, "with the gauge corrected"),
             number(figures.payload, "error of the payload"),
         ];
         card
@@ -68,8 +68,8 @@ fn card(c: &Chapter) -> Card {
     card.text.clone_from(&c.words);
     card.numbers.clone_from(&c.numbers);
     card.links = vec![
-        link("report", "report.html"),
-        link("numbers", "result.json"),
+        link(&format!("report of {}", c.folder), "report.html"),
+        link(&format!("numbers of {}", c.folder), "result.json"),
     ];
     card.is_bad = (c.step.findings.iter()).any(|f| f.severity == Severity::Error);
     card

@@ -145,11 +145,11 @@ impl Report for Outcome<Calibrated> {
             let [name, error, half, unit] = row.as_slice() else {
                 return row.clone();
             };
-            vec![name.clone(), format!("{error} {half} {unit}")]
+            vec![name.clone(), format!("{error} ({half}) {unit}")]
         };
         let rows = table.rows.iter().map(short).collect();
         let title =
-            "Loads of runs left out one by one: error rms ± half width of the 95 % interval";
+            "Loads of runs left out one by one: error rms (widest half width of the 95 % interval)";
         let compact = ConsoleTable::new(title, &[], rows);
         Console::new(table, Some("left_out.csv"))
             .or(compact)

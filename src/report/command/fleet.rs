@@ -92,7 +92,7 @@ impl Report for Outcome<Fleet> {
             "largest",
             "unit",
             "damage",
-            "95 %",
+            "95 % interval",
             "unreliable",
         ];
         // Most fleets have no day whose loads can't be relied on.

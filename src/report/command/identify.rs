@@ -86,7 +86,7 @@ impl Report for Outcome<Identified> {
             self.parameters.iter().map(row).collect(),
         );
         Console::new(table, Some("parameters.csv")).next(format!(
-            "run `strainbridge reconcile {}` to test the vehicle model",
+            "add [reconcile] path = \"dynamic\" to {}, then run `strainbridge reconcile` on it to test the vehicle model",
             self.job.file
         ))
     }

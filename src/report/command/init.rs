@@ -56,15 +56,15 @@ impl Report for Outcome<Proposal> {
         let path = self.path.display();
         let step = match (self.placeable, self.purpose) {
             (_, Some(command)) => format!(
-                "read {}, correct units and loads, name your files, then run `{command} {path}`",
+                "read {}, correct units and loads, name your files, then run `strainbridge {command} {path}`",
                 self.job
             ),
             (true, None) => format!(
-                "read {}, correct units and loads, then run `place {path}`",
+                "read {}, correct units and loads, then run `strainbridge place {path}`",
                 self.job
             ),
             (false, None) if self.loads.is_empty() && self.inputs.is_empty() => format!(
-                "read {}, name your files in it, then run `check {path}`",
+                "read {}, name your files in it, then run `strainbridge check {path}`",
                 self.job
             ),
             (false, None) => format!("correct {} as the findings state", self.job),

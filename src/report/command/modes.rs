@@ -84,10 +84,10 @@ impl Report for Outcome<Modes> {
             ]
         };
         let table = ConsoleTable::new(
-            format!(
-                "Elastic modes, {} left out",
-                counted(self.rigid_motions, "rigid motion")
-            ),
+            match self.rigid_motions {
+                0 => "Elastic modes".to_owned(),
+                n => format!("Elastic modes, {} left out", counted(n, "rigid motion")),
+            },
             &["mode", "Hz", "relative error"],
             self.modes.iter().map(row).collect(),
         );

@@ -99,9 +99,15 @@ impl Report for Outcome<Placed> {
         let table = ConsoleTable::new(title, &head, rows);
         let compact = ConsoleTable::new(title, &["load", "± 95 %"], compact);
         let job = &self.job.file;
-        Console::new(table, Some("gauges.csv")).or(compact).next(format!(
-            "glue by gluing_sheet.md, write readings to strain.csv, then run `strainbridge recover {job}`"
-        ))
+        let readings = match self.job.measured {
+            Some(_) => "write readings to the strain file of the job",
+            None => "add [measured] with the strain file to the job",
+        };
+        Console::new(table, Some("gauges.csv"))
+            .or(compact)
+            .next(format!(
+                "glue by gluing_sheet.md, {readings}, then run `strainbridge recover {job}`"
+            ))
     }
 }
 

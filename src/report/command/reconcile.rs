@@ -41,7 +41,7 @@ impl Report for Outcome<Reconciled> {
         };
         Console::new(table, Some("gap.csv")).next(match &self.extended_model {
             Some(extended) => format!(
-                "confirm the cause, then go on with the corrected job {}",
+                "confirm the cause, then use {} in the folder of this result",
                 extended.name
             ),
             None => self.next_measurement.clone(),

@@ -128,7 +128,12 @@ fn fatigue_csv(w: &mut dyn std::io::Write, list: &[ElementFatigue]) -> std::io::
         writeln!(
             w,
             "{},{},{},{},{},{}",
-            f.element, f.surface, f.damage, f.damage_low, f.damage_high, f.angle_deg
+            f.element,
+            csv_cell(&f.surface),
+            f.damage,
+            f.damage_low,
+            f.damage_high,
+            f.angle_deg
         )?;
     }
     Ok(())
@@ -146,7 +151,13 @@ fn fatigue_section(list: &[ElementFatigue]) -> Section {
         ]
     };
     let rows: Vec<Vec<String>> = list.iter().take(MOST_ROWS).map(row).collect();
-    let head = ["element", "side", "damage", "95 % interval", "plane, deg"];
+    let head = [
+        "element",
+        "surface",
+        "damage",
+        "95 % interval",
+        "plane, deg",
+    ];
     table_section(
         "Fatigue",
         &head,

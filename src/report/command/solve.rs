@@ -46,17 +46,15 @@ impl Report for Outcome<SolvedCases> {
     }
 
     fn console(&self) -> Console {
-        let balance = self.balance.iter().map(|b| b.residual);
         let mut fields = vec![
             ("unknowns", self.dofs.to_string()),
             ("entries of the factor", self.factor_nonzeros.to_string()),
-            (
-                "largest unbalanced share",
-                format!("{:.0e}", balance.fold(0.0, f64::max)),
-            ),
         ];
-        if self.balance.is_empty() {
-            fields.pop();
+        if !self.balance.is_empty() {
+            let residual = (self.balance.iter())
+                .map(|b| b.residual)
+                .fold(0.0, f64::max);
+            fields.push(("largest unbalanced share", format!("{residual:.0e}")));
         }
         let modes: Vec<String> = self.elastic_modes_hz.iter().map(|hz| number(*hz)).collect();
         if !modes.is_empty() {

@@ -41,9 +41,6 @@ impl Report for Outcome<Studied> {
 
     fn console(&self) -> Console {
         let loads = self.study.first().map_or(&[][..], |row| &row.loads);
-        let wanted = |row: &'_ StudiedLayout| -> Vec<StudiedLoad> {
-            row.loads.iter().filter(|l| l.wanted).cloned().collect()
-        };
         let half = |l: &StudiedLoad| NORMAL_95 * plain(l.sigma);
         let row = |r: &StudiedLayout| {
             let mut cells = vec![
@@ -52,7 +49,7 @@ impl Report for Outcome<Studied> {
                 r.error.clone(),
                 number(100.0 * plain(r.mean_relative_rms)),
             ];
-            cells.extend(wanted(r).iter().map(|l| plus_minus(plain(l.bias), half(l))));
+            cells.extend(wanted(r).map(|l| plus_minus(plain(l.bias), half(l))));
             cells
         };
         let mut head = ["layout", "gauges", "error", "mean error, %"]
@@ -137,9 +134,6 @@ fn page(found: &Outcome<Studied>) -> Page {
     ]
     .map(str::to_owned)
     .to_vec();
-    let wanted = |row: &StudiedLayout| -> Vec<StudiedLoad> {
-        row.loads.iter().filter(|l| l.wanted).cloned().collect()
-    };
     let heads = loads.iter().filter(|l| l.wanted);
     header.extend(heads.map(|l| format!("{}, {}", l.name, l.unit)));
     let rows: Vec<Vec<String>> = found
@@ -153,7 +147,7 @@ fn page(found: &Outcome<Studied>) -> Page {
                 number(plain(row.condition_number)),
                 number(100.0 * plain(row.mean_relative_rms)),
             ];
-            cells.extend(wanted(row).iter().map(|l| {
+            cells.extend(wanted(row).map(|l| {
                 let width = NORMAL_95 * plain(l.sigma);
                 format!("{} ± {}", number(plain(l.bias)), number(width))
             }));
@@ -179,4 +173,9 @@ fn page(found: &Outcome<Studied>) -> Page {
         &found.findings,
         vec![section],
     )
+}
+
+/// Returns the loads of a layout that the job wants.
+fn wanted(row: &StudiedLayout) -> impl Iterator<Item = &StudiedLoad> {
+    row.loads.iter().filter(|l| l.wanted)
 }

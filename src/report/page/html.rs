@@ -100,10 +100,11 @@ fn card(c: &Card) -> Markup {
     html! {
         article.card.bad[c.is_bad] {
             h3 { (c.title) }
-            @if let Some(p) = &c.picture { (to_svg(p, &c.title)) }
+            @if c.is_bad { p { b { "This result cannot be relied on." } } }
+            @if let Some(p) = &c.picture { (to_svg(p, &format!("Picture: {}", c.title))) }
             p { (c.text) }
             p.numbers { @for (value, what) in &c.numbers { span { b { (value) } " " (what) } } }
-            p { (list_of_links(&c.links)) }
+            @if !c.links.is_empty() { p { (list_of_links(&c.links)) } }
         }
     }
 }

@@ -72,11 +72,13 @@ fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
     }
     let others: Vec<String> = others.iter().map(|p| p.display().to_string()).collect();
     let held = match others.is_empty() {
-        true => "holds no file".to_owned(),
-        false => format!("holds {}", few(&others)),
+        true => "contains no file".to_owned(),
+        false => format!("contains {}", few(&others)),
     };
     Err((
-        format!("no file below the folder has the form that [fleet] file_name states: it {held}"),
+        format!(
+            "no file below the folder has the form that [fleet] file_name states: the folder {held}"
+        ),
         "name another folder, or change file_name",
     ))
 }
@@ -92,7 +94,7 @@ fn matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
     }
 }
 
-/// The same, or none. Names that begin with a point are left out, as a shell leaves them out.
+/// Returns the files that a pattern matches, possibly none. Names that begin with a point are left out, as a shell leaves them out.
 fn all_matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
     let options = MatchOptions {
         require_literal_separator: true,
@@ -101,7 +103,7 @@ fn all_matching(pattern: &str) -> Result<Vec<PathBuf>, Wrong> {
     };
     let paths = glob_with(pattern, options).map_err(|e| {
         (
-            format!("no pattern: {}", e.msg),
+            format!("the pattern is not valid ({})", e.msg),
             "write it as data/*.parquet",
         )
     })?;

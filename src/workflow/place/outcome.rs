@@ -105,9 +105,10 @@ impl Placed {
 
     /// Returns the load with the widest interval over its expected size, where the job states the sizes of all loads.
     fn least_certain(&self) -> Option<&LoadSigma> {
-        let shares = self.load_sigma.iter().map(|l| self.share_of_expected(l));
-        let shares: Option<Vec<f64>> = shares.collect();
-        let all = self.load_sigma.iter().zip(shares?);
+        let is_known = self.job.loads.iter().all(|l| l.expected.is_some());
+        // Combinations have no expected size.
+        let all = self.load_sigma.iter().filter(|_| is_known);
+        let all = all.filter_map(|l| Some((l, self.share_of_expected(l)?)));
         all.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(l, _)| l)
     }
 }

@@ -45,12 +45,12 @@ impl Answer for Studied {
 
     fn verdict(&self) -> String {
         let rows = || {
-            let of_row = |r: &'_ StudiedLayout| r.mean_relative_rms.map(|e| (e, r.clone()));
-            self.study.iter().filter_map(of_row)
+            let all = self.study.iter();
+            all.filter_map(|r| Some((r.mean_relative_rms?, r)))
         };
         let best = rows().min_by(|a, b| a.0.total_cmp(&b.0));
         let worst = rows().max_by(|a, b| a.0.total_cmp(&b.0));
-        let of = |(error, row): &(f64, StudiedLayout)| {
+        let of = |(error, row): (f64, &StudiedLayout)| {
             format!(
                 "{} % ({} {}, {})",
                 number(100.0 * error),
@@ -60,12 +60,12 @@ impl Answer for Studied {
             )
         };
         match (best, worst) {
-            (Some(best), Some(worst)) if best.1 != worst.1 => format!(
+            (Some(best), Some(worst)) if !std::ptr::eq(best.1, worst.1) => format!(
                 "Mean error of the loads from {} to {}.",
-                of(&best),
-                of(&worst)
+                of(best),
+                of(worst)
             ),
-            (Some(one), _) => format!("Mean error of the loads {}.", of(&one)),
+            (Some(one), _) => format!("Mean error of the loads {}.", of(one)),
             _ => "No layout determines the loads.".to_owned(),
         }
     }

@@ -120,8 +120,8 @@ fn ratio(l: &LoadComparison) -> String {
 pub(super) fn cells(comparison: &Comparison, load: &str) -> [String; 4] {
     match comparison.loads.iter().find(|l| l.load == load) {
         Some(l) => [
-            number(l.bias),
-            number(l.rms),
+            format!("{} {}", number(l.bias), l.unit),
+            format!("{} {}", number(l.rms), l.unit),
             percent(l.share_within),
             ratio(l),
         ],
