@@ -55,6 +55,19 @@ fn files() -> InMemory {
 }
 
 #[test]
+fn a_rule_that_leaves_no_place_is_named() {
+    let candidates = "[candidates]\nclear_of = { loads = 1000.0 }\n";
+    let files = files().with("clear.toml", format!("{JOB}{candidates}"));
+    let job = Job::read("clear.toml", &files).unwrap();
+    let faults = place(&job, &Context::new(&files)).err().unwrap();
+    let said = faults.to_string();
+    assert!(
+        said.contains("`clear_of` loads = 1000 leaves 0 of"),
+        "{said}"
+    );
+}
+
+#[test]
 fn a_layout_comes_as_a_value_with_its_certificate() {
     let files = files();
     let job = Job::read("job.toml", &files).unwrap();

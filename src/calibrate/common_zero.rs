@@ -2,7 +2,7 @@
 //! every run ([`extended`]); outside, S has the loads of the task, and readings are less `z`.
 //!
 //! Errors of `S` and `z` go together: what the runs determine best is the strain at loads in their middle. With `c` these loads, `eps = S (f - c) +
-//! (z + S c)`, the two parts are independent, and their covariances are kept apart ([`Centred`]).
+//! (z + S c)`, the two parts are taken as uncorrelated, and their covariances are kept apart ([`Centred`]).
 
 use super::posterior::Posterior;
 use super::types::{Calibration, CommonZero, KnownLoads, Task};

@@ -76,7 +76,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
     findings.extend(runs::findings(task, &left_out, &refused));
     findings.extend(lack.findings);
     findings.extend(identical::findings(task));
-    let gone = exchanged.iter().filter(|e| e.certain).count() * 2 + refused.len();
+    let gone = exchanged.iter().filter(|e| e.certain).count() + refused.len();
     let suspect = held_out::suspects(&left_out).len();
     findings.extend(excluded::too_many(gone + suspect, task.runs.len()));
     findings.extend(excluded::held_too_few(&judged));
@@ -100,7 +100,7 @@ fn calibrate_columns(task: &Task) -> Result<Calibration, String> {
             false => Vec::new(),
         },
         lack_of_fit: lack.answer,
-        range: CalibratedRange::of(task, &state.used),
+        range: CalibratedRange::of(task, &state.used, &zero_of(task, &state.posterior)),
         model_error,
         shifts,
         as_glued: glued::as_glued(task, &state, model_error),

@@ -177,14 +177,11 @@ fn test(loadings: &[Loading], added: &[Candidate], candidates: &[Candidate]) -> 
                 continue;
             }
             let explained = spd::dot(&column, &rest).powi(2) / apart;
-            let ratio = explained / ((all - explained) / free);
+            let ratio = explained / ((all - explained).max(0.0) / free);
             let tested = Tested {
                 candidate: *candidate,
                 gauge,
-                p: match ratio.is_finite() {
-                    true => f_tail(ratio, 1.0, free),
-                    false => 1.0,
-                },
+                p: f_tail(ratio, 1.0, free),
             };
             match best.get_mut(&candidate.term) {
                 Some((kept, count)) => {
@@ -299,7 +296,11 @@ fn zero_by_gauge(loadings: &[Loading], added: &[Candidate]) -> Vec<f64> {
             .zip(&root)
             .map(|(l, w)| w * l.strain[gauge])
             .collect();
-        spd::dot(&one, &y) / spd::dot(&one, &one)
+        let (own, apart) = (spd::dot(&root, &root), spd::dot(&one, &one));
+        match apart > RULES.apart * own {
+            true => spd::dot(&one, &y) / apart,
+            false => 0.0,
+        }
     };
     (0..n)
         .map(of)

@@ -4,8 +4,8 @@ use super::types::{CalibratedRange, Task};
 use super::unknown::known_of;
 
 impl CalibratedRange {
-    /// Range of the runs with these numbers. A run in which a load is not known says nothing of the range of this load.
-    pub(super) fn of(task: &Task, used: &[usize]) -> Self {
+    /// Range of the runs with these numbers, strain less the zero of each gauge. A run in which a load is not known says nothing of the range of this load.
+    pub(super) fn of(task: &Task, used: &[usize], zero: &[f64]) -> Self {
         let over = |value: &dyn Fn(usize) -> Option<f64>| {
             let values = used.iter().filter_map(|r| value(*r));
             let values = values.filter(|v| v.is_finite());
@@ -16,7 +16,7 @@ impl CalibratedRange {
                 .map(|l| over(&|r| known_of(task, r, &[(l, 1.0)])))
                 .collect(),
             strain: (0..task.gauges.len())
-                .map(|g| over(&|r| task.runs.get(r)?.strain.get(g).copied()))
+                .map(|g| over(&|r| Some(task.runs.get(r)?.strain.get(g)? - zero.get(g)?)))
                 .collect(),
         }
     }

@@ -24,6 +24,8 @@ pub(super) fn held_out(task: &Task, loadings: &[Loading]) -> Option<HeldOutError
 /// Root mean square over loadings and loads of the error of a left-out loading over the largest value of the load.
 fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f64> {
     let n = loadings.first()?.strain.len();
+    let size = |l: usize| loadings.iter().fold(0.0_f64, |a, x| a.max(x.phi[l].abs()));
+    let largest: Vec<f64> = (0..k).map(size).collect();
     let p = k + usize::from(with_zero);
     if loadings.len() < p + 1 + FEWEST {
         return None;
@@ -68,13 +70,13 @@ fn left_out_error(loadings: &[&Loading], k: usize, with_zero: bool) -> Option<f6
         }
         let found = Precision::of(&gram, k)?.apply(&right);
         for l in 0..k {
-            sum += (found[l] - left.phi[l]).powi(2);
-            count += 1.0;
+            if largest[l] > 0.0 {
+                sum += ((found[l] - left.phi[l]) / largest[l]).powi(2);
+                count += 1.0;
+            }
         }
     }
-    let largest = loadings.iter().flat_map(|l| &l.phi[..k]);
-    let largest = largest.fold(0.0_f64, |a, v| a.max(v.abs()));
-    Some((sum / count).sqrt() / largest).filter(|e: &f64| e.is_finite())
+    Some((sum / count).sqrt()).filter(|e: &f64| e.is_finite())
 }
 
 impl LackOfFit {

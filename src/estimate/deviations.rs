@@ -1,11 +1,17 @@
 //! Whether differences from true values exceed the intervals that are stated for them.
 
 use super::tails::chi_square_tail;
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Chance under which differences count as larger than their intervals allow.
 const SIGNIFICANT: f64 = 1e-3;
+
 /// Square of a normal error in sigmas that is exceeded with that chance.
-const LARGEST_SQUARE: f64 = 10.828;
+fn largest_square() -> f64 {
+    Normal::standard()
+        .inverse_cdf(1.0 - SIGNIFICANT / 2.0)
+        .powi(2)
+}
 
 /// Differences of many samples over their standard deviation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -20,10 +26,10 @@ pub struct Deviations {
 
 impl Deviations {
     /// Whether the differences are larger than the intervals allow: more than one common error alone makes with a chance of 0.001, or more than
-    /// independent errors make with that chance beside a common error of that chance.
+    /// independent errors make with that chance together with a common error of that chance.
     pub fn exceed(&self) -> bool {
         let common = self.common.clamp(0.0, 1.0);
-        let inflated = 1.0 - common + common * LARGEST_SQUARE;
+        let inflated = 1.0 - common + common * largest_square();
         let n = self.effective.max(1.0);
         let independent = chi_square_tail(n * self.mean_square / inflated, n);
         chi_square_tail(self.mean_square, 1.0) < SIGNIFICANT || independent < SIGNIFICANT

@@ -143,10 +143,10 @@ fn forces_of(
             continue;
         };
         let fibres = prepared.model.fibres(shell);
-        let z = match t.place {
-            ShellPlace::Centre => fibres.centre,
-            ShellPlace::Corner(k) => fibres.at(Some(k)),
-        };
+        let z = fibres.at(match t.place {
+            ShellPlace::Centre => None,
+            ShellPlace::Corner(k) => Some(k),
+        });
         let free = [[0.0; 3]; 2];
         let matrices = shell_matrices(prepared, t.shell.us(), Parts::WithoutStiffness, None)?;
         let strain = |u: &[f64]| -> [PlaneStrain; 2] {
@@ -160,7 +160,8 @@ fn forces_of(
                 }
                 (AnyShell::Tria(m), _) => {
                     let u: [f64; 18] = std::array::from_fn(|i| u[i]);
-                    surfaces(&m.centre, z, &u, &free)
+                    // As the solution has it: the strain of a triangle is that of its centre.
+                    surfaces(&m.centre, fibres.centre, &u, &free)
                 }
                 (AnyShell::Many(m), ShellPlace::Centre) => m.centre.surfaces(z, u, &free),
                 (AnyShell::Many(m), ShellPlace::Corner(k)) => {

@@ -2,6 +2,7 @@
 
 use super::UnitLoad;
 use super::constraint::Reduction;
+use super::constraint::State;
 use super::error::FeError;
 use super::grid_frames::to_local;
 use super::load_case::LoadCase;
@@ -114,10 +115,12 @@ fn point_loads(model: &Model, case: &LoadCase) -> Vec<[f64; 6]> {
     f
 }
 
+/// Rigid motions of a free structure.
+const RIGID_MOTIONS: usize = 6;
 /// Share of the loads up to which their sum counts as nothing: decks state loads with six to eight digits.
 const EQUAL: f64 = 1e-6;
 
-/// Whether point loads (basic frame) are in equilibrium with each other: supports then react with nothing, wherever they are.
+/// Whether point loads (basic frame) are in equilibrium with each other: supports that hold no more than the rigid motions then react with nothing.
 fn are_balanced(model: &Model, loads: &[[f64; 6]]) -> bool {
     let (mut sum, mut size) = ([Vec3::zeros(); 2], [0.0; 2]);
     for (grid, f) in model.grids.iter().zip(loads) {
@@ -144,7 +147,8 @@ pub(super) fn load_into_support(
     case: &LoadCase,
 ) -> Option<Finding> {
     let mut f = point_loads(model, case);
-    if are_balanced(model, &f) {
+    let held = reduction.state.iter().filter(|s| **s == State::Held);
+    if held.count() <= RIGID_MOTIONS && are_balanced(model, &f) {
         return None;
     }
     for (f, axes) in f.iter_mut().zip(axes) {

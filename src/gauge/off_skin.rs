@@ -4,6 +4,7 @@ use super::arms::{Gauge, Spot};
 use super::surface::to_side;
 use crate::finding::{Finding, Severity, few};
 use crate::model::{Model, ShellKind};
+use crate::units::number;
 
 /// Share of the thickness by which a fibre distance may differ from the skin: what rounding of a deck leaves.
 const ROUNDED: f64 = 0.01;
@@ -39,9 +40,11 @@ pub fn off_skin(model: &Model, gauges: &[Gauge]) -> Option<Finding> {
             "fibre-off-skin",
             few(&names),
             format!(
-                "gauge `{name}` on the {} of element {element} reads the strain at {field} = {read}, and the skin is at {skin} from the middle \
-                 surface. {} gauges read so: bending strain differs from that of the skin",
+                "gauge `{name}` on the {} of element {element} reads the strain at {field} = {}, and the skin is at {} from the middle surface \
+                 (units of the deck). The bending strain differs from the strain of the skin. Gauges concerned: {}",
                 surface.word(),
+                number(read),
+                number(skin),
                 names.len()
             ),
             "leave Z1 and Z2 of the PSHELL out, so that strain is that of the skins",

@@ -288,7 +288,10 @@ mod tests {
         let fine = "The answer is 42 ± 1 kN.";
         assert_eq!(summary(0, &[(info, "strain-source", "model")]), fine);
         let warned = summary(0, &[(warning, "gauge-suspect", "P1")]);
-        assert_eq!(warned, format!("{fine} The result is usable, with 1 warning."));
+        assert_eq!(
+            warned,
+            format!("{fine} The result is usable, with 1 warning.")
+        );
         let said = summary(
             0,
             &[

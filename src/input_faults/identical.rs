@@ -45,7 +45,7 @@ pub fn identical_readings(gauges: &[String], columns: &[Vec<f64>]) -> Option<Fin
             Severity::Warning,
             "columns-identical",
             few(&names),
-            "these gauges have the same readings in every row, to the last digit, as no two gauges have: one column is a copy, and it counts twice",
+            "These gauges have the same readings in every row, to the last digit. Two gauges never agree so far. One column is a copy, and its reading counts twice",
             format!(
                 "look the channels up in the logger's files. To leave a copy out: [[correction]] gauge = \"{}\", ignore = true",
                 gauges[copy]

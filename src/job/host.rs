@@ -1,4 +1,4 @@
-//! What the rooms below do for a job: its files read with the line that names them, its folder of kept solutions.
+//! Files of a job, read with the line that names them, and its folder of kept solutions.
 
 use super::{Job, NamedFile};
 use crate::host::context::Context;

@@ -18,9 +18,6 @@ pub struct PropertyIds {
     pub names: Vec<String>,
 }
 
-/// An entry of a list of properties.
-struct IdOrName(PropertyIds);
-
 impl Ids {
     /// Whether `id` is among them.
     pub fn contains(&self, id: u32) -> bool {
@@ -111,25 +108,6 @@ impl PropertyIds {
 const ID_OR_NAME: &str =
     "properties: an id, a name of the deck, a list of both, or text such as \"1 THRU 5000\"";
 
-impl<'de> Deserialize<'de> for IdOrName {
-    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
-        struct V;
-        impl Visitor<'_> for V {
-            type Value = IdOrName;
-            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str(ID_OR_NAME)
-            }
-            fn visit_i64<E: Error>(self, v: i64) -> Result<IdOrName, E> {
-                PropertyIds::of_id(v).map(IdOrName)
-            }
-            fn visit_str<E: Error>(self, v: &str) -> Result<IdOrName, E> {
-                Ok(IdOrName(PropertyIds::of_text(v)))
-            }
-        }
-        d.deserialize_any(V)
-    }
-}
-
 impl<'de> Deserialize<'de> for PropertyIds {
     fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
         struct V;
@@ -146,7 +124,7 @@ impl<'de> Deserialize<'de> for PropertyIds {
             }
             fn visit_seq<A: SeqAccess<'de>>(self, mut s: A) -> Result<PropertyIds, A::Error> {
                 let mut out = PropertyIds::default();
-                while let Some(IdOrName(entry)) = s.next_element()? {
+                while let Some(entry) = s.next_element::<PropertyIds>()? {
                     out.ids.0.extend(entry.ids.0);
                     out.names.extend(entry.names);
                 }

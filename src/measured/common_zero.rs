@@ -6,7 +6,7 @@ use crate::job::Job;
 use crate::job::table::read_table;
 use crate::units::MICROSTRAIN;
 
-/// Returns the common zero of each gauge, strain: zeros for a job that states none, and for gauges that its table lacks.
+/// Returns the common zero of each gauge, strain: zeros for a job that states none, and NaN for gauges that its table lacks.
 ///
 /// # Errors
 /// A table without its two columns, fields that are not numbers.
@@ -40,12 +40,12 @@ pub(crate) fn common_zero(
     };
     let (key, value) = (column("gauge")?, column("common_zero")?);
     let mut faults = FaultList::new();
-    let mut out = vec![0.0; gauges.len()];
+    let mut out = vec![f64::NAN; gauges.len()];
     for (row, (_, fields)) in table.rows.iter().enumerate() {
         let of_row = fields.get(key);
         let place = of_row.and_then(|name| gauges.iter().position(|g| g == name));
         match (table.number(row, value), place) {
-            (Ok(read), Some(g)) => out[g] = read.unwrap_or(0.0) * MICROSTRAIN,
+            (Ok(read), Some(g)) => out[g] = read.map_or(f64::NAN, |v| v * MICROSTRAIN),
             (Ok(_), None) => {}
             (Err(fault), _) => faults.push(fault),
         }

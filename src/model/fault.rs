@@ -129,10 +129,19 @@ impl ModelFault {
         use FaultKind::*;
         match &self.kind {
             Missing { what, .. } => format!("add the {what}, or correct the id"),
+            NotCarried {
+                what: "grid" | "coordinate system" | "shell property",
+                ..
+            } => "replace it by a card that is carried; results do not replace it".into(),
             NotCarried { .. } => {
                 "replace it by a card that is carried, or solve with Nastran and name the results in the job".into()
             }
-            Duplicate { .. } | Repeated { .. } => "delete one of them, or renumber".into(),
+            Duplicate {
+                what: "parameter" | "enforced displacement",
+                ..
+            }
+            | Repeated { .. } => "delete one of them".into(),
+            Duplicate { .. } => "delete one of them, or renumber".into(),
             NoTemperature { .. } => {
                 "add a TEMP for each grid, or a TEMPD for the grids without one".into()
             }

@@ -88,7 +88,7 @@ pub(super) fn attach_grids(deck: &Deck, faults: &mut Vec<ModelFault>) {
     let elements = deck.others.iter().filter(is_element);
     let mut named: HashSet<String> = HashSet::new();
     for card in elements {
-        named.extend(deck.fields(card).into_iter().skip(1));
+        named.extend(deck.fields(card).into_iter().skip(2));
     }
     if named.is_empty() {
         return;

@@ -26,7 +26,7 @@ pub(super) fn recover(
         true => handling,
         false => Handling::AsMeasured,
     };
-    // Where nothing was learnt of the scatter, what a gauge deviates by is compared with nothing.
+    // Without an estimated scatter there is no limit for the deviation of a gauge.
     let (mut findings, readings) = match known.is_tested {
         true => misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives)),
         false => (vec![untested()], readings.to_vec()),

@@ -230,6 +230,13 @@ impl Gain {
             .collect()
     }
 
+    /// Returns the standard deviation of each load from noise and nuisance loads: the part that no two runs have in common.
+    pub fn own_sigma(&self) -> Vec<f64> {
+        (0..self.n_loads())
+            .map(|l| self.base[(l, l)].sqrt())
+            .collect()
+    }
+
     /// Standard deviation of a change of load `l` between two samples, `change` that of all loads. Noise enters twice; errors of the
     /// model, which both samples share, with what changes; nuisance loads as if they changed as well.
     pub fn sigma_of_change(&self, l: usize, change: &[f64], widening: &Widening) -> f64 {

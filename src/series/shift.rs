@@ -316,7 +316,8 @@ impl<'a> Fine<'a> {
     fn search(&self, coarse: f64) -> Option<(f64, f64)> {
         let k = self.fixed.signals.len().min(self.moving.signals.len());
         let (mut shift, mut means) = (coarse, vec![0.0; k]);
-        let mut weights: Vec<f64> = (0..k).map(|s| self.first_weight(s)).collect();
+        let first: Vec<f64> = (0..k).map(|s| self.first_weight(s)).collect();
+        let mut weights = first.clone();
         for step in 0..STEPS {
             let sums = self.sums(shift, &means, &weights);
             for (s, [n, sum, squares]) in sums.residuals.iter().enumerate() {
@@ -324,7 +325,7 @@ impl<'a> Fine<'a> {
                 means[s] = sum / n;
                 let variance = squares / n - means[s] * means[s];
                 // Signals that agree to the last digit get no more weight than their variance allows.
-                let least = 1e-6 / self.first_weight(s).max(f64::MIN_POSITIVE);
+                let least = 1e-6 / first[s].max(f64::MIN_POSITIVE);
                 weights[s] = match weights[s] > 0.0 {
                     true => 1.0 / variance.max(least),
                     false => 0.0,

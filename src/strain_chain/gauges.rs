@@ -32,7 +32,7 @@ pub fn lay_gauges(work: &mut Work, job: &Job, fields: &Fields) -> Result<Vec<Gau
     Faults::check(faults)?;
     let stated = point_findings(fields.model(), job);
     for finding in stated.into_iter().chain(off_skin(fields.model(), &gauges)) {
-        // Who lays the gauges twice says it once.
+        // A command that lays the gauges twice reports a finding once.
         if !work.findings.contains(&finding) {
             work.findings.push(finding);
         }

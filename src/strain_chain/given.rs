@@ -97,6 +97,15 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
         .iter()
         .map(|r| r.1.get(key).cloned().unwrap_or_default())
         .collect();
+    for name in given.strain_range.keys().filter(|n| !names.contains(n)) {
+        faults.push(Fault::at(
+            &*job.file,
+            given.line,
+            "sensitivity.strain_range",
+            format!("`{name}` is not a gauge of `{}`", table.file),
+            suggest::remedy(name, names.iter().map(String::as_str)),
+        ));
+    }
     let order = rows_of(job, &table.file, &names, &mut faults);
     let mut values = Matrix::zeros(order.len(), loads.len());
     for (r, (_, row)) in order.iter().enumerate() {

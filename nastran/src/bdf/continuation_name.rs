@@ -8,7 +8,7 @@ use super::source::{Chunk, Source};
 use super::split::{Lead, cut};
 use crate::place::{Place, SourceIx};
 
-/// Names in upper case that a card asks for whose continuation is below another card.
+/// Names of continuations, in upper case.
 pub(super) type Claimed = HashSet<Vec<u8>>;
 
 /// Returns the name without the marks of columns 1 and 73, which are no part of it. MSC Nastran writes names that begin with `+`.

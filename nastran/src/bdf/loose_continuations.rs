@@ -150,19 +150,17 @@ fn refuse_shared(
         return shared;
     }
     let all = askers(names, chunks, sources);
+    let mut holders = HashMap::new();
+    for a in &all {
+        if let Some(at) = a.continuation {
+            let key = (a.name.as_slice(), a.at.source);
+            holders.entry(key).or_insert((a.at, at));
+        }
+    }
     for waiting in all.iter().filter(|a| a.continuation.is_none()) {
-        let holds = |a: &&super::continuation_name::Asker| {
-            a.name == waiting.name && a.at.source == waiting.at.source && a.continuation.is_some()
-        };
-        if let Some(holder) = all.iter().find(holds)
-            && let Some(at) = holder.continuation
-        {
-            let both = lines(
-                waiting.at.min(holder.at),
-                waiting.at.max(holder.at),
-                at,
-                sources,
-            );
+        let key = (waiting.name.as_slice(), waiting.at.source);
+        if let Some(&(holder, at)) = holders.get(&key) {
+            let both = lines(waiting.at.min(holder), waiting.at.max(holder), at, sources);
             let why = format!("{both} both name it");
             let label = text_of(&waiting.name);
             refuse(rest, at, Wrong::Ambiguous { label, why });

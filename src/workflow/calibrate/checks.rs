@@ -47,14 +47,16 @@ pub(super) fn compared(checked: &[CheckedRun], listed: &Listed) -> Vec<CheckLoad
 }
 
 /// The finding on check loads outside of their intervals; `None` where there are no more of them than 95 % leaves.
-pub(super) fn finding(checks: &[CheckLoad]) -> Option<Finding> {
+pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding> {
     let outside: Vec<&CheckLoad> = checks.iter().filter(|c| !c.inside).collect();
     let deviation = |c: &&CheckLoad| (c.recovered - c.applied).abs() / (0.5 * (c.high - c.low));
     let worst = outside
         .iter()
         .max_by(|a, b| deviation(a).total_cmp(&deviation(b)))?;
-    let inside = checks.len() - outside.len();
-    let chance = chance_of_so_few(inside, checks.len());
+    // A combination errs with its loads.
+    let alone = || checks.iter().filter(|c| loads.contains(&c.load));
+    let (inside, of) = (alone().filter(|c| c.inside).count(), alone().count());
+    let chance = chance_of_so_few(inside, of);
     let most = deviation(worst);
     let severity = match chance {
         _ if most > FAR => Severity::Error,
@@ -72,8 +74,7 @@ pub(super) fn finding(checks: &[CheckLoad]) -> Option<Finding> {
             "check-loads-outside",
             few(&names),
             format!(
-                "{inside} of {} check loads are within their 95 % intervals. Farthest is `{}` in run `{}`: {} {} applied, {} ± {} recovered",
-                checks.len(),
+                "{inside} of {of} check loads are within their 95 % intervals. Farthest is `{}` in run `{}`: {} {} applied, {} ± {} recovered",
                 worst.load,
                 worst.run,
                 number(worst.applied),

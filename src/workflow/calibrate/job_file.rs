@@ -5,6 +5,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::redirect;
 use crate::workflow::reconcile::relative::relative;
+use std::collections::BTreeSet;
 use std::path::Path;
 use toml::{Table, Value};
 
@@ -54,10 +55,18 @@ pub fn calibrated_job(answer: &Calibrated, out: &Path) -> Result<String, Faults>
     s.insert("strain_range".into(), ranges(gauges.zip(strain)));
     table.insert("sensitivity".into(), Value::Table(s));
     // Which runs taught S stays known: `recover` does not compare these with their recorded loads.
-    if let Some(Value::Table(keys)) = table.remove("calibration")
-        && let Some(runs) = keys.get("runs").cloned()
-    {
-        let only = Table::from_iter([("runs".to_owned(), runs)]);
+    let mut only = match table.remove("calibration") {
+        Some(Value::Table(keys)) => keys,
+        _ => Table::new(),
+    };
+    only.retain(|key, _| key == "runs");
+    let checks = answer.calibration.checks.iter().map(|c| c.run.clone());
+    let checks: BTreeSet<String> = checks.collect();
+    if !checks.is_empty() {
+        let checks = checks.into_iter().map(Value::String).collect();
+        only.insert("check".into(), Value::Array(checks));
+    }
+    if !only.is_empty() {
         table.insert("calibration".into(), Value::Table(only));
     }
     // How gauges are turned is in the rows of S now.

@@ -104,7 +104,10 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let checks: Vec<KnownRun> = known.checks.iter().map(as_run).collect();
     let checked = recover_checks(&found, task.noise, &checks);
     calibration.checks = checks::compared(&checked, &listed);
-    work.findings.extend(checks::finding(&calibration.checks));
+    work.findings.extend(checks::finding(
+        &calibration.checks,
+        &listed.names[..task.loads.len()],
+    ));
     work.findings.extend(glued::untold(&calibration.gauges));
     let glued = found.as_glued.iter().enumerate();
     let answer = Calibrated {
@@ -124,10 +127,18 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
 /// Returns how strain without load is treated: not at all, or as a common zero that is estimated.
 ///
 /// # Errors
-/// An intercept beside a model, whose S goes through zero.
+/// An intercept together with a model, whose S goes through zero, or with an error that all known loads share.
 fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
     match (job.calibration.terms, has_prior) {
         (Terms::Linear, _) => Ok(CommonZero::None),
+        (Terms::Intercept, false) if job.calibration.scale_sd > 0.0 => Err(Fault::at(
+            &*job.file,
+            job.calibration.line,
+            "calibration.scale_sd",
+            "an error that all known loads share is not carried together with terms = \"intercept\"",
+            "leave out one of the two",
+        )
+        .into()),
         (Terms::Intercept, false) => Ok(CommonZero::Sought),
         (Terms::Intercept, true) => Err(Fault::at(
             &*job.file,

@@ -48,7 +48,7 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
 
 /// Whether a job is one for `recover`. What is weighed, reconciled or taught has strain that its loads alone don't explain, and what is studied
 /// may be gauges that don't tell the loads.
-fn recovers(job: &Job) -> bool {
+pub(super) fn recovers(job: &Job) -> bool {
     let taught = job.calibration.line == 0 || has_covariance(job);
     let others = job.reconcile.is_some() || job.payload.is_some() || job.vehicle.is_some();
     taught && !others && job.study.is_none() && job.ballast.is_none()

@@ -11,7 +11,7 @@ use crate::strain_chain::solved::find_repeated_subcases;
 use crate::units::{Quantity, Unit, UnitSystem, factor, likely_system};
 use nastran::bdf::vocabulary::{Effect, effect_of_card};
 use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::path::Path;
 
 /// Elements of any kind, with and without a struct of their own; masses, rigid elements and plot elements aren't counted.
@@ -67,9 +67,12 @@ pub(super) fn look(
     bytes: &[u8],
 ) -> (DeckEntry, FaultList) {
     let mut read = model_of_deck(&mut work.inputs, base, given, bytes);
-    // The warning `card-not-solved` names these cards; results of Nastran may be given.
+    // The warning `card-not-solved` names these cards; the commands that need them refuse the deck.
     let not_carried = std::mem::take(&mut read.not_carried);
-    read.faults.retain(|f| !not_carried.contains(f));
+    let named: HashSet<String> = not_carried.iter().map(ToString::to_string).collect();
+    if !named.is_empty() {
+        read.faults.retain(|f| !named.contains(&f.to_string()));
+    }
     work.findings.extend(read.findings.iter().cloned());
     work.findings.extend(find_repeated_subcases(&read));
     work.findings.extend(check_shapes(&read.model));
@@ -186,7 +189,7 @@ impl DeckEntry {
 
     /// Mass and centre of gravity in words.
     fn weight(&self) -> String {
-        // In kilogrammes too.
+        // The mass must be finite in kilogrammes, too.
         let scale = self.shown.map_or(1.0, |u| u.system.mass_kg());
         if !(self.mass * scale).is_finite() || self.cg.iter().any(|v| !v.is_finite()) {
             return "more than numbers can be".to_owned();

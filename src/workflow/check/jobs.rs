@@ -1,6 +1,6 @@
 //! A job: its own faults, the files it names, and what the commands read of them, by their own readers.
 
-use super::asked::ask;
+use super::asked::{ask, recovers};
 use super::checked::Checked;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::outcome::StatedUnits;
@@ -42,10 +42,15 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
         kept(read, &mut faults)
     });
     let gauges = gauges_of(work, &job, s.as_ref(), &mut faults);
-    let command = match (&job.measured, &job.vehicle) {
-        (Some(_), _) => "recover",
-        (None, Some(_)) => "identify",
-        (None, None) => "place",
+    let command = match &job.measured {
+        Some(_) if recovers(&job) => "recover",
+        _ if job.vehicle.is_some() => "identify",
+        None => "place",
+        Some(_) if job.reconcile.is_some() => "reconcile",
+        Some(_) if job.payload.is_some() => "payload",
+        Some(_) if job.ballast.is_some() => "ballast",
+        Some(_) if job.study.is_some() => "study",
+        Some(_) => "calibrate",
     };
     found.next = Some(format!("run `strainbridge {command} {given}`"));
     found.jobs.push(format!(

@@ -17,7 +17,6 @@ use super::speaking::{Speaking, speaking};
 use super::task::Task;
 use super::trace::Spans;
 use super::validation::{self, Channels, Compared};
-use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
@@ -170,7 +169,8 @@ fn beyond_calibration(
         .map(|(a, b)| a.abs().max(b.abs()))
         .collect();
     let sigma = head.filter.sigma(&ends);
-    let halves: Vec<f64> = sigma.iter().map(|s| NORMAL_95 * s).collect();
+    let factor = head.filter.coverage_factor();
+    let halves: Vec<f64> = sigma.iter().map(|s| factor * s).collect();
     calibrated::of_record(
         task.job,
         sensitivity,

@@ -34,7 +34,7 @@ pub struct CaseLine {
     pub name: String,
     /// The statement without comments, its lines joined.
     pub text: String,
-    /// It stands in or below OUTPUT(PLOT), OUTPUT(POST) and the like, which is no case control.
+    /// Whether it is not carried out: below OUTPUT(PLOT), OUTPUT(POST) and the like, or between SKIPON and SKIPOFF.
     pub in_packet: bool,
     /// Offsets of its first byte and after its last line.
     pub(super) start: usize,

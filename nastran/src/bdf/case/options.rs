@@ -28,7 +28,7 @@ pub(super) fn unknown_option(word: &str, options: &[String]) -> Option<&'static 
 }
 
 /// Values of ANALYSIS.
-const ANALYSES: [&str; 40] = [
+const ANALYSES: [&str; 33] = [
     "STATICS",
     "MODES",
     "BUCKLING",
@@ -40,23 +40,16 @@ const ANALYSES: [&str; 40] = [
     "MCEIG",
     "SAERO",
     "FLUTTER",
-    "FLUT",
     "DIVERGE",
-    "DIVERG",
     "HEAT",
     "HSTAT",
     "HTRAN",
     "HOT2COLD",
     "STRUCTURE",
-    "STRUCT",
     "NLSTATICS",
-    "NLSTAT",
-    "NLSTATIC",
-    "NLTRAN",
     "NLTRANS",
     "LNSTATICS",
     "CYCMODES",
-    "CYCMODE",
     "CYCSTAT",
     "RCTEST",
     "RANDOM",
@@ -72,8 +65,8 @@ const ANALYSES: [&str; 40] = [
 ];
 
 /// Values of RIGID.
-const RIGIDS: [&str; 9] = [
-    "LINEAR", "LAGRANGE", "LAGRAN", "LAGR", "LGELIM", "LELIM", "STATIC", "PENALTY", "AUTO",
+const RIGIDS: [&str; 7] = [
+    "LINEAR", "LAGRANGE", "LGELIM", "LELIM", "STATIC", "PENALTY", "AUTO",
 ];
 
 /// Returns what is wrong with the value of a command, in upper case, that is one of a list.

@@ -38,9 +38,8 @@ pub(in super::super) fn read_case_control(
         };
         let switch = skip_switch(&name, text);
         let skipped = skips || switch.is_some();
-        if let Some(on) = switch {
-            skips = on;
-        } else if skips {
+        if skipped {
+            skips = switch.unwrap_or(true);
         } else if let Some(kind) = subcase_kind(&name) {
             in_packet = false;
             read.begin(kind, &name, text);

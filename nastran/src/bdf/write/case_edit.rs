@@ -10,7 +10,9 @@ impl Edits {
     ///
     /// A deck of bulk data alone gets the sections `SOL 101`, `CEND`, these lines and `BEGIN BULK` in front, and ENDDATA.
     pub fn insert_case_end(&mut self, deck: &Deck, text: &str) {
-        let packet = deck.case_control.lines.iter().find(|l| l.in_packet);
+        // Packets stand at the end of case control; skipped lines above other statements do not.
+        let lines = deck.case_control.lines.iter().rev();
+        let packet = lines.take_while(|l| l.in_packet).last();
         match packet.map(position).or(deck.bounds.bulk_line) {
             Some(p) => self.patch(p.source, p.offset, p.offset, text),
             None => self.add_sections(deck, text),

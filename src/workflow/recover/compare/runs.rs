@@ -128,7 +128,11 @@ fn is_calibration_run(job: &Job, s: &Sensitivity, row: &RunRow) -> bool {
     has_covariance(job)
         && match &job.calibration.runs {
             Some(list) => list.contains(&row.run),
-            None => !held_out && s.loads.iter().all(|l| row.loads_si.contains_key(&l.name)),
+            None => {
+                !held_out
+                    && !job.calibration.check.contains(&row.run)
+                    && s.loads.iter().all(|l| row.loads_si.contains_key(&l.name))
+            }
         }
 }
 
@@ -163,11 +167,7 @@ fn own_share(task: &Task, s: &Sensitivity, r: &Readings, loads: &[f64]) -> Vec<f
     let Some(gain) = gain else {
         return vec![1.0; loads.len()];
     };
-    let none = vec![0.0; known.len()];
-    let both = gain
-        .sigma(&none, &plain)
-        .into_iter()
-        .zip(gain.sigma(&known, &plain));
+    let both = gain.own_sigma().into_iter().zip(gain.sigma(&known, &plain));
     both.map(|(own, all)| if all > 0.0 { own / all } else { 1.0 })
         .collect()
 }
