@@ -88,6 +88,11 @@ def known_digests(urls: Sequence[str], out: str) -> dict[str, str]:
     return found
 
 
+def forget(url: str, out: str) -> None:
+    """Removes what is known of an object, so that it is read again."""
+    _state_file(url, out).unlink(missing_ok=True)
+
+
 @contextmanager
 def copies(urls: Sequence[str], out: str) -> Iterator[dict[str, str]]:
     """Copies objects into `out` and removes the copies afterwards. Yields the state of each object before it was copied, by URL.

@@ -129,7 +129,13 @@ def part(
         done = [{**{k: f[k] or "" for k in ("status", "message", "sha256")}, "path": names[f["path"]]} for f in answer["files"]]
         if states:
             _objects.keep_states(states, {f["path"]: f["sha256"] for f in done if f["status"] != "failed"}, out)
-    return done
+    # Of an object that was read before for another job no result is kept: this task reads it again.
+    again = [f["path"] for f in done if f["status"] == "failed" and f["path"] in known]
+    if not again:
+        return done
+    for url in again:
+        _objects.forget(url, out)
+    return [f for f in done if f["path"] not in again] + part(job, again, out, threads, mark)
 
 
 def merge(job: AnyJob, out: str | Path) -> Answer:
@@ -183,9 +189,9 @@ def run(
     names = {_local_name(f, out): f for f in listed}
     done: list[dict[str, str]] = []
     if client is not None and shard is None:
-        done = _by_workers(job, [f for f in listed if f not in digests], out, client, threads or 1)
+        done = _by_workers(job, [f for f in listed if f not in digests or _is_object(f)], out, client, threads or 1)
     else:
-        urls = [names[n] for n in _share(sorted(names), shard) if _is_object(names[n]) and names[n] not in digests]
+        urls = [names[n] for n in _share(sorted(names), shard) if _is_object(names[n])]
         done = [f for few in _tasks(urls) for f in part(job, few, out, threads)]
     digests.update({f["path"]: f["sha256"] for f in done if f["sha256"]})
     to = out

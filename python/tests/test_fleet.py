@@ -213,6 +213,30 @@ def test_an_object_store_gives_the_same_bytes_and_is_read_once(sixty, store, tmp
     assert (tmp_path / "out" / "fleet.csv").read_bytes() != here
 
 
+def test_objects_are_read_again_for_another_job_a_few_at_a_time(sixty, store, tmp_path, monkeypatch):
+    folder, _, _ = sixty
+    _, urls = store
+    sb.fleet.run(folder / "job.toml", urls, tmp_path / "out")
+    job = sb.Job.read(folder / "job.toml")
+    job.measured.noise_microstrain = 0.3
+    most = 0
+    copies = sb._objects.copies
+
+    def counted(some, out):
+        nonlocal most
+        most = max(most, len(some))
+        return copies(some, out)
+
+    monkeypatch.setattr(sb.fleet, "_copies", counted)
+    again = sb.fleet.run(job, urls, tmp_path / "out")
+    assert {f.status for f in again.files} == {"done"}
+    assert most <= sb.fleet.FILES_A_TASK
+    # Digests of the caller do not stand in for a result that was never made.
+    digests = {u: f.sha256 for u, f in zip(sorted(urls), sorted(again.files, key=lambda f: f.path))}
+    other = sb.fleet.run(job, urls, tmp_path / "other", digests=digests)
+    assert {f.status for f in other.files} == {"done"}
+
+
 def test_shards_of_an_object_store_copy_their_part(sixty, store, tmp_path, monkeypatch):
     folder, _, here = sixty
     system, urls = store
