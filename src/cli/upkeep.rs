@@ -40,12 +40,24 @@ fn again(folder: &Path, made: &Made, main: &Path, out: &Path) -> Result<PathBuf,
     if made.command == "strains" {
         command.args(made.results());
     }
+    if !made.records.is_empty() {
+        // A list, because a call with thousands of names is too long for some systems.
+        command.args(["--files", "-"]);
+    }
     command.args(["--no-cache", "--out"]).arg(out);
-    let done = command
-        .stdin(Stdio::null())
+    let failed = |e: std::io::Error| fault(e.to_string(), "call `verify` again");
+    let mut child = command
+        .stdin(Stdio::piped())
         .stdout(Stdio::null())
-        .output()
-        .map_err(|e| fault(e.to_string(), "call `verify` again"))?;
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(failed)?;
+    let list: String = made.records.iter().map(|r| format!("{r}\n")).collect();
+    if let Some(mut input) = child.stdin.take() {
+        // A command that ended early doesn't read the list; it says why.
+        let _ = input.write_all(list.as_bytes());
+    }
+    let done = child.wait_with_output().map_err(failed)?;
     if out.join("result.json").is_file() {
         return Ok(out.to_owned());
     }

@@ -7,7 +7,7 @@ use crate::job::{Job, Measured, Reference};
 use crate::measured::wheels::{floor_fault, wheels_of};
 use crate::model::Model;
 use crate::strain_chain::Prepared;
-use crate::strain_chain::solved::{is_combination, stands_on_wheels};
+use crate::strain_chain::solved::stands_on_wheels;
 
 /// Strain of the reference state by gauge: it is added to the readings, so that loads are totals.
 pub(crate) fn reference_strain(
@@ -29,18 +29,12 @@ pub(crate) fn reference_strain(
         (Reference::None, _) => Ok(vec![0.0; n]),
         (Reference::Subcase(id), Some(fields)) => {
             let case = fields.subcase(id).ok_or_else(|| match fields.is_solved_here() {
-                true => {
-                    let subcases = &fields.deck.deck.case_control.subcases;
-                    let combines = subcases.iter().any(|s| s.id == id && is_combination(s));
-                    let why = match combines {
-                        true => " (it is a combination of other subcases, as SUBCOM)",
-                        false => "",
-                    };
-                    fault(
-                        format!("the deck has no static subcase {id} with a load{why}, and there are no results"),
-                        "name a SUBCASE of the deck: the state in which the gauges read zero",
-                    )
-                }
+                true => fault(
+                    format!(
+                        "the deck has no static subcase {id} with a load, and there are no results"
+                    ),
+                    "name a SUBCASE of the deck: the state in which the gauges read zero",
+                ),
                 false => fault(
                     format!("the results have no subcase {id}"),
                     "name the subcase of the reference state",

@@ -39,7 +39,7 @@ impl<K: Hash + Eq, T: PartialEq> Seen<K, T> {
 }
 
 impl Builder<'_> {
-    /// Refuses parameters, temperatures, enforced displacements, tables of materials and LOAD combinations that are there twice with different
+    /// Refuses parameters, temperatures, enforced displacements, tables of materials and combinations of sets (LOAD, SPCADD, MPCADD) that are there twice with different
     /// content.
     pub(super) fn check_duplicates(&mut self) {
         self.repeated_params();
@@ -53,6 +53,18 @@ impl Builder<'_> {
                 let what = "id of the LOAD combination";
                 let kind = FaultKind::Duplicate { what, first };
                 self.fault(format!("LOAD {}", l.sid), "SID", l.at, kind);
+            }
+        }
+        for (card, sums) in [("SPCADD", &cards.spcadds), ("MPCADD", &cards.mpcadds)] {
+            // One card defines a set: which of two a solver takes, or whether it adds them, is not documented.
+            let mut seen = Seen::new();
+            for sum in sums {
+                let words = Words {
+                    card: &|| format!("{card} {}", sum.sid),
+                    field: "SID",
+                    what: "id of the combination of sets",
+                };
+                seen.add(self, sum.sid, (&sum.card.sets, sum.at), &words);
             }
         }
         let mut moved = Seen::new();
@@ -157,6 +169,16 @@ mod tests {
             ["SPCD,1,2,1,.1", "SPCD,1,2,12,.1", "SPCD,1,2,1,.2"],
             [two.as_str(), two.as_str(), three.as_str()],
             ["MATT1,1,7", "MATT1,1,7", "MATT1,1,8"],
+            [
+                "SPC1,1,1,1\nSPC1,2,1,2\nSPCADD,9,1,2",
+                "SPCADD,9,1,2",
+                "SPCADD,9,1",
+            ],
+            [
+                "MPC,1,1,1,1.,2,1,1.\nMPC,2,1,2,1.,2,2,1.\nMPCADD,9,1,2",
+                "MPCADD,9,1,2",
+                "MPCADD,9,2",
+            ],
         ] {
             let base = format!("{mat}{}\n", two.replace(",7", ",9"));
             let base = format!(

@@ -17,6 +17,13 @@ pub(crate) struct CombinedSubcase {
     terms: Vec<(f64, usize)>,
 }
 
+impl CombinedSubcase {
+    /// Returns the factors and the indices of the solved cases that they multiply.
+    pub(crate) fn terms(&self) -> &[(f64, usize)] {
+        &self.terms
+    }
+}
+
 /// Reads the combination that the subcase `s` states of the subcases `above`; `solved` has the index of the solved case of each, `at` is the
 /// index of the combination among all results.
 ///
@@ -106,13 +113,7 @@ pub(crate) fn add_combinations(
             .filter_map(|(f, i)| Some((*f, solution.cases.get(*i)?)));
         let results: Vec<_> = results.collect();
         let Some(result) = combine_results(id, label.clone(), &results) else {
-            return Err(Faults::from(Fault::at(
-                read.deck.path(c.subcase.at),
-                c.subcase.at.line,
-                format!("subcase {id}"),
-                "its subcases have bar strain at different stations, which can't be combined",
-                "solve the sum of the loads as a SUBCASE with a LOAD card",
-            )));
+            return Err(other_stations(read, &c.subcase).into());
         };
         let ids = c
             .terms
@@ -146,4 +147,15 @@ pub(crate) fn add_combinations(
         report.reactions.extend(reactions);
     }
     Ok(())
+}
+
+/// The fault of a combination whose subcases have results of bars at different stations.
+pub(crate) fn other_stations(read: &DeckModel, combination: &Subcase) -> Fault {
+    Fault::at(
+        read.deck.path(combination.at),
+        combination.at.line,
+        format!("subcase {}", combination.id),
+        "its subcases have bar strain at different stations, which can't be combined",
+        "solve the sum of the loads as a SUBCASE with a LOAD card",
+    )
 }

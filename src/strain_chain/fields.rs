@@ -1,11 +1,12 @@
 //! The job's model and the strain of its unit loads, from result files or from the built-in solver.
 
+use super::combined_subcases::{other_stations, read_combination};
 use super::deck_loads::check_deck_loads;
 use super::load_cases::find_cases;
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::unit_loads;
 use crate::fe::from_results::{Displacements, ReadOptions, repeated, solution_from_file};
-use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad};
+use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad, combine_results};
 use crate::gauge::CornerRows;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
@@ -16,8 +17,10 @@ use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::named_results::results_fault;
 use crate::strain_chain::solved::{
-    MODES, cases_of_job, relief_of_job, solve_kept, static_case, support_of_job,
+    MODES, cases_of_job, is_combination, label_of, relief_of_job, solve_kept, static_case,
+    support_of_job,
 };
+use nastran::bdf::Subcase;
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
 
@@ -170,10 +173,13 @@ fn solve_fields(
     work.findings.extend(relief_of_job(job, &deck.model)?);
     let of_job = cases.len();
     let number = |cases: &[LoadCase]| cases.iter().map(|c| c.subcase + 1).max().unwrap_or(1);
-    let reference = reference_case(job, &deck);
-    let as_reference = reference.as_ref().map(|r| (r.subcase, number(&cases)));
-    if let (Some(case), Some((_, subcase))) = (reference, as_reference) {
-        cases.push(LoadCase { subcase, ..case });
+    let reference = reference_state(job, &deck)?;
+    for (_, case) in reference.iter().flat_map(|r| &r.terms) {
+        let subcase = number(&cases);
+        cases.push(LoadCase {
+            subcase,
+            ..case.clone()
+        });
     }
     let of_reference = cases.len();
     if let Some(beside) = beside {
@@ -192,10 +198,13 @@ fn solve_fields(
     let unasked = |c: &LoadCase| format!("subcase {}", c.subcase);
     let unasked: BTreeSet<String> = cases.iter().skip(of_reference).map(unasked).collect();
     solved.findings.retain(|f| !unasked.contains(&f.subject));
-    if let Some((id, number)) = as_reference {
-        let own = format!("subcase {number}");
-        let of_it = solved.findings.iter_mut().filter(|f| f.subject == own);
-        of_it.for_each(|f| f.subject = format!("reference, subcase {id} of the deck"));
+    if let Some(state) = &reference {
+        for (case, (_, of_deck)) in cases.iter().skip(of_job).zip(&state.terms) {
+            let own = format!("subcase {}", case.subcase);
+            let id = of_deck.subcase;
+            let of_it = solved.findings.iter_mut().filter(|f| f.subject == own);
+            of_it.for_each(|f| f.subject = format!("reference, subcase {id} of the deck"));
+        }
     }
     work.findings.extend(solved.findings.iter().cloned());
     let beside = beside.map(|_| Solution {
@@ -203,8 +212,11 @@ fn solve_fields(
         findings: Vec::new(),
         source: solved.source.clone(),
     });
-    let reference = solved.cases.split_off(of_job).pop();
-    let subcase = as_reference.map_or(0, |r| r.0);
+    let terms = solved.cases.split_off(of_job);
+    let reference = match &reference {
+        Some(state) => Some(state.add_up(&deck, &terms)?),
+        None => None,
+    };
     let mesh_error = take_out(work, job, &deck, (&mut solved, at));
     work.go_on()?;
     let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
@@ -212,7 +224,7 @@ fn solve_fields(
         deck,
         solutions: vec![solved],
         solved_here: true,
-        reference: reference.map(|c| CaseResult { subcase, ..c }),
+        reference,
         of_load,
         mesh_error,
         first_mode: report.modes.first().copied(),
@@ -284,15 +296,58 @@ fn read_results(
     })
 }
 
+/// The reference state of the readings as static subcases of the deck with their factors: one, or those that a combination adds up.
+struct ReferenceState {
+    subcase: Subcase,
+    terms: Vec<(f64, LoadCase)>,
+}
+
+impl ReferenceState {
+    /// Adds up the results of the subcases, which come in the order of the terms.
+    ///
+    /// # Errors
+    /// Results of bars at different stations, which cannot be added.
+    fn add_up(&self, deck: &DeckModel, results: &[CaseResult]) -> Result<CaseResult, Faults> {
+        let factors = self.terms.iter().map(|t| t.0);
+        let terms: Vec<_> = factors.zip(results).collect();
+        combine_results(self.subcase.id, label_of(&self.subcase), &terms)
+            .ok_or_else(|| other_stations(deck, &self.subcase).into())
+    }
+}
+
 /// Returns the subcase of the deck that the job names as its reference state; `None` where the job names none, or the deck has no such static
 /// subcase with a load.
-fn reference_case(job: &Job, deck: &DeckModel) -> Option<LoadCase> {
-    let Reference::Subcase(id) = job.measured.as_ref()?.reference else {
-        return None;
+///
+/// # Errors
+/// A combination that states no sum of static subcases.
+fn reference_state(job: &Job, deck: &DeckModel) -> Result<Option<ReferenceState>, Faults> {
+    let Some(Reference::Subcase(id)) = job.measured.as_ref().map(|m| m.reference) else {
+        return Ok(None);
     };
     let subcases = deck.deck.case_control.effective_subcases();
-    let named = subcases.iter().find(|s| s.id == id)?;
-    static_case(&deck.model, named).ok()
+    let Some(at) = subcases.iter().position(|s| s.id == id) else {
+        return Ok(None);
+    };
+    let (above, subcase) = (&subcases[..at], subcases[at].clone());
+    if !is_combination(&subcase) {
+        let case = static_case(&deck.model, &subcase).ok();
+        return Ok(case.map(|case| ReferenceState {
+            subcase,
+            terms: vec![(1.0, case)],
+        }));
+    }
+    let cases: Vec<Option<LoadCase>> = above
+        .iter()
+        .map(|s| static_case(&deck.model, s).ok())
+        .collect();
+    let solved: Vec<Option<usize>> = (0..at).map(|i| cases[i].is_some().then_some(i)).collect();
+    let combined = read_combination(deck, &subcase, (above, &solved), at)?;
+    let terms = combined.terms().iter();
+    let terms = terms.filter_map(|(factor, i)| Some((*factor, cases.get(*i)?.clone()?)));
+    Ok(Some(ReferenceState {
+        terms: terms.collect(),
+        subcase,
+    }))
 }
 
 /// Bars and beams with PLOAD1 in the load set of a subcase; in any load set where the deck has no such subcase.

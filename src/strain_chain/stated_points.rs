@@ -77,15 +77,26 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
     if !g.surface_stated {
         let [bottom, top] = skins.distance;
         let side = skins.nearer().word();
+        let why = match skins.is_within_bulge() {
+            true => format!(
+                "lies between the flat element {element} and the curved surface of its neighbours, {} {unit} from it",
+                short(skins.bulge.abs())
+            ),
+            false => format!(
+                "is about as far from the bottom ({} {unit}) as from the top ({} {unit}) of element {element}",
+                short(bottom),
+                short(top)
+            ),
+        };
         let undecided = || {
             Finding::new(
                 Severity::Warning,
                 "gauge-side-assumed",
                 &g.name,
                 format!(
-                    "{}:{}: the point stated for gauge `{}` is about as far from the bottom ({} {unit}) as from the top ({} {unit}) of element \
-                     {element}: strain is taken on the {side}, which reverses the bending strain if the other side is meant",
-                    g.file, g.line, g.name, short(bottom), short(top)
+                    "{}:{}: the point stated for gauge `{}` {why}: strain is taken on the {side}, which reverses the bending strain if the other \
+                     side is meant",
+                    g.file, g.line, g.name
                 ),
                 "state `surface`, or a point on the skin",
             )

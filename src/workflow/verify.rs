@@ -61,6 +61,8 @@ pub struct Made {
     pub command: String,
     /// What it read, the job or deck first.
     pub inputs: Vec<Input>,
+    /// Records of a fleet, as given, each once; empty for other commands.
+    pub records: Vec<String>,
 }
 
 /// How a result folder was made, by its `result.json`.
@@ -95,7 +97,22 @@ pub fn made(folder: &Path) -> Result<Made, Fault> {
     Ok(Made {
         command: command.to_owned(),
         inputs: inputs.collect(),
+        records: match command {
+            "fleet" => records_of_fleet(&json),
+            _ => Vec::new(),
+        },
     })
+}
+
+/// Returns the paths of the records that a fleet counted, in this call or before it, and of those that failed.
+fn records_of_fleet(result: &Value) -> Vec<String> {
+    let list = |of: &Value, key: &str| of.get(key).and_then(Value::as_array).cloned();
+    let vehicles = list(result, "vehicles").unwrap_or_default();
+    let counted = vehicles.iter().filter_map(|v| list(v, "records")).flatten();
+    let named = list(result, "files").unwrap_or_default();
+    let paths = counted.chain(named);
+    let paths = paths.filter_map(|r| r.get("path")?.as_str().map(str::to_owned));
+    paths.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 /// A result folder against what its inputs give now.

@@ -8,7 +8,7 @@ use strainbridge::{Context, Job, place, recover, sensitivity, study};
 fn plate() -> String {
     let mut deck = String::from(
         "SOL 101\nCEND\nSUBCASE 3\n LOAD = 5\nSUBCASE 4\n SPC = 1\nSUBCOM 6\n LOAD = 5\n SUBSEQ = 2.,0.\n\
-         SUBCASE 8\n ANALYSIS = MODES\n LOAD = 5\nBEGIN BULK\nPARAM,INREL,-2\n\
+         SUBCOM 7\n SUBSEQ = 2.,0.\nSUBCASE 8\n ANALYSIS = MODES\n LOAD = 5\nBEGIN BULK\nPARAM,INREL,-2\n\
          CORD2C,7,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n",
     );
     let grid = |i: u32, j: u32| 1 + i + 5 * j;
@@ -305,14 +305,16 @@ fn corrections_of_a_rosette_and_of_its_legs_act() {
 
 #[test]
 fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
-    // Subcase 3 is 7 times the load; the readings are 3 times the load.
+    // Subcase 3 is 7 times the load, and subcase 7 is twice subcase 3; the readings are 3 times the load.
     let with = |n: u32| {
         let reference = format!("reference = {n}\n");
         measured(&reference, |_, e| e)
     };
-    let value = recovered(&with(3));
-    assert!((value - 10.0).abs() < 1e-8, "{value}");
-    // Subcase 6 is a combination and subcase 8 is not statics: their LOAD is not the state.
+    for (n, total) in [(3, 10.0), (7, 17.0)] {
+        let value = recovered(&with(n));
+        assert!((value - total).abs() < 1e-8, "{n}: {value}");
+    }
+    // Subcase 6 is a combination with a LOAD of its own, and subcase 8 is not statics.
     for n in [1, 4, 6, 8, 9] {
         let files = with(n);
         let job = Job::read("job.toml", &files).unwrap();
@@ -320,7 +322,11 @@ fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
             .err()
             .unwrap()
             .to_string();
-        assert!(text.contains(&format!("no static subcase {n}")), "{text}");
+        let why = match n {
+            6 => "SUBCOM 6: a combination has no LOAD of its own".to_owned(),
+            n => format!("no static subcase {n}"),
+        };
+        assert!(text.contains(&why), "{text}");
     }
 }
 

@@ -153,6 +153,29 @@ fn a_folder_of_two_commands_is_verified_by_the_files_of_the_last() {
 }
 
 #[test]
+fn a_folder_of_a_fleet_is_verified_from_its_records() {
+    let dir = copied("verified_fleet", "fleet");
+    let days = ["A_2026-05-01.csv", "A_2026-05-02.csv", "B_2026-05-01.csv"];
+    // The second day comes later; the folder then counts all three.
+    for files in [&days[..1], &days[1..]] {
+        let mut call_of = vec!["fleet", "fleet.toml"];
+        call_of.extend(files);
+        let (code, said) = call(&dir, &call_of);
+        assert_eq!(code, 0, "{said}");
+    }
+    let (code, said) = call(&dir, &["verify", "fleet.out"]);
+    assert_eq!(code, 0, "{said}");
+    let record = std::fs::read_to_string(dir.join(days[0])).unwrap();
+    let last = record.trim_end().rfind('\n').unwrap();
+    std::fs::write(dir.join(days[0]), &record[..=last]).unwrap();
+    let (code, said) = call(&dir, &["verify", "fleet.out"]);
+    assert_eq!(code, 1, "{said}");
+    std::fs::remove_file(dir.join(days[0])).unwrap();
+    let (code, said) = call(&dir, &["verify", "fleet.out"]);
+    assert_ne!(code, 0, "{said}");
+}
+
+#[test]
 fn a_table_whose_last_number_may_be_cut_is_said_and_a_record_is_read_without_it() {
     let dir = copied("cut_record", "fleet");
     let record = dir.join("A_2026-05-01.csv");

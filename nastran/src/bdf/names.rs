@@ -117,16 +117,18 @@ impl NameReader {
         }));
     }
 
-    /// `$* Property: rail`, `$*  NX PHYSICAL PROPERTY: rail`, `$*  I-DEAS property: 1  name: rail`.
+    /// `$* Property: rail`, `$* Property Name: rail`, `$*  NX PHYSICAL PROPERTY: rail`, `$*  I-DEAS property: 1  name: rail`.
     fn star(&mut self, body: &[u8], at: Place) {
         let Some(colon) = memchr::memchr(b':', body) else {
             return;
         };
         let (head, tail) = body.split_at(colon);
         let head = head.to_ascii_uppercase();
-        let kind = if trim(&head).ends_with(b"PROPERTY") {
+        let head = trim(&head);
+        let head = head.strip_suffix(b" NAME").map_or(head, trim);
+        let kind = if head.ends_with(b"PROPERTY") {
             Named::Property
-        } else if trim(&head).ends_with(b"MATERIAL") {
+        } else if head.ends_with(b"MATERIAL") {
             Named::Material
         } else {
             return;

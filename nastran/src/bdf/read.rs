@@ -17,7 +17,7 @@ use super::merge::append;
 use super::part::Part;
 use super::sections::{Statement, read_sections};
 use super::source::{Chunk, Note, Position, Source};
-use super::unknown_names::check_names;
+use super::unknown_names::{check_executive, check_names};
 use super::vocabulary::changes_program;
 use crate::place::Place;
 
@@ -52,7 +52,9 @@ pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> De
     read_sol(&sections.executive, &mut deck);
     read_sol(&sections.case, &mut deck);
     deck.program_changes = program_changes(&sections.executive);
-    if sections.bounds.case_start.is_none() {
+    if sections.bounds.case_start.is_some() {
+        check_executive(&sections.executive, &mut deck.faults);
+    } else {
         // Without CEND executive control is part of the first section; RESTART is a word of case control there.
         let changes = program_changes(&sections.case);
         let changes = changes.into_iter().filter(|c| c.text != "RESTART");

@@ -3,9 +3,11 @@
 use super::deck::Deck;
 use super::fault::{Fault, Wrong};
 use super::fields::note_fault;
+use super::sections::Statement;
 use super::source::Note;
 use super::vocabulary::{
-    Effect, case_word, effect_of_card, nearest_card, nearest_parameter, nearest_word,
+    Effect, case_word, effect_of_card, executive_word, nearest_card, nearest_executive,
+    nearest_parameter, nearest_word,
 };
 use crate::place::SourceIx;
 use std::collections::BTreeSet;
@@ -54,8 +56,44 @@ fn note_parameters(deck: &mut Deck) {
     deck.notes.extend(misspelt);
 }
 
-fn is_executive(effect: Effect) -> bool {
-    matches!(effect, Effect::Executive | Effect::ExecutiveActs)
+/// Adds a fault for each line above CEND that begins with no statement of executive control.
+///
+/// Lines between ALTER or COMPILE and ENDALTER are statements of another language, and a line after one that ends with a comma continues it.
+pub(super) fn check_executive(statements: &[Statement], faults: &mut Vec<Fault>) {
+    let (mut in_program, mut continued) = (false, false);
+    for statement in statements {
+        let text = statement.text.trim();
+        let continues = std::mem::replace(&mut continued, text.ends_with(','));
+        let mut words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
+        let word = words.next().unwrap_or_default().to_ascii_uppercase();
+        match word.as_str() {
+            _ if continues => continue,
+            "ALTER" | "COMPILE" | "MALTER" | "RFALTER" | "BEGIN" | "DMAP" => in_program = true,
+            "ENDALTER" | "END" => in_program = false,
+            _ => {}
+        }
+        if in_program || word.is_empty() || executive_word(&word) {
+            continue;
+        }
+        let what = match case_word(&word) {
+            Some(known) if matches!(known.effect, Effect::None(_)) => continue,
+            Some(_) => Wrong::Statement {
+                found: word.clone(),
+                why: "case control begins below CEND",
+            },
+            None => Wrong::UnknownName {
+                near: nearest_executive(&word),
+                cards: 1,
+            },
+        };
+        let fault = Fault {
+            at: statement.at,
+            card: word,
+            field: None,
+            what,
+        };
+        note_fault(faults, fault);
+    }
 }
 
 fn check_words(deck: &mut Deck) {
@@ -64,7 +102,9 @@ fn check_words(deck: &mut Deck) {
     let without_cend = deck.bounds.case_start.is_none();
     for line in deck.case_control.lines.iter().filter(|l| !l.in_packet) {
         let what = match case_word(&line.name) {
-            Some(word) if is_executive(word.effect) && !without_cend && line.at.source == first => {
+            Some(word)
+                if word.effect.is_executive() && !without_cend && line.at.source == first =>
+            {
                 Wrong::Statement {
                     found: line.name.clone(),
                     why: "executive control ends at CEND",

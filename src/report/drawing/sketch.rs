@@ -6,7 +6,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::model::Vec3;
 use crate::report::scene::{Mark, SceneView};
 use crate::units::number;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Highest drawing, and space around it for names, mm.
 const HIGH: f64 = 120.0;
@@ -162,14 +162,40 @@ pub(in crate::report) struct Look<'a> {
     pub(in crate::report) turn: &'a dyn Fn(Vec3) -> [f64; 2],
 }
 
+/// Rectangles that are drawn on (left, top, right, bottom), by square cells of a lattice, so that a search is no slower for many gauges.
+#[derive(Default)]
+struct Taken(HashMap<[i64; 2], Vec<[f64; 4]>>);
+
+impl Taken {
+    /// Width of a cell: some letters.
+    const CELL: f64 = 2.0;
+
+    fn cells(area: [f64; 4]) -> impl Iterator<Item = [i64; 2]> {
+        let [left, top, right, bottom] = area.map(|v| (v / Self::CELL).floor() as i64);
+        (left..=right).flat_map(move |x| (top..=bottom).map(move |y| [x, y]))
+    }
+
+    fn add(&mut self, area: [f64; 4]) {
+        for cell in Self::cells(area) {
+            self.0.entry(cell).or_default().push(area);
+        }
+    }
+
+    fn leaves_free(&self, area: [f64; 4]) -> bool {
+        let free =
+            |t: &[f64; 4]| area[0] > t[2] || area[2] < t[0] || area[1] > t[3] || area[3] < t[1];
+        Self::cells(area).all(|cell| self.0.get(&cell).is_none_or(|near| near.iter().all(free)))
+    }
+}
+
 /// Strokes along the gauges, circles of their gap, their names beside them.
 pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Look) {
     let Look { place, turn } = look;
     let most = marks.iter().filter_map(|m| m.gap).flatten();
     let most = most.filter(|v| v.is_finite()).fold(0.0, f64::max);
     // Names keep clear of all gauges.
-    let mut taken: Vec<[f64; 4]> = Vec::new();
-    let mut keep = |p: [f64; 2], r: f64| taken.push([p[0] - r, p[1] - r, p[0] + r, p[1] + r]);
+    let mut taken = Taken::default();
+    let mut keep = |p: [f64; 2], r: f64| taken.add([p[0] - r, p[1] - r, p[0] + r, p[1] + r]);
     for m in marks {
         let at = place(m.at);
         keep(at, 1.0);
@@ -203,7 +229,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
 }
 
 /// The name where it covers nothing, with a line to its gauge where it is far; left out where there is no such place.
-fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Vec<[f64; 4]>) {
+fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Taken) {
     const SIZE: f64 = 6.0;
     let text = shortened(name, 16);
     let (wide, tall) = (1.15 * text.chars().count() as f64, 2.2);
@@ -221,9 +247,7 @@ fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Vec<[f64; 4
                 && y >= 0.0
                 && area[2] <= picture.size[0]
                 && area[3] <= picture.size[1] - 3.0;
-            let free =
-                |t: &[f64; 4]| area[0] > t[2] || area[2] < t[0] || area[1] > t[3] || area[3] < t[1];
-            if inside && taken.iter().all(free) {
+            if inside && taken.leaves_free(area) {
                 if far > 3.5 {
                     picture.line(at, near, INK, 0.1);
                 }
@@ -234,7 +258,7 @@ fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Vec<[f64; 4
                     size: SIZE,
                     upwards: false,
                 }));
-                taken.push(area);
+                taken.add(area);
                 return;
             }
         }

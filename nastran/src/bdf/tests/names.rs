@@ -14,6 +14,7 @@ fn comments_of_preprocessors_name_properties() {
         "$ Femap Property 5 : rail\n",
         "$ Femap with NX Nastran Property 5 : rail\n",
         "$* Property: rail\n",
+        "$* Property Name: rail\n",
         "$*  NX PHYSICAL PROPERTY: rail\n",
         "$*  I-DEAS property: 17   name: rail\n",
         "$ Elements and Element Properties for region : rail\n",

@@ -65,3 +65,39 @@ fn a_line_of_case_control_without_a_word_is_a_fault() {
     let deck = bulk("SOL 101\nCEND\nLOAD = 1\n-7, 8\nBEGIN BULK\nGRID,1\nENDDATA\n");
     assert_eq!(shown(&deck).len(), 1, "{:?}", shown(&deck));
 }
+
+#[test]
+fn a_line_above_cend_that_no_statement_begins_is_a_fault() {
+    let with = |lines: &str| {
+        bulk(&format!(
+            "{lines}SOL 101\nCEND\nBEGIN BULK\nGRID,1\nENDDATA\n"
+        ))
+    };
+    for (lines, says) in [
+        (
+            "ID A,B\nTIMEE 10\n",
+            "test.bdf:2: `TIMEE`: Nastran does not know this name, did you mean `TIME`?",
+        ),
+        (
+            "SPC = 1\n",
+            "test.bdf:1: `SPC`: case control begins below CEND",
+        ),
+        (
+            "ALTER 2\nOUTPUT2 A,B//0/30 $\nENDALTER\nFOO 1\n",
+            "test.bdf:4: `FOO`",
+        ),
+    ] {
+        let found = shown(&with(lines));
+        assert!(
+            found.len() == 1 && found[0].starts_with(says),
+            "{lines}: {found:?}"
+        );
+    }
+    for lines in [
+        "nastran system(442)=-1,\n  buffsize=65537\nassign output2='a.op2',\n  unit=12\ndiag 8, 56\ntime 100\nECHO = NONE\n",
+        "COMPILE SEDISP\nALTER 'CALL SUPER1'\nMESSAGE //'text' $\nENDALTER\nINIT MASTER(S)\n",
+        "APP DISP\nCHKPNT YES\nID,STAND,BEAM\nMODEL_CHECK MAT_DENSITY=OFF\n",
+    ] {
+        assert_eq!(shown(&with(lines)), Vec::<String>::new(), "{lines}");
+    }
+}

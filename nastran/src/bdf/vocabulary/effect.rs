@@ -21,6 +21,13 @@ pub enum Effect {
     ExecutiveActs,
 }
 
+impl Effect {
+    /// Returns whether the name is a statement above CEND.
+    pub(crate) fn is_executive(self) -> bool {
+        matches!(self, Effect::Executive | Effect::ExecutiveActs)
+    }
+}
+
 /// A word of case control as Nastran reads it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CaseWord {

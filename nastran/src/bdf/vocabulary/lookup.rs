@@ -40,6 +40,19 @@ pub fn changes_program(word: &str) -> bool {
     words.any(|e| e.written == word && e.effect == Effect::ExecutiveActs)
 }
 
+/// Returns whether a word in upper case is a statement above CEND, in full or from its fourth letter on abbreviated.
+pub(crate) fn executive_word(word: &str) -> bool {
+    let mut statements = words().iter().filter(|e| e.effect.is_executive());
+    statements
+        .any(|e| e.written == word || word.len() >= ABBREVIATION && e.written.starts_with(word))
+}
+
+/// Returns the statement above CEND that one letter makes of a misspelt one.
+pub(crate) fn nearest_executive(word: &str) -> Option<&'static str> {
+    let statements = words().iter().filter(|e| e.effect.is_executive());
+    spelling::nearest(word, statements.map(|e| e.written))
+}
+
 /// Returns the full name of an output request; `None` for another word.
 pub fn request_of(word: &str) -> Option<&'static str> {
     let word = case_word(word)?;

@@ -10,3 +10,4 @@ pub use lookup::{
     all_cards, all_words, case_word, changes_program, effect_of_card, nearest_card,
     nearest_parameter, nearest_word, request_of,
 };
+pub(super) use lookup::{executive_word, nearest_executive};
