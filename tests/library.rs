@@ -646,7 +646,7 @@ fn wanted_elements_and_picked_lists_are_kept() {
     assert!(wanted.efficiency_bound <= 1.0 + 1e-12);
     let faults = Job::read("twice.toml", &files).unwrap_err().to_string();
     assert!(
-        faults.contains("picked.toml:1: candidates.elements: `elements` stands in the job too"),
+        faults.contains("picked.toml:1: candidates.elements: `elements` is in the job too"),
         "{faults}"
     );
     let faults = Job::read("odd.toml", &files).unwrap_err().to_string();

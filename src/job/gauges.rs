@@ -64,7 +64,7 @@ fn without_direction(
             Severity::Warning,
             "gauges-assumed",
             &*t.file,
-            "the table has no columns `dir_x`, `dir_y`, `dir_z` and `angle_deg`: every gauge is taken along the x axis of its element",
+            "the table has no columns `dir_x`, `dir_y`, `dir_z` and `angle_deg`: every gauge points along the x axis of its element",
             "state the direction of every gauge",
         )
     })
@@ -158,7 +158,11 @@ impl Row<'_> {
             && self.faults.len() == before
         {
             let remedy = "state `dir_x`, `dir_y` and `dir_z`, or leave all three blank";
-            self.fault(name, "no number beside the others".into(), remedy);
+            self.fault(
+                name,
+                "this component is blank, and the others are not".into(),
+                remedy,
+            );
         }
         let [x, y, z] = parts;
         Some([x?, y?, z?])

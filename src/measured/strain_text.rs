@@ -53,7 +53,7 @@ fn no_rows(file: &str) -> Fault {
         1,
         "rows",
         "a header and no rows",
-        "write a row a run or a sample",
+        "write one row for each run or sample",
     )
 }
 

@@ -143,7 +143,7 @@ fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
     let f = fault("run,LF.FZ [N],LF.MX\nR1,2,3\n", stated);
     let said = f.to_string();
     assert!(
-        said.starts_with("runs.csv:1: LF.FZ [N]: the column says `N`, the job says `kN`"),
+        said.starts_with("runs.csv:1: LF.FZ [N]: the column states `N`, the job states `kN`"),
         "{said}"
     );
     let f = fault("run,LF.FZ [kg],LF.MX\nR1,2,3\n", "");
@@ -177,7 +177,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
         (
             below,
             stated.as_str(),
-            "the column says `N`, the job says `kN`",
+            "the column states `N`, the job states `kN`",
         ),
         (
             "run,LF.FZ,LF.MX\n-,kg,N m\nR1,2,3\n",
@@ -373,7 +373,7 @@ fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
     assert_eq!(rows[0].loads_si["LF.FZ"], 2e3);
     let twice = "run,LF.FZ [kN],LF.FZ [N],LF.MX\nR1,2,2000,3\n";
     let said = runs_of(twice, "").unwrap_err()[0].to_string();
-    assert!(said.contains("two columns hold `LF.FZ`"), "{said}");
+    assert!(said.contains("two columns contain `LF.FZ`"), "{said}");
 }
 
 #[test]

@@ -76,7 +76,7 @@ pub fn read_covariance(
     let broken = || {
         fault(
             "covariance",
-            "no file of `calibrate`, or cut off".to_owned(),
+            "it is not a file of `calibrate`, or it is cut".to_owned(),
         )
     };
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(broken)?;
@@ -109,7 +109,7 @@ pub fn read_covariance(
         return Err(fault(
             "loads",
             format!(
-                "it knows the loads {}, the job has {}",
+                "it contains the loads {}, the job has {}",
                 header.loads.join(", "),
                 loads.join(", ")
             ),
@@ -122,7 +122,7 @@ pub fn read_covariance(
     if let Some(missing) = gauges.iter().zip(&places).find(|(_, p)| p.is_none()) {
         return Err(fault(
             "gauges",
-            format!("it does not know gauge `{}`", missing.0),
+            format!("it does not contain gauge `{}`", missing.0),
         ));
     }
     let (covariance, numbers) = numbers.split_at(sizes[0]);

@@ -357,7 +357,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
         let (code, said) = ask(command, &job);
         assert_eq!(code, 1, "{command}: {said}");
         // From the edge of the element, within 125 mm of its middle, to the point.
-        let at = said.find("lies 111").unwrap_or_else(|| panic!("{said}"));
+        let at = said.find("is 111").unwrap_or_else(|| panic!("{said}"));
         assert!(
             said[..at].contains("gauges.csv:2") && said.contains("`P01`"),
             "{said}"

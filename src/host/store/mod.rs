@@ -47,7 +47,7 @@ pub(crate) fn read_solution(
     };
     solution_file::decode(&bytes, key, grids, cases)
         .map(Some)
-        .ok_or_else(|| "the kept solution is damaged".to_owned())
+        .ok_or_else(|| "the stored solution is damaged".to_owned())
 }
 
 /// Keeps a solution.

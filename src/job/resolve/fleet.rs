@@ -47,7 +47,7 @@ pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Optio
         c.fault(
             slope,
             "fleet.slope_below_knee",
-            "there is no `knee_range` below which it would hold",
+            "it applies below `knee_range`, and the job has no `knee_range`",
             "add `knee_range`, or leave it out",
         );
     }

@@ -162,7 +162,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
             c.fault(
                 set,
                 "load.load_set",
-                "stands beside `grid`",
+                "the load states `grid` as well",
                 "keep one of them",
             );
             None
@@ -187,7 +187,7 @@ pub(super) fn check_results(c: &mut Collector, model: Option<&ModelFiles>, loads
         let Some(result) = &load.result else { continue };
         if !model.results.iter().any(|r| r.given == result.given) {
             let names: Vec<&str> = model.results.iter().map(|r| r.given.as_str()).collect();
-            let wrong = format!("`{}` is none of `model.results`", result.given);
+            let wrong = format!("`{}` is not one of `model.results`", result.given);
             let remedy = if names.is_empty() {
                 "add it to `model.results`".into()
             } else {
