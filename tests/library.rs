@@ -86,7 +86,7 @@ fn a_layout_comes_as_a_value_with_its_certificate() {
     // Asked again, the kept solution gives the same layout.
     let again = place(&job, &context).unwrap();
     assert_eq!(plan.gauges, again.gauges);
-    assert!(again.notes.iter().any(|n| n.contains("kept")));
+    assert!(again.notes.iter().any(|n| n.contains("stored")));
 }
 
 /// What is planned and what is recovered from readings without error are the same covariance, asked twice.

@@ -153,7 +153,7 @@ impl Reading {
             if self.is_runs {
                 let name = fields.get(self.key).cloned().unwrap_or_default();
                 if !self.seen.insert(name.clone()) {
-                    let wrong = format!("run `{name}` stands twice");
+                    let wrong = format!("run `{name}` occurs twice");
                     let remedy = "give every run its own name";
                     faults.push(Fault::at(&*t.file, *line, "run", wrong, remedy));
                 }

@@ -43,7 +43,7 @@ pub enum FaultKind {
         /// Number of further references.
         more: usize,
     },
-    /// An id stands twice.
+    /// An id occurs twice.
     Duplicate { what: &'static str, first: Place },
     /// A card is there twice with the same content, and is read once.
     Repeated { what: &'static str, first: Place },
@@ -199,7 +199,7 @@ impl fmt::Display for FaultKind {
                 write!(f, " refers to its {what}")
             }
             Duplicate { what, first } => {
-                write!(f, "the {what} stands twice, first on line {}", first.line)
+                write!(f, "the {what} occurs twice, first on line {}", first.line)
             }
             Repeated { what, first } => {
                 write!(

@@ -73,7 +73,7 @@ pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>], behind: Behind)
         };
         if let Some(first) = out.iter().find(|l| l.name == load.name) {
             let wrong = format!(
-                "load `{}` stands twice, first on line {}",
+                "load `{}` occurs twice, first on line {}",
                 load.name, first.line
             );
             c.fault(section, "load.name", wrong, "give every load its own name");

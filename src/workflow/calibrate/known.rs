@@ -227,7 +227,7 @@ fn named_twice(table: &Table, key: usize) -> FaultList {
     });
     again
         .map(|(_, row)| {
-            let wrong = format!("run `{}` stands twice", name_of(row));
+            let wrong = format!("run `{}` occurs twice", name_of(row));
             Fault::at(
                 &*table.file,
                 row.0,
