@@ -66,7 +66,7 @@ impl Rows<'_, '_> {
         match row.iter().find(|v| !is_id(v)) {
             None => Ok(row.map(|v| v as u32)),
             Some(v) => {
-                let said = format!("{v} in row {i} is no id");
+                let said = format!("{v} in row {i} is not an id");
                 Err(self.fault(column, &said, "give whole numbers"))
             }
         }

@@ -184,7 +184,7 @@ mod tests {
                 "runs.csv",
                 line,
                 "G1",
-                format!("`{text}` is no number"),
+                format!("`{text}` is not a number"),
                 "write a number",
             )
         };

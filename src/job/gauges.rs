@@ -178,7 +178,7 @@ impl Row<'_> {
             0 => "give a whole number, 0 for the basic system",
             _ => "give a whole number above 0",
         };
-        self.fault(field, format!("`{x}` is no {what} id"), remedy);
+        self.fault(field, format!("`{x}` is not a valid {what} id"), remedy);
         None
     }
 
@@ -196,7 +196,7 @@ impl Row<'_> {
         }
         let found = from(word);
         if found.is_none() {
-            let (wrong, remedy) = (format!("`{word}` is no {what}"), remedy(word));
+            let (wrong, remedy) = (format!("`{word}` is not a valid {what}"), remedy(word));
             self.fault(name, wrong, remedy);
         }
         found

@@ -217,7 +217,7 @@ impl Table {
                     &*self.file,
                     *line,
                     name,
-                    format!("`{text}` is no number"),
+                    format!("`{text}` is not a number"),
                     "write a number with a decimal point; leave the field blank if nothing was measured",
                 ))
             }

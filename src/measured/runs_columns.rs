@@ -299,7 +299,7 @@ pub fn known_column(
     };
     let Some(unit) = find_unit(quantity, &stated.unit) else {
         if !is_name {
-            let wrong = format!("`{}` is no unit of {}", stated.unit, quantity.word());
+            let wrong = format!("`{}` is not a unit of {}", stated.unit, quantity.word());
             let remedy = format!("write one of {}", unit_names(quantity).join(", "));
             faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
         }

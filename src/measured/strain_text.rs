@@ -102,7 +102,7 @@ impl Reading {
         let second = match run {
             Some(_) => 1.0,
             None => seconds_in(unit).ok_or_else(|| {
-                let wrong = format!("`{unit}` is no unit of time");
+                let wrong = format!("`{unit}` is not a unit of time");
                 Faults::from(Fault::at(
                     &*t.file,
                     1,

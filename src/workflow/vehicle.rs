@@ -312,7 +312,7 @@ fn read_record(
                     &*named.given,
                     1,
                     channel.name.clone(),
-                    format!("`{}` is no unit of {}", channel.unit, kind.word()),
+                    format!("`{}` is not a unit of {}", channel.unit, kind.word()),
                     "write m/s2, mm/s2, g, N, kN or another unit that the job may use",
                 )
             })),

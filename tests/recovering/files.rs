@@ -179,7 +179,7 @@ fn units_of_run_tables_are_read_as_those_of_records() {
         let (code, said, _, _) = recover("units-volts", &in_units(volts, below), "");
         assert_eq!(code, 2, "{said}");
         assert!(
-            said.contains("G2") && said.contains("`mV/V` is no unit of strain"),
+            said.contains("G2") && said.contains("`mV/V` is not a unit of strain"),
             "{said}"
         );
     }

@@ -182,7 +182,7 @@ fn of_a_record_check_says_what_recover_says() {
     let of_s: [(Damage, Ends); 4] = [
         (
             ("a word in S", &|t| with_field(t, 1, "abc")),
-            Ends::Fault("`abc` is no number"),
+            Ends::Fault("`abc` is not a number"),
         ),
         (
             ("a gauge twice", &twice),
@@ -306,7 +306,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
         (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),
         (
             ("a word", &|t| with_field(t, 2, "abc")),
-            Ends::Fault("`abc` is no number"),
+            Ends::Fault("`abc` is not a number"),
         ),
         (
             ("no load", &|t| t.replacen("R.FZ", "X.FZ", 1).into_bytes()),
@@ -318,7 +318,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
         (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),
         (
             ("a word", &|t| with_field(t, 1, "abc")),
-            Ends::Fault("`abc` is no number"),
+            Ends::Fault("`abc` is not a number"),
         ),
         (
             ("a gauge less", &|t| lines(t, 12)),

@@ -42,7 +42,7 @@ fn support(c: &mut Collector, raw: &S<NumberOrWord>) -> SupportChoice {
             return SupportChoice::Set(*n as u32);
         }
         NumberOrWord::Number(n) => {
-            let wrong = format!("`{n}` is no id of an SPC set");
+            let wrong = format!("`{n}` is not an id of an SPC set");
             c.fault(at, "model.support", wrong, SUPPORT_REMEDY);
         }
         NumberOrWord::Word(w) => {
