@@ -118,7 +118,8 @@ impl Uncertainty {
         out
     }
 
-    /// Returns the uncertainty without a center: what the errors of S make of it is in the additive part, larger than before at loads beyond the half of it.
+    /// Returns the uncertainty without a center. The additive part then contains the errors of S at the center, and is larger than before at
+    /// loads beyond half of it.
     fn without_center(&self) -> Self {
         if self.center.is_empty() {
             return self.clone();

@@ -51,10 +51,10 @@ impl Answer for Strains {
     }
 }
 
-/// Shell and bar strain of every static subcase, for `strains.csv`.
+/// Reads shell and bar strain of every static subcase, in element and basic frame. `strains.csv` contains the rows.
 ///
 /// # Errors
-/// Files that can't be read, or that are no deck and results.
+/// Returns files that can't be read, or that are not a deck and its results.
 pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome<Strains>, Faults> {
     let mut work = Work::new(cx);
     let given = deck.display().to_string();

@@ -75,12 +75,12 @@ pub struct FleetSpec {
     pub digests: BTreeMap<String, String>,
 }
 
-/// Loads, cycles, damage and faults of many records, by vehicle.
+/// Recovers the loads of many records and sums cycles, damage and channel faults by vehicle.
 ///
-/// A record that can't be read is a failed file and a finding of severity error; the others are done all the same.
+/// A record that can't be read is a failed file with an error finding. All other records are processed.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; an output folder that can't be written.
+/// Returns every fault of the job and of the files that it names, or an output folder that can't be written.
 pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>, Faults> {
     let mut work = Work::of_job(cx, job);
     let Some(section) = &job.fleet else {

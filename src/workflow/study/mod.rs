@@ -108,10 +108,10 @@ pub struct StudiedLoad {
     pub wanted: bool,
 }
 
-/// Recovery repeated under stated errors, for a range of gauge counts and layouts.
+/// Repeats the recovery of loads under stated errors, for several gauge counts and layouts.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; loads of unknown size.
+/// Returns every fault of the job and of the files that it names, or loads of unknown size.
 pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;
