@@ -154,7 +154,7 @@ impl Table {
     /// # Errors
     /// A fault where there is no row.
     pub fn check_rows(&self) -> Result<(), Fault> {
-        let remedy = "write a row an entry";
+        let remedy = "write one row for each entry";
         match self.rows.is_empty() {
             true => Err(Fault::at(
                 &*self.file,

@@ -185,7 +185,7 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
         file,
         "strain",
         "no gauge of the job has a reading that is strain",
-        "state readings in microstrain (strain times 1e6), a column a gauge",
+        "state readings in microstrain (strain times 1e6), one column for each gauge",
     )
     .into())
 }

@@ -126,7 +126,7 @@ fn finish(
             &*named.given,
             "loads",
             "no row with all loads",
-            "give a row a run or a sample",
+            "give one row for each run or sample",
         )));
     }
     if blank > 0 {
