@@ -4,6 +4,7 @@
 //! loads were taught one by one), then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by
 //! rows; mean squares of S; where the header states `additive`, the covariance of readings at any load by rows.
 
+use crate::finding::few;
 use crate::host::fault::{Fault, Faults};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use serde::{Deserialize, Serialize};
@@ -110,8 +111,8 @@ pub fn read_covariance(
             "loads",
             format!(
                 "it contains the loads {}, the job has {}",
-                header.loads.join(", "),
-                loads.join(", ")
+                few(&header.loads),
+                few(loads)
             ),
         ));
     }

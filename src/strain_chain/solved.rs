@@ -6,7 +6,7 @@ use crate::fe::{
     SupportChoice, UnitLoad, relief_finding, solution_of, solve_displacements, solve_modes,
     support_of,
 };
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::store::{Key, read_solution, write_solution};
 use crate::host::work::{Work, stopped};
@@ -146,7 +146,7 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     let words: Vec<String> = sets.iter().map(word).collect();
     let wrong = format!(
         "the deck's subcases select different MPC sets ({}): unit loads need one",
-        words.join(", ")
+        few(&words)
     );
     let remedy = "select the MPC set of the structure above the subcases alone";
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
