@@ -52,7 +52,7 @@ pub enum GaugeError {
 }
 
 impl GaugeError {
-    /// What is wrong, and what to do.
+    /// Returns the fault and the remedy.
     pub fn parts(&self) -> (String, &'static str) {
         match self {
             Self::NormalDirection { gauge, element } => (

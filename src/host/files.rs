@@ -92,7 +92,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// What was read, hashes finished, to be resumed.
+    /// Returns the files that were read, with complete hashes, so that another command can continue with them.
     pub fn files_read(&mut self) -> Vec<FileRead> {
         let entries = self.entries.iter_mut();
         entries
@@ -221,7 +221,7 @@ impl<'a> Inputs<'a> {
         Some(entry.2.finish()).filter(|hex| !hex.is_empty())
     }
 
-    /// Where the files stand.
+    /// Returns the paths of the files.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.entries.iter().map(|e| e.1.clone()).collect()
     }

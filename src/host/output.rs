@@ -302,7 +302,7 @@ impl Drop for Output {
     }
 }
 
-/// What other commands wrote into a folder and still stands there, in words; `None`: nothing.
+/// Returns a note on files of other commands that are still in a folder; `None` without such files.
 pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
     let written = Manifest::read(folder);
     let of = |(by, names): (&str, Vec<&str>)| {

@@ -233,7 +233,7 @@ pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fau
 /// A column of the runs file with numbers of one quantity, and their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownColumn {
-    /// Its place in the table.
+    /// Number of the column in the table.
     pub at: usize,
     /// The unit that the column states, else that of the job; `None` for amplitudes of load sets, which have none.
     pub unit: Option<Unit>,

@@ -39,7 +39,7 @@ impl Zeroed {
         }
     }
 
-    /// What these gauges read in each row, strain; not a number for a gauge without a column.
+    /// Returns the readings of these gauges in each row, strain; NaN for a gauge without a column.
     pub fn readings(&self, gauges: &[String]) -> Vec<Readings> {
         let table = &self.table;
         let column = |g: &String| table.gauges.iter().position(|h| h == g);

@@ -18,15 +18,15 @@ pub struct DeckModel {
     pub given: String,
     /// The deck; empty for an OP2.
     pub deck: Deck,
-    /// Its model.
+    /// Model of the deck.
     pub model: Model,
     /// Files it was read from: the deck, then its INCLUDEs.
     pub files: Vec<PathBuf>,
-    /// Everything that is wrong: in cards, then in the model.
+    /// All faults: in cards, then in the model.
     pub faults: FaultList,
-    /// Those of [`Self::faults`] that come of cards that are not carried: `check` warns of the cards (`card-not-solved`).
+    /// Faults among [`Self::faults`] that come from unsupported cards: `check` warns of the cards (`card-not-solved`).
     pub not_carried: FaultList,
-    /// What is worth knowing.
+    /// Findings on the deck.
     pub findings: Vec<Finding>,
 }
 

@@ -63,7 +63,7 @@ pub struct LoadMeshError {
     pub mesh_error_rel: Option<f64>,
 }
 
-/// What the mesh made of the strain of the unit loads.
+/// Error of the mesh in the strain of the unit loads.
 pub struct MeshError {
     /// By load: strain on the deck's mesh less the limit.
     pub cases: Vec<CaseResult>,
@@ -71,7 +71,7 @@ pub struct MeshError {
     pub left: f64,
 }
 
-/// Where the strain is wanted without what the mesh makes.
+/// Places at which the strain is corrected for the error of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WantedAt {
     /// At the job's gauges: a large mesh is divided round them alone.

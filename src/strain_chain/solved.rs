@@ -21,7 +21,7 @@ use std::fmt::Write;
 /// Elastic modes that are computed beside the strain where nothing else is asked for.
 pub const MODES: usize = 10;
 
-/// What holds the structure of a job under its unit loads.
+/// Returns the support of the structure of a job under its unit loads.
 ///
 /// # Errors
 /// An SPC set that the deck lacks; several that its subcases select; one that moves grids.

@@ -17,7 +17,7 @@ use crate::fe::Solved;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where solutions are kept, as bytes under a key. A store is a handle: its clones share what they keep.
+/// Store of solutions, as bytes under a key. A store is a handle: its clones share the stored solutions.
 pub trait SolutionStore: Send + Sync {
     /// The bytes kept under a key; `None` where there are none.
     ///
