@@ -177,7 +177,7 @@ fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
             "channel-misspelt",
             file,
             format!("did you mean {}? What has another name is taken as not measured", pairs.join(", ")),
-            "Name the columns after the model's channels, or say with `columns` of [vehicle] which is which.",
+            "Name the columns after the model's channels, or assign the columns with `columns` of [vehicle].",
         )
     })
 }

@@ -268,7 +268,7 @@ pub(super) fn judge(
         Severity::Info,
         "flat-floor",
         "reactions",
-        "the model stands on a flat, level, frictionless floor; its own springs decide how the wheels share the weight, tyres are rigid",
+        "the model is on a flat, level, frictionless floor; its springs determine how the wheels share the weight, and tyres are rigid",
         "",
     ));
     let (mut worst, mut name) = (0.0_f64, "");

@@ -252,7 +252,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
                     Severity::Info,
                     "reaction-noise-assumed",
                     "runs.noise.force",
-                    "the job does not say how well the reactions are measured: 1 % of their mean is taken",
+                    "the job does not state the noise of the reactions: 1 % of their mean is assumed",
                     "state [runs] noise = { force = 0.06 }",
                 )
                 .with_numbers(ASSUMED_NOISE * mean * force(job), 0.0),

@@ -353,7 +353,7 @@ fn select_structure(
                 "the deck's subcases select several MPC sets: the unit loads take {}",
                 kept.first().copied().unwrap_or_default()
             ),
-            "correct MPC in unit_loads.bdf if another set holds while the gauges are read",
+            "correct MPC in unit_loads.bdf if another set applies while gauges are read",
         ));
     }
     if let Some(spc) = support.spc {

@@ -257,7 +257,7 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             Severity::Error,
             "fleet-result-damaged",
             path,
-            "this kept result is cut, or was changed after it was written: it counts for nothing",
+            "this stored result is cut, or was changed after it was written: it does not count",
             "run the records again into this folder, then remove it if it is still there",
         )
     }));
@@ -348,8 +348,8 @@ fn told_replaced(paths: &[String]) -> Option<Finding> {
             Severity::Info,
             "fleet-record-replaced",
             few(paths),
-            format!("{n} records hold other bytes than when they were done before under the same path: they were done anew, and count as they are now"),
-            "nothing, where they were written anew; records of another folder need paths of their own",
+            format!("{n} records changed since an earlier run and were processed again"),
+            "none is needed if they were written again; records of another folder need other paths",
         )
         .with_numbers(n as f64, 0.0)
     })

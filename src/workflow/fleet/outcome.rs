@@ -434,8 +434,7 @@ fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
     let shares: Vec<String> = v.loads.iter().map(share).collect();
     let most = v.loads.iter().map(|l| l.doubtful_share).fold(0.0, f64::max);
     let message = format!(
-        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums \
-         know nothing of it",
+        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums do not include this error",
         v.doubtful_days.len(),
         v.days.len(),
         few(&shares)

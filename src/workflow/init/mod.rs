@@ -112,7 +112,7 @@ pub fn init(
             &*given,
             "GRID",
             "no grid in it",
-            "give a deck, or an OP2 that holds the mesh",
+            "give a deck, or an OP2 that contains the mesh",
         );
         return Err(Faults::or(deck.faults, none));
     }

@@ -151,7 +151,7 @@ fn finish(
         "load-errors-independent",
         &named.given,
         if exact.is_empty() {
-            "a table of intervals holds no correlations between loads: their errors are taken as independent".to_owned()
+            "a table of intervals contains no correlations between loads: their errors are treated as independent".to_owned()
         } else {
             format!("{} have no interval in the file and count as exact", exact.join(", "))
         },

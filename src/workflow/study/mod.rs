@@ -283,7 +283,7 @@ fn truth(
         &*job.file,
         study.line,
         "load.expected",
-        format!("nothing says how large {} are", without.join(", ")),
+        format!("the sizes of {} are not stated", without.join(", ")),
         "state `expected` of every load, or a runs file with them",
     )))
 }
@@ -336,7 +336,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
             Severity::Warning,
             "place-without-effect",
             "position",
-            "S is given, or the gauges sit on bars: nothing tells how strain changes with place, and errors of place do nothing here",
+            "S is given, or the gauges are on bars: the change of strain with position is unknown, and position errors have no effect here",
             "give a [model] with shells",
         ));
     }
