@@ -294,7 +294,7 @@ fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
     std::fs::write(&file, &bytes).unwrap();
     let (repaired, err) = run("repaired", &[]);
     assert!(
-        err.contains("solved anew") && err.contains("damaged"),
+        err.contains("solved again") && err.contains("damaged"),
         "{err}"
     );
     assert_eq!(answer(&base), answer(&repaired));
