@@ -62,7 +62,7 @@ fn rest_of((file, before, mut bytes): (File, Metadata, Vec<u8>)) -> std::io::Res
 
 /// A file that is open.
 pub enum Opened {
-    /// Its bytes, in memory.
+    /// Bytes, in memory.
     Whole(FileBytes),
     /// One whose format is [read in parts](is_read_in_parts).
     Parts(Arc<InParts>),

@@ -446,11 +446,11 @@ pub(super) struct RawEffect {
 pub(super) struct RawEdit {
     /// A shell property whose thickness is scaled.
     pub property: Option<u32>,
-    /// Its factor.
+    /// Factor of the thickness.
     pub thickness_scale: Option<f64>,
     /// A bush whose stiffness is scaled.
     pub cbush: Option<u32>,
-    /// Its factor.
+    /// Factor of the stiffness.
     pub stiffness_scale: Option<f64>,
 }
 

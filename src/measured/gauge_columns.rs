@@ -126,7 +126,7 @@ enum Holds {
 
 /// Why a column that should be a gauge's can't be.
 enum Wrong {
-    /// Its unit is none of strain.
+    /// The unit is not a unit of strain.
     NoStrain,
     /// Two units.
     Clash,

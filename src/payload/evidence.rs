@@ -96,7 +96,7 @@ pub struct WeighedRun {
     pub run: String,
     /// Weight; as found even where it is refused.
     pub force: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the weight.
     pub sigma: f64,
     /// Degrees of freedom behind it; infinite where it was not estimated.
     pub dof: f64,

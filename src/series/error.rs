@@ -9,7 +9,7 @@ pub enum SeriesError {
     Length {
         /// Offending channel.
         name: String,
-        /// Its length.
+        /// Length of the channel.
         found: usize,
         /// The first channel.
         first: String,

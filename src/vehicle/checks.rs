@@ -10,7 +10,7 @@ use serde::Serialize;
 pub struct MassClosure {
     /// Sprung and unsprung mass identified.
     pub identified: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the identified mass.
     pub sigma: f64,
     /// Mean wheel force over gravity.
     pub weighed: f64,

@@ -105,7 +105,7 @@ pub struct WheelLoad {
     pub name: String,
     /// Mean, where masses tell it.
     pub value: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the wheel load.
     pub sigma: Option<f64>,
     /// Unit in words.
     pub unit: String,

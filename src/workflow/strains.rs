@@ -29,7 +29,7 @@ pub struct Strains {
     /// The deck as given.
     #[serde(skip)]
     pub given: String,
-    /// Its model.
+    /// Model of the deck.
     #[serde(skip)]
     pub model: Model,
     /// The strain.

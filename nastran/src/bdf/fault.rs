@@ -23,7 +23,7 @@ pub struct Fault {
 pub struct FieldName {
     /// As the quick reference guides count: 2 to 9 on the first line, 12 to 19 on the second ..
     pub number: u32,
-    /// Its name in the guides.
+    /// Name in the guides.
     pub name: &'static str,
 }
 

@@ -22,7 +22,7 @@ const UNKNOWN: f64 = 10.0;
 pub(super) struct Known {
     /// Row of the strain table.
     pub row: usize,
-    /// Its loads, job units.
+    /// Loads of the run, job units.
     pub loads: KnownLoads,
     /// Number of its group of repeats.
     pub group: usize,

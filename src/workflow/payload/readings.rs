@@ -31,7 +31,7 @@ pub struct NetReading {
     pub name: String,
     /// Reading.
     pub net_microstrain: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the net reading, microstrain.
     pub sigma_microstrain: Option<f64>,
     /// Their ratio.
     pub signal_to_noise: Option<f64>,

@@ -76,7 +76,7 @@ impl Answer for Studied {
 pub struct StudiedLayout {
     /// Which layout.
     pub layout: String,
-    /// Its number of gauges.
+    /// Number of gauges.
     pub gauges: usize,
     /// Kind and size of the error.
     pub error: String,
