@@ -20,7 +20,7 @@ pub struct Finding {
     /// Stable code, such as `loads-not-separable`; [`explain`] has an entry for each.
     #[serde(deserialize_with = "read_code")]
     pub code: CodeName,
-    /// What it is about: a gauge, a load, a file, an element.
+    /// Subject: a gauge, a load, a file, an element.
     pub subject: String,
     /// A plain sentence with the consequence.
     pub message: String,
@@ -31,7 +31,7 @@ pub struct Finding {
     /// Chance that right data make as much of it, where that decided.
     #[serde(skip)]
     pub chance: Option<f64>,
-    /// What the reader can do.
+    /// Remedy, as an imperative.
     pub remedy: String,
 }
 
@@ -63,13 +63,13 @@ impl Finding {
         }
     }
 
-    /// The same with the chance that right data make as much of it.
+    /// Adds the probability that correct data produce a finding as large as this one.
     pub fn with_chance(mut self, chance: f64) -> Self {
         self.chance = Some(chance);
         self
     }
 
-    /// The same with the measured number and its limit.
+    /// Adds the measured number and its limit.
     pub fn with_numbers(mut self, measured: f64, limit: f64) -> Self {
         self.measured = Some(measured);
         self.limit = Some(limit);

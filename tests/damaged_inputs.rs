@@ -205,7 +205,7 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
         files,
         loads: &[],
         shells: None,
-        says: "`SOL 106` acts on the solution, and the built-in solver does not carry it",
+        says: "`SOL 106` acts on the solution, and the built-in solver does not support it",
     };
     // Pressures on a membrane, a PSHELL without MID2: nothing holds its grids across it.
     let element = Holds {

@@ -86,7 +86,7 @@ fn a_layout_comes_as_a_value_with_its_certificate() {
     // Asked again, the kept solution gives the same layout.
     let again = place(&job, &context).unwrap();
     assert_eq!(plan.gauges, again.gauges);
-    assert!(again.notes.iter().any(|n| n.contains("kept")));
+    assert!(again.notes.iter().any(|n| n.contains("stored")));
 }
 
 /// What is planned and what is recovered from readings without error are the same covariance, asked twice.
@@ -646,7 +646,7 @@ fn wanted_elements_and_picked_lists_are_kept() {
     assert!(wanted.efficiency_bound <= 1.0 + 1e-12);
     let faults = Job::read("twice.toml", &files).unwrap_err().to_string();
     assert!(
-        faults.contains("picked.toml:1: candidates.elements: `elements` stands in the job too"),
+        faults.contains("picked.toml:1: candidates.elements: `elements` is in the job too"),
         "{faults}"
     );
     let faults = Job::read("odd.toml", &files).unwrap_err().to_string();

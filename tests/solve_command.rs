@@ -280,7 +280,7 @@ fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
         (out, text(&done.stderr))
     };
     let (again, err) = run("again", &[]);
-    assert!(err.contains("taken from those kept"), "{err}");
+    assert!(err.contains("a stored solution is used"), "{err}");
     let base = dir.join("model.out");
     assert_eq!(answer(&base), answer(&again));
     for name in ["results.op2", "results.vtu"] {
@@ -294,7 +294,7 @@ fn a_kept_solution_gives_the_same_answer_and_nothing_is_kept_beside_the_deck() {
     std::fs::write(&file, &bytes).unwrap();
     let (repaired, err) = run("repaired", &[]);
     assert!(
-        err.contains("solved anew") && err.contains("damaged"),
+        err.contains("solved again") && err.contains("damaged"),
         "{err}"
     );
     assert_eq!(answer(&base), answer(&repaired));
@@ -313,7 +313,7 @@ fn a_changed_deck_is_solved_again() {
     let done = strainbridge(&["solve", deck.to_str().unwrap()]);
     assert_eq!(done.status.code(), Some(0));
     let err = text(&done.stderr);
-    assert!(!err.contains("taken from those kept"), "{err}");
+    assert!(!err.contains("a stored solution is used"), "{err}");
     assert_eq!(kept(&dir).len(), 2);
 }
 
@@ -363,13 +363,13 @@ fn recover_takes_the_solution_of_sensitivity_and_warns_of_content_near_the_first
         assert_eq!(err.contains("[strain-not-explained]"), is_wrong, "{err}");
         err
     };
-    assert!(!run("sensitivity").contains("taken from those kept"));
+    assert!(!run("sensitivity").contains("a stored solution is used"));
     let err = run("recover");
-    assert!(err.contains("taken from those kept"), "{err}");
+    assert!(err.contains("a stored solution is used"), "{err}");
     assert!(!err.contains("first elastic mode"), "{err}");
     std::fs::write(&path, fast).unwrap();
     let err = run("recover");
-    assert!(err.contains("taken from those kept"), "{err}");
+    assert!(err.contains("a stored solution is used"), "{err}");
     assert!(err.contains("first elastic mode"), "{err}");
     let json = std::fs::read(dir.join("job.out/result.json")).unwrap();
     let result: serde_json::Value = serde_json::from_slice(&json).unwrap();

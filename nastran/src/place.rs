@@ -18,7 +18,7 @@ pub struct Place {
 pub struct Placed<T> {
     /// The card.
     pub card: T,
-    /// Its first line.
+    /// First line of the card.
     pub at: Place,
 }
 

@@ -66,7 +66,7 @@ impl Rows<'_, '_> {
         match row.iter().find(|v| !is_id(v)) {
             None => Ok(row.map(|v| v as u32)),
             Some(v) => {
-                let said = format!("{v} in row {i} is no id");
+                let said = format!("{v} in row {i} is not an id");
                 Err(self.fault(column, &said, "give whole numbers"))
             }
         }
@@ -122,7 +122,7 @@ fn lay<T: ToFields + Clone + PartialEq>(
     for i in 0..rows.len() {
         let [id] = rows.ids("id", i, 1.0)?;
         if row_of.insert(id, i).is_some() {
-            let said = format!("{id} stands twice");
+            let said = format!("{id} occurs twice");
             return Err(rows.fault("id", &said, "give each id once").into());
         }
     }

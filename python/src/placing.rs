@@ -100,7 +100,7 @@ fn layout(
         return Err(fault(
             "S",
             "it is empty",
-            "give a row a gauge and a column a load",
+            "give one row for each gauge and one column for each load",
         ));
     }
     if let Some(at) = rows.iter().position(|v| !v.is_finite()) {

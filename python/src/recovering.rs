@@ -66,7 +66,11 @@ pub(crate) fn recover_rows<'py>(
     let (n, k, runs) = (s.shape()[0], s.shape()[1], strain.shape()[0]);
     if strain.shape()[1] != n {
         let said = format!("it has {} columns and S has {n} rows", strain.shape()[1]);
-        return Err(STRAIN.fault(py, &said, "give a column a gauge, in the order of S"));
+        return Err(STRAIN.fault(
+            py,
+            &said,
+            "give one column for each gauge, in the order of S",
+        ));
     }
     let (rows, samples) = (s.as_slice()?, strain.as_slice()?);
     let asked = Asked {
@@ -130,7 +134,7 @@ fn recovered(
     }
     let n = rows.len().checked_div(k).unwrap_or(0);
     if n == 0 {
-        let remedy = "give a row a gauge and a column a load";
+        let remedy = "give one row for each gauge and one column for each load";
         return Err(wrong(S.function, "S", "it is empty", remedy).into());
     }
     if let Some(at) = rows.iter().position(|v| !v.is_finite()) {
@@ -138,7 +142,13 @@ fn recovered(
         return Err(wrong(S.function, "S", &said, "leave that gauge out").into());
     }
     if samples.is_empty() {
-        return Err(wrong(S.function, "strain", "it has no rows", "give a row a run").into());
+        return Err(wrong(
+            S.function,
+            "strain",
+            "it has no rows",
+            "give one row for each run",
+        )
+        .into());
     }
     // A record is looked through once: readings between those that are judged are rarely in another unit.
     let judged: Vec<f64> = judged_rows(samples, n)

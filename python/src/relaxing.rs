@@ -55,7 +55,7 @@ fn weights(
         Faults::from(wrong(S.function, argument, said, remedy))
     };
     if k == 0 || rows.is_empty() {
-        let remedy = "give a row a gauge and a column a load";
+        let remedy = "give one row for each gauge and one column for each load";
         return Err(fault("S", "it is empty", remedy));
     }
     if let Some(at) = rows.iter().position(|v| !v.is_finite()) {

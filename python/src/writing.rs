@@ -138,7 +138,7 @@ fn made(given: &Given) -> Result<(Block, Rows), Faults> {
         ));
     }
     let number = |v: i64| {
-        u32::try_from(v).map_err(|_| fault(&format!("{v} is no id"), "give ids of 0 or more"))
+        u32::try_from(v).map_err(|_| fault(&format!("{v} is not an id"), "give ids of 0 or more"))
     };
     let [entity, at, layer] = ids.map(|a| a.as_array());
     let mut rows = Rows {

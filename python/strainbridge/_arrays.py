@@ -284,7 +284,7 @@ def rainflow(signal: ArrayLike) -> NDArray[np.void]:
         signal: samples; values that are not finite are skipped.
 
     Returns:
-        A structured array with a row a cycle: ``range``, ``mean``, ``count`` (1, or 0.5 for what is left over at the end), ``first`` and
+        A structured array with one row for each cycle: ``range``, ``mean``, ``count`` (1, or 0.5 for what is left over at the end), ``first`` and
         ``second`` (the samples of its reversals, from 0).
     """
     rows = _engine.rainflow(floats("signal", signal))

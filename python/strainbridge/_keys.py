@@ -22,30 +22,31 @@ class BallastKeys(Section):
     properties: _Key[Any]
     """Properties whose grids may carry the masses, ids or names; default: all shells; bars if there are no shells."""
     region: _Key[Any]
-    """Region in which the masses may sit, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
+    """Region in which the masses may be, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
     run: _Key[Any]
-    """Run whose reactions count; default: the first."""
+    """Run whose reactions are used; default: the first."""
 
 
 class CalibrationKeys(Section):
     """Keys of ``calibration``."""
 
     angle_tolerance_deg: _Key[Any]
-    """How far gauges may be turned from their drawing, one standard deviation: stated, their angle is found from the runs [deg]; default: 0."""
+    """Tolerance of the angle of a gauge, one standard deviation. If it is stated, the runs determine the installed angle [deg]; default: 0."""
     check: _Key[Any]
-    """Runs of known load that S is not calibrated with, but that are recovered and compared with it. A column `check` of the runs file (true or
+    """Runs with known loads that S is not calibrated with. Their loads are recovered and compared. A column `check` of the runs file (true or
     false) does the same; default: none."""
     depends_on: _Key[Any]
-    """Column of the runs file, such as speed: whether loads come out larger with it is tested; default: none."""
+    """Column of the runs file, such as speed: `calibrate` tests whether loads depend on it; default: none."""
     model_uncertainty_rel: _Key[Any]
-    """How far the model's S may be off, one standard deviation, entry by entry and common to a gauge, a fraction; default: 0.1."""
+    """Uncertainty of S of the model, one standard deviation, for each entry and common to a gauge, a fraction; default: 0.1."""
     position_tolerance: _Key[Any]
-    """How far gauges may sit from their drawing along and across their axis, one standard deviation: stated, their place is found from the runs
-    [job length]; default: 0."""
+    """Tolerance of the position along and across the axis of a gauge, one standard deviation. If it is stated, the runs determine the installed
+    position [job length]; default: 0."""
     repeats: _Key[Any]
-    """Columns of the runs file: runs alike in these are repeats, and what they have in common counts once; default: runs of equal loads."""
+    """Columns of the runs file: runs that are equal in these columns are repeats, and an error that they share counts once; default: runs of
+    equal loads."""
     runs: _Key[Any]
-    """Runs that teach; default: every run of [measured] whose loads [runs] gives."""
+    """Calibration runs; default: every run of [measured] whose loads [runs] gives."""
     scale_sd: _Key[Any]
     """Relative error that the known loads of all runs share, one standard deviation, a fraction: one scale or one load cell measured them all.
     Columns <load>_sd state errors that are independent from run to run; default: 0."""
@@ -59,15 +60,15 @@ class CandidatesKeys(Section):
     angle_step_deg: _Key[Any]
     """Step of angles from the element x axis, or 'continuous' [degree]; default: 15."""
     boxes: _Key[Any]
-    """Boxes in which gauges may sit, [[x0, x1], [y0, y1], [z0, z1]] each [job unit of length]; default: anywhere."""
+    """Boxes in which gauges may be placed, [[x0, x1], [y0, y1], [z0, z1]] each [job unit of length]; default: anywhere."""
     bridge: _Key[Any]
     """Wirings to choose from; default: quarter."""
     clear_of: _Key[Any]
-    """Least distances from what disturbs strain or the technician; default: none."""
+    """Minimum distances from places that disturb the strain or the technician; default: none."""
     elements: _Key[Any]
     """Element ids, such as '1 THRU 5000'; default: all."""
     exclude_boxes: _Key[Any]
-    """Boxes in which none may sit [job unit of length]; default: none."""
+    """Boxes in which no gauge may be placed [job unit of length]; default: none."""
     exclude_elements: _Key[Any]
     """Elements left out; default: none."""
     exclude_properties: _Key[Any]
@@ -82,13 +83,13 @@ class CandidatesKeys(Section):
     properties: _Key[Any]
     """Property ids, or names of the deck as `check` shows them; default: all."""
     rosette: _Key[Any]
-    """Rosettes too; default: none."""
+    """Whether rosettes are candidates as well; default: none."""
     sets: _Key[Any]
     """SETs of the deck's case control that name the elements; default: not limited so."""
     surfaces: _Key[Any]
     """Sides of shells; default: both."""
     wanted_elements: _Key[Any]
-    """Elements of which each gets a gauge; among single gauges of one wiring, without costs or a budget; default: none."""
+    """Elements that must each receive a gauge. Only for single gauges of one bridge type, without costs or a budget; default: none."""
 
 
 class CombinationKeys(Section):
@@ -104,19 +105,18 @@ class CompareKeys(Section):
     """Keys of ``compare``."""
 
     columns: _Key[Any]
-    """Column of a load, where the file names it otherwise; default: the name of the load."""
+    """Column of a load, if the file names it differently; default: the name of the load."""
     file: _Key[Any]
     """Record of loads (any format of records), or runs with a column `run`; required."""
     noise: _Key[Any]
-    """Noise of the recorded loads, one standard deviation: it widens the intervals that `share_within` counts by [the file's units]; default:
-    none."""
+    """Noise of the recorded loads, one standard deviation: it widens the intervals of `share_within` [the file's units]; default: none."""
     shift_s: _Key[Any]
     """Time added to the times of the file to get those of the strain record: a number, or 'estimate' from the loads of both [s]; default:
     estimate."""
     time_unit: _Key[Any]
-    """Unit of the column `time`, where the file states none; default: s, or what the size of the times shows."""
+    """Unit of the column `time`, if the file states none; default: s, or what the size of the times shows."""
     units: _Key[Any]
-    """Units of the file; a column that states another one is a fault; default: the units of the columns, else report_units."""
+    """Units of the file; a column that states another unit is a fault; default: the units of the columns, else report_units."""
 
 
 class CorrectionKeys(Section):
@@ -125,7 +125,7 @@ class CorrectionKeys(Section):
     angle_deg: _Key[Any]
     """Angle from the nominal to the installed direction, right-handed about the element normal [degree]; default: 0."""
     exchanged_with: _Key[Any]
-    """The gauge whose column it has, and the other way round; default: none."""
+    """Gauge that has the column of this gauge, and whose column this gauge has; default: none."""
     gain: _Key[Any]
     """Reading over strain: 0.7 reads 0.7 of the strain; default: 1."""
     gauge: _Key[Any]
@@ -144,66 +144,66 @@ class DynamicKeys(Section):
     damping: _Key[Any]
     """Damping of the modes, share of critical; required."""
     damping_uncertainty_rel: _Key[Any]
-    """One standard deviation of the damping, share of it; default: 0.5."""
+    """One standard deviation of the damping, as a fraction of it; default: 0.5."""
     frequency_uncertainty_rel: _Key[Any]
-    """One standard deviation of the modes' frequencies, share of each; default: 0.02."""
+    """One standard deviation of the frequencies of the modes, as a fraction of each; default: 0.02."""
     up_to_hz: _Key[Any]
-    """Loads are recovered up to here; above, from half more on nothing is let through [Hz]; required."""
+    """Upper frequency of the recovered loads. The filter rolls off to zero at 1.5 times this frequency [Hz]; required."""
 
 
 class FleetKeys(Section):
     """Keys of ``fleet``."""
 
     file_name: _Key[Any]
-    """Form of their paths: text with {vehicle} and {day}, and {any} for a part without meaning. Folders count where it holds /:
+    """Form of the paths of records: text with {vehicle} and {day}, and {any} for a part without meaning. Folders count if the form contains /:
     vehicle={vehicle}/day={day}/{any}.parquet; required."""
     knee_range: _Key[Any]
     """Load range below which the S-N line is flatter [report unit of each load]; default: no knee."""
     mission: _Key[Any]
-    """A kind of days of a mission: damage of the mission is extrapolated from the kinds and their shares."""
+    """Kind of days of a mission. The damage of the mission is extrapolated from the kinds and their shares."""
     mission_hours: _Key[Any]
     """Hours of the mission [h]; default: 1."""
     reference: _Key[Any]
-    """Day whose damage an hour is 1; default: none."""
+    """Day whose damage per hour is 1; default: none."""
     slope_below_knee: _Key[Any]
     """Power below the knee; default: cycles below do no harm."""
     target: _Key[Any]
-    """Damage that is aimed at, by load, such as { 'A.FZ' = 1.2e12 } [report unit to the power of the slope]; default: none."""
+    """Target damage by load, such as { 'A.FZ' = 1.2e12 } [report unit to the power of the slope]; default: none."""
 
 
 class GaugeKeys(Section):
     """Keys of ``gauge``."""
 
     angle_deg: _Key[Any]
-    """Angle from that direction, right-handed about the element normal [degree]; default: 0."""
+    """Angle from `direction`, right-handed about the element normal [degree]; default: 0."""
     bridge: _Key[Any]
     """Wiring of the arms; default: quarter."""
     bridge_factor: _Key[Any]
-    """The sum of signed arm strains is divided by this; default: 1."""
+    """Number that divides the sum of the signed arm strains; default: 1."""
     cid: _Key[Any]
-    """Coordinate system of position and direction; a cylindrical or spherical one has its axes at the gauge; default: 0, basic."""
+    """Coordinate system of position and direction. The axes of a cylindrical or spherical system are those at the gauge; default: 0, basic."""
     direction: _Key[Any]
-    """Direction, laid onto the surface; default: x axis of the element."""
+    """Direction of the axis, projected onto the surface; default: x axis of the element."""
     element: _Key[Any]
-    """Shell or bar it sits on."""
+    """Shell or bar of the gauge."""
     element2: _Key[Any]
     """Element of the other pair of a bridge; default: the element of the gauge."""
     grid_length: _Key[Any]
-    """Length over which strain is averaged, at most that of the part [job unit of length]; default: 0: at the point."""
+    """Length over which strain is averaged, at most the length of the part [job unit of length]; default: 0: at the point."""
     name: _Key[Any]
     """Column of the gauge in the strain file; names differ by more than case and spaces; required."""
     point: _Key[Any]
     """Recovery point of a bar or beam; required on bars."""
     position: _Key[Any]
-    """Point instead of an element: the shell with the nearest skin is taken, and reported [job unit of length]."""
+    """Point instead of an element: the shell with the nearest skin is used and reported [job unit of length]."""
     role: _Key[Any]
     """estimate: loads are estimated from it. validation, or reserve: never used for loads, `recover` compares it with its prediction; default:
     estimate."""
     rosette: _Key[Any]
     """Three legs instead of one grid; columns `<name>.a`, `.b`, `.c`; default: none."""
     station: _Key[Any]
-    """Place along a bar or beam, share of its length from end A; only together with `point`. Results must contain the station where PLOAD1 acts
-    on the bar or its section changes; default: 0."""
+    """Place along a bar or beam, share of its length from end A; only together with `point`. Results must contain the station if PLOAD1 acts on
+    the bar or its section changes; default: 0."""
     surface: _Key[Any]
     """Side of a shell: top is Z2, bottom is Z1; default: with `position` the side of the nearest skin, else top."""
     surface2: _Key[Any]
@@ -223,13 +223,14 @@ class LoadKeys(Section):
     """Keys of ``load``."""
 
     applied: _Key[Any]
-    """The load in its subcase, signed [job unit of force or moment]; default: 1."""
+    """Size of the load in its subcase, signed [job unit of force or moment]; default: 1."""
     cid: _Key[Any]
     """Coordinate system of the component; default: 0, basic."""
     component: _Key[Any]
-    """Force or moment component, basic frame or that of cid; required with grid."""
+    """Force or moment component, in the basic frame or the frame of `cid`; required with grid."""
     expected: _Key[Any]
-    """Standard deviation of the load: scales placement, conditions nuisance loads [job unit of force or moment]; default: none."""
+    """Expected size of the load, one standard deviation: scales the loads in `place`, and is the prior of nuisance loads [job unit of force or
+    moment]; default: none."""
     grid: _Key[Any]
     """Grid where the load acts."""
     load_set: _Key[Any]
@@ -243,47 +244,47 @@ class LoadKeys(Section):
     subcase: _Key[Any]
     """Subcase in the results; default: its number in the job."""
     weight: _Key[Any]
-    """How much its variance counts in criterion A; default: 1."""
+    """Weight of the variance of this load in criterion A; default: 1."""
 
 
 class MeasuredKeys(Section):
     """Keys of ``measured``."""
 
     hold_out: _Key[Any]
-    """Runs, or a second file, never used for fitting; default: none."""
+    """Runs, or a second file, that no fit uses; default: none."""
     model_uncertainty_rel: _Key[Any]
     """Error of the predicted strain, one standard deviation, a fraction; default: 0."""
     noise_microstrain: _Key[Any]
     """Noise of a reading, one standard deviation [microstrain]; default: 1."""
     reference: _Key[Any]
-    """none: loads are changes; gravity, or a subcase of the results, without results of the deck: its strain is added and loads are totals;
+    """none: loads are changes. gravity, or a subcase (of the results; without results, of the deck): its strain is added, and loads are totals;
     default: none."""
     strain: _Key[Any]
     """CSV, Parquet, Feather, RPC III, MDF4 or binary record, XLSX of runs; one column for each gauge; one row for each sample (`time`) or run
     (`run`) [microstrain, or the unit after the gauge's name or in a row below the names]; required."""
     time_unit: _Key[Any]
-    """Unit of the column `time`, where the file states none; default: s, or what the size of the times shows (serial days, time since 1970)."""
+    """Unit of the column `time`, if the file states none; default: s, or what the size of the times shows (serial days, time since 1970)."""
     zero: _Key[Any]
     """Record or runs whose mean is subtracted [microstrain]; default: none."""
     zero_runs: _Key[Any]
-    """Runs of the strain file at which no load acts, instead of `zero`: the zero is followed through them, straight from one to the next; runs
-    held out in a file of their own have some of these of their own; default: none."""
+    """Runs of the strain file without load, instead of `zero`: the zero is interpolated linearly between them. A second file of held-out runs
+    must contain some of these runs; default: none."""
 
 
 class ModelKeys(Section):
     """Keys of ``model``."""
 
     deck: _Key[Any]
-    """Nastran deck, or an OP2 that holds the mesh; path from the job; required."""
+    """Nastran deck, or an OP2 that contains the mesh; path relative to the job; required."""
     mesh_error: _Key[Any]
-    """Whether the built-in solver solves a mesh half as wide as well (four times the grids, some five times the time): S is then what the
-    strain tends to as the mesh gets finer, and `recover` and `place` weigh what is left of the mesh's error; default: false."""
+    """Whether the built-in solver also solves a mesh of half the width (four times the grids, about five times the time). S is then the limit
+    of the strain for finer meshes, and `recover` and `place` include the uncertainty of this limit; default: false."""
     results: _Key[Any]
     """OP2, HDF5 or punch files with strain of the unit loads; default: the built-in solver computes them."""
     support: _Key[Any]
-    """What holds the structure: 'deck' (the SPC set that case control selects, if any, else free), 'free' (inertia relief), or the id of an SPC
-    set. Springs to ground (CELAS, CBUSH) hold what they resist in each case, and inertia balances loads along the other rigid motions alone;
-    default: deck."""
+    """Support of the structure: 'deck' (the SPC set that case control selects, if any, else free), 'free' (inertia relief), or the id of an SPC
+    set. Springs to ground (CELAS, CBUSH) hold what they resist in each case. Inertia balances loads along the other rigid motions; default:
+    deck."""
 
 
 class PayloadKeys(Section):
@@ -298,37 +299,37 @@ class PayloadKeys(Section):
     nominal_y: _Key[Any]
     """Place along y that the signatures were computed for [job unit of length]; default: the coordinate of the grid."""
     position: _Key[Any]
-    """Whether its place is known; default: known."""
+    """Whether the place of the payload is known; default: known."""
     region: _Key[Any]
-    """Where it may be, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
+    """Region in which the payload may be, [[x0, x1], [y0, y1]] [job unit of length]; default: the whole structure."""
     unloaded: _Key[Any]
     """Run without payload: its wheel forces, and its strain if there is no zero file, are subtracted; default: none."""
     use: _Key[Any]
-    """Measurements that weigh the payload; default: both where present."""
+    """Measurements that determine the payload; default: both where present."""
     weight_in_model: _Key[Any]
-    """Whether the model already carries its weight; default: true."""
+    """Whether the model already contains the weight of the payload; default: true."""
 
 
 class PlacementKeys(Section):
     """Keys of ``placement``."""
 
     angle_tolerance_deg: _Key[Any]
-    """How well gauges are aligned, one standard deviation [degree]; default: 0."""
+    """Tolerance of the angle, one standard deviation [degree]; default: 0."""
     budget: _Key[Any]
     """Largest cost of a layout [channels, or money]; default: gauges."""
     costs: _Key[Any]
     """Cost by wiring (quarter, half-bending, full-bending, shear, rosette) [channels, or money]; default: 1; a rosette 3."""
     criterion: _Key[Any]
-    """What is best: all loads (D), the wanted ones (Ds), mean variance (A), mean error of predicted strain (I), sizes known (Bayesian-D), least
-    condition number; default: Ds with nuisance loads, else D."""
+    """Quantity that the layout optimises: all loads (D), the wanted loads (Ds), mean variance (A), mean error of predicted strain (I), loads of
+    known size (Bayesian-D), or the condition number; default: Ds with nuisance loads, else D."""
     curve: _Key[Any]
-    """Numbers of gauges for which sigma, bound and condition are reported; default: none."""
+    """Gauge counts for which sigma, bound and condition number are reported; default: none."""
     gauge_factor_rel: _Key[Any]
     """Tolerance of the gauge factor, one standard deviation, a fraction; default: 0."""
     gauges: _Key[Any]
     """Number of gauges; default: twice the number of loads."""
     keep: _Key[Any]
-    """Installed gauges that stay: 'all', or their names; `gauges` counts those to be added; default: none."""
+    """Installed gauges that stay: 'all', or their names. `gauges` counts only the added ones; default: none."""
     loss: _Key[Any]
     """judge: report sigma after the loss of any one gauge. optimise: choose the layout that is best after the worst loss of one gauge; default:
     judge."""
@@ -339,17 +340,17 @@ class PlacementKeys(Section):
     noise_microstrain: _Key[Any]
     """Noise of a gauge, one standard deviation [microstrain]; default: the value of [measured], else 1."""
     position_tolerance: _Key[Any]
-    """How well gauges are put in place along each direction, one standard deviation [job unit of length]; default: 0."""
+    """Tolerance of the position along each direction, one standard deviation [job unit of length]; default: 0."""
     references: _Key[Any]
-    """Named grids from which the gluing sheet measures; default: grids where loads act."""
+    """Named grids from which the gluing sheet measures distances; default: grids where loads act."""
     reserve: _Key[Any]
-    """Gauges kept from recovery, for validation; default: 0."""
+    """Number of gauges reserved for validation; default: 0."""
     seed: _Key[Any]
-    """Seed of everything random; default: 1."""
+    """Seed of all random numbers; default: 1."""
     spacing: _Key[Any]
-    """Least distance between gauges [job unit of length]; default: 0."""
+    """Minimum distance between gauges [job unit of length]; default: 0."""
     symmetric: _Key[Any]
-    """Axis normal to a plane through 0 at which gauges come in mirrored pairs; default: none."""
+    """Axis normal to a plane through 0: gauges are placed in pairs that mirror each other there; default: none."""
 
 
 class ReconcileKeys(Section):
@@ -360,19 +361,19 @@ class ReconcileKeys(Section):
     effect: _Key[Any]
     """A hypothesis of the user, tested like the effects of the library."""
     effects: _Key[Any]
-    """Effect ids that are looked for, or 'all'; default: all."""
+    """Effect ids to test, or 'all'; default: all."""
     joints: _Key[Any]
     """Bushes whose stiffness may be wrong; default: all, where they are few."""
     path: _Key[Any]
     """Strain of runs, or accelerations; required."""
     places: _Key[Any]
-    """Grids where a mass may sit, by name; default: none."""
+    """Grids where a mass may be, by name; default: none."""
     temperature_set: _Key[Any]
-    """Temperature set of the deck whose pattern thermal_gradient has; default: none."""
+    """Temperature set of the deck for the effect thermal_gradient; default: none."""
     thermal_microstrain_per_degC: _Key[Any]
     """Apparent strain by wiring, such as { quarter = 1.4 } [microstrain per degC]; default: 0."""
     tolerance: _Key[Any]
-    """How well gauges were glued, one standard deviation; default: none."""
+    """Tolerances of the installed gauges, one standard deviation; default: none."""
     zones: _Key[Any]
     """Properties whose stiffness may be wrong together, ids or names of the deck, such as { L4 = [14], left = 'RailLeft' }; default: each
     property with gauges."""
@@ -382,9 +383,9 @@ class RecoverKeys(Section):
     """Keys of ``recover``."""
 
     csv_every: _Key[Any]
-    """`loads.csv` has a row for every so many samples; default: 1."""
+    """Step between the samples in `loads.csv`: 10 writes every tenth sample; default: 1."""
     files: _Key[Any]
-    """Which of them; default: all, but for long histories."""
+    """Files to write; default: all, but for long histories."""
     slope: _Key[Any]
     """Power of the load range in pseudo-damage; default: 5."""
 
@@ -410,63 +411,63 @@ class RespondKeys(Section):
     elements: _Key[Any]
     """Elements to report, such as '1 THRU 500'; default: the hottest."""
     hottest: _Key[Any]
-    """How many of the hottest; default: 20."""
+    """Number of elements with the highest stress to report; default: 20."""
     loads: _Key[Any]
-    """Table or record of loads, as `recover` writes them (loads.csv, loads.bin, loads.rsp, loads.parquet) or reads them; a record has no
+    """Table or record of loads, as `recover` writes them (loads.csv, loads.bin, loads.rsp, loads.parquet) or reads them. A record has no
     intervals, and its loads count as exact [report units]; default: recovered from [measured]."""
     slope: _Key[Any]
-    """Power of the stress range in pseudo-damage: with it `fatigue.csv` has the damage of each reported place over the history of loads;
-    default: no damage."""
+    """Power of the stress range in pseudo-damage. If it is stated, `fatigue.csv` contains the damage at each reported place over the history of
+    loads; default: no damage."""
 
 
 class RunsKeys(Section):
     """Keys of ``runs``."""
 
     columns: _Key[Any]
-    """Column of a load or payload quantity, where the file names it otherwise; default: the name of the load or channel."""
+    """Column of a load or payload quantity, if the file names it differently; default: the name of the load or channel."""
     file: _Key[Any]
-    """CSV with `run`, a column a load, payload_force, payload_mass, payload_x, payload_y; required."""
+    """CSV with `run`, one column for each load, payload_force, payload_mass, payload_x, payload_y; required."""
     ground: _Key[Any]
-    """Usual change of a computed wheel force by ground that is not flat, one standard deviation; reconcile estimates it for every run [the
-    file's unit of force]; default: none."""
+    """Typical change of a computed wheel force by ground that is not flat, one standard deviation. `reconcile` estimates this change for every
+    run [the file's unit of force]; default: none."""
     noise: _Key[Any]
-    """Noise of the file's numbers, one standard deviation; where columns state another unit than report_units, set runs.units [the file's
+    """Noise of the numbers in the file, one standard deviation. If columns state another unit than report_units, set runs.units [the file's
     units]; default: 1 %, with a finding."""
     units: _Key[Any]
-    """Units of the file; a column that states another one (`LF.FZ [N]`) is a fault; default: the units of the columns, else report_units."""
+    """Units of the file; a column that states another unit (`LF.FZ [N]`) is a fault; default: the units of the columns, else report_units."""
     wheel_forces: _Key[Any]
-    """Where wheel forces come from: measured, or computed for flat ground (then they prove nothing); default: measured."""
+    """Source of the wheel forces: measured, or computed for flat ground (then they are no evidence); default: measured."""
 
 
 class SectionKeys(Section):
     """Keys of ``section``."""
 
     end_s: _Key[Any]
-    """Time at which it ends; a sample at this time belongs to the next section [s]; required without `file`."""
+    """Time at which the section ends; a sample at this time belongs to the next section [s]; required without `file`."""
     file: _Key[Any]
     """A separate strain record, instead of times, with the columns, zero and corrections of [measured]; default: none."""
     name: _Key[Any]
     """Name of the section; required."""
     repeats: _Key[Any]
-    """How often it occurs in the duty cycle; default: 1."""
+    """Number of repetitions in the duty cycle; default: 1."""
     start_s: _Key[Any]
-    """Time of its first sample [s]; required without `file`."""
+    """Time of the first sample of the section [s]; required without `file`."""
 
 
 class SensitivityKeys(Section):
     """Keys of ``sensitivity``."""
 
     columns: _Key[Any]
-    """Column of a load, where the file names it otherwise; default: the name of the load or channel."""
+    """Column of a load, if the file names it differently; default: the name of the load or channel."""
     common_zero: _Key[Any]
-    """CSV with the columns gauge and common_zero: strain that the gauges read without load, as `calibrate` writes it with terms = 'intercept';
-    it is subtracted from all readings [microstrain]; default: none."""
+    """CSV with the columns gauge and common_zero: strain that the gauges read without load, as `calibrate` writes it with terms = 'intercept'.
+    It is subtracted from all readings [microstrain]; default: none."""
     covariance: _Key[Any]
-    """How far that S may be off: calibration.bin, as `calibrate` writes it; default: exact."""
+    """Uncertainty of this S: calibration.bin, as `calibrate` writes it; default: exact."""
     file: _Key[Any]
-    """CSV: a row a gauge (column gauge), a column a load [microstrain per load]; required."""
+    """CSV with one row for each gauge (column gauge) and one column for each load [microstrain per load]; required."""
     per: _Key[Any]
-    """Units of the loads that S counts by; default: job units, not report_units."""
+    """Units of the loads in S; default: job units, not report_units."""
     range: _Key[Any]
     """Smallest and largest load of the calibration by load, such as { 'LF.FZ' = [0, 12] }, as `calibrate` writes it: `recover` and `payload`
     report loads beyond it [the units of `per`]; default: not tested."""
@@ -483,11 +484,11 @@ class StudyKeys(Section):
     errors: _Key[Any]
     """Errors of readings and gluing; required."""
     gauges: _Key[Any]
-    """Numbers of gauges; default: all of the job."""
+    """Gauge counts; default: all of the job."""
     layouts: _Key[Any]
     """given: the first n gauges of the job; random; D, Ds: the best; default: given, random, D."""
     seed: _Key[Any]
-    """Seed of everything random; default: 1."""
+    """Seed of all random numbers; default: 1."""
     trials: _Key[Any]
     """Repetitions; default: 1000."""
 
@@ -498,17 +499,17 @@ class VehicleKeys(Section):
     band_hz: _Key[Any]
     """Band in which model and measurement are compared [Hz]; default: 0.7 to 20."""
     bounds: _Key[Any]
-    """Limits [low, high] of parameters, `inf` where a side is unlimited; masses, rates, damping and friction stay above 0 anyway [units of the
-    job]; default: none."""
+    """Limits [low, high] of parameters; `inf` if there is no limit. Masses, rates, damping and friction always stay above 0 [units of the job];
+    default: none."""
     columns: _Key[Any]
-    """Column of a channel, where the file names it otherwise; default: the name of the load or channel."""
+    """Column of a channel, if the file names it differently; default: the name of the load or channel."""
     corrections: _Key[Any]
-    """Faults of channels that are known, by channel; default: none."""
+    """Known faults of channels, by channel; default: none."""
     data: _Key[Any]
-    """CSV, RPC III, Parquet, Feather or MDF4 record: accelerations and wheel forces, in the units of the job where the file states none;
+    """CSV, RPC III, Parquet, Feather or MDF4 record: accelerations and wheel forces, in the units of the job if the file states none;
     required."""
     hold_out: _Key[Any]
-    """Record of another stretch of road, never used for fitting; default: none."""
+    """Record of another road that no fit uses; default: none."""
     known: _Key[Any]
     """Known parameters, such as { m_b = 3200.0 } [units of the job]; default: none."""
     leaf: _Key[Any]
@@ -516,7 +517,7 @@ class VehicleKeys(Section):
     mass_change: _Key[Any]
     """A mass that changes during the record; default: none."""
     model: _Key[Any]
-    """Which vehicle; required."""
+    """Model of the vehicle; required."""
     noise: _Key[Any]
     """Noise of channels, one standard deviation; default: estimated from the record."""
     places: _Key[Any]
@@ -536,7 +537,7 @@ class Keys:
     ballast: _Key[BallastKeys]
     """Lumped masses that bring the model's reactions to the measured ones."""
     calibration: _Key[CalibrationKeys]
-    """How `calibrate` learns S from runs of known load."""
+    """Settings of `calibrate`, which computes S from runs with known loads."""
     candidates: _Key[CandidatesKeys]
     """Where `place` may put gauges; default: all shells."""
     combination: _Key[Items[CombinationKeys]]
@@ -546,8 +547,8 @@ class Keys:
     correction: _Key[Items[CorrectionKeys]]
     """Known fault of a channel, corrected in every reading and record of the job."""
     dynamic: _Key[DynamicKeys]
-    """Records with content near the elastic modes of the structure: `recover` takes its vibration out of them, with the modes of the model;
-    default: readings are taken as at rest."""
+    """Records with content near the elastic modes of the structure: `recover` removes the vibration with the modes of the model; default:
+    readings are taken as at rest."""
     fleet: _Key[FleetKeys]
     """Records of many vehicles and days."""
     gauge: _Key[Items[GaugeKeys]]
@@ -577,10 +578,10 @@ class Keys:
     section: _Key[Items[SectionKeys]]
     """A section of the record (a stretch of road, an event): `recover` reports loads, statistics and damage for each."""
     sensitivity: _Key[SensitivityKeys]
-    """S computed elsewhere, instead of [model]; together with [model] only where `covariance` states a calibrated S."""
+    """S computed elsewhere, instead of [model]. Together with [model] only if `covariance` states a calibrated S."""
     study: _Key[StudyKeys]
-    """Recovery repeated under stated errors; true loads are those of the first complete run, else each trial draws them, normal with standard
-    deviation `expected`."""
+    """Recovery repeated under stated errors. The true loads are the loads of the first complete run; without one, each trial draws them from a
+    normal distribution with standard deviation `expected`."""
     title: _Key[Any]
     """Title of reports; default: the job's file name."""
     units: _Key[Any]

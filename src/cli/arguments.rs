@@ -14,13 +14,13 @@ use std::sync::LazyLock;
     version = version(),
     about,
     arg_required_else_help = true,
-    after_help = "First steps:\n  strainbridge demo                               the truck story in a folder, in seconds\n  \
-                  strainbridge check truck.bdf truck.op2          what is in your files\n  \
-                  strainbridge init truck.bdf truck.op2           a commented job from them\n  \
+    after_help = "First steps:\n  strainbridge demo                               an example truck: jobs, results, report\n  \
+                  strainbridge check truck.bdf truck.op2          contents and faults of your files\n  \
+                  strainbridge init truck.bdf truck.op2           a commented job from these files\n  \
                   strainbridge place job.toml                     where to glue gauges\n  \
                   strainbridge recover job.toml                   loads from measured strain\n\n\
-                  Exit code: 0 done; 1 done, but an answer can't be relied on; 2 bad input, every fault listed;\n\
-                  130 stopped by Ctrl-C, no half-written file is left.\n\
+                  Exit code: 0 done; 1 done, but the answer is unreliable; 2 bad input, every fault is listed;\n\
+                  130 stopped by Ctrl-C, no incomplete file remains.\n\
                   `strainbridge COMMAND --help` shows an example of each."
 )]
 pub struct Arguments {
@@ -54,15 +54,15 @@ fn version() -> &'static str {
 /// The commands; each has its file beside this one.
 #[derive(clap::Subcommand, Debug)]
 pub enum Command {
-    /// The truck story in a folder: solve, place, recover, reconcile, weigh, report
+    /// Write an example truck into a folder: solve, place, recover, reconcile, weigh, report
     #[command(after_help = "Example:\n  strainbridge demo story && open story/report.html")]
     Demo(DemoArguments),
-    /// Read decks, results or jobs; report what is in them and every fault
+    /// Read decks, results or jobs; report their contents and every fault
     #[command(
         after_help = "Example:\n  strainbridge check truck.bdf truck.op2\n  strainbridge check job.toml --json"
     )]
     Check(FilesArguments),
-    /// Shell and bar strain of every static subcase, in the element and the basic frame, to strains.csv
+    /// Write shell and bar strain of every static subcase to strains.csv, in element and basic frame
     #[command(after_help = "Example:\n  strainbridge strains truck.bdf truck.op2 --out strains")]
     Strains(DeckArguments),
     /// Write a commented job.toml from a deck and its results
@@ -73,20 +73,20 @@ pub enum Command {
         mut_arg("out", |a| a.help("Folder for job.toml and result.json (default: job.toml alone, in the current folder)"))
     )]
     Init(InitArguments),
-    /// Write unit_loads.bdf: the job's deck with one unit-load subcase a load, ready for Nastran
+    /// Write unit_loads.bdf: the deck of the job with one unit-load subcase for each load, ready for Nastran
     #[command(
         after_help = "Example:\n  strainbridge cases job.toml --out nastran && cd nastran && nastran unit_loads.bdf"
     )]
     Cases(JobArguments),
-    /// Compute S of the job's gauges, or of its candidates: what each reads per unit of each load
+    /// Compute S of the gauges or candidates of a job: the reading of each for a unit of each load
     #[command(after_help = "Example:\n  strainbridge sensitivity job.toml")]
     Sensitivity(JobArguments),
-    /// Choose gauges, with a certificate of how far from the best possible they are
+    /// Choose gauges, with a bound on the distance from the best layout
     #[command(
         after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html (report.pdf with feature pdf)"
     )]
     Place(JobArguments),
-    /// Learn S from runs of known load, fused with the model's S where there is one
+    /// Compute S from runs with known loads, combined with the model's S if there is a model
     #[command(
         after_help = "Example:\n  strainbridge calibrate job.toml --out cal && strainbridge recover cal/calibrated.toml"
     )]
@@ -94,43 +94,43 @@ pub enum Command {
     /// Recover loads from measured strain, with intervals
     #[command(after_help = "Example:\n  strainbridge recover job.toml --json | jq .loads")]
     Recover(JobArguments),
-    /// Loads, cycles, damage and faults of many records on all cores, merged by vehicle
+    /// Recover loads, cycles, damage and channel faults of many records, merged by vehicle
     #[command(
-        after_help = "Example:\n  strainbridge fleet job.toml data/*.parquet --out fleet    # again, for what is new alone\n  \
-                      strainbridge fleet job.toml data/*.parquet --out fleet --shard 3/64    # a part of them, on one of many machines\n  \
-                      strainbridge fleet job.toml --out fleet    # merges what the folder holds"
+        after_help = "Example:\n  strainbridge fleet job.toml data/*.parquet --out fleet    # again: processes new records only\n  \
+                      strainbridge fleet job.toml data/*.parquet --out fleet --shard 3/64    # one part, on one of many machines\n  \
+                      strainbridge fleet job.toml --out fleet    # merges the results in the folder"
     )]
     Fleet(FleetArguments),
     /// Repeat recovery under stated errors for a range of gauge counts and layouts
     #[command(after_help = "Example:\n  strainbridge study job.toml --threads 4")]
     Study(JobArguments),
-    /// Strain and stress anywhere on the structure from recovered loads, by superposition: envelope, hot spots, histories
+    /// Compute strain and stress of the structure from recovered loads: envelope, hot spots, histories
     #[command(
         after_help = "Example:\n  strainbridge respond job.toml    # job.out/envelope.vtu opens in ParaView"
     )]
     Respond(JobArguments),
-    /// Mass and, if the data determine it, position of a payload, from strain, wheel forces or both
+    /// Compute mass and, if the data determine it, position of a payload, from strain, wheel forces or both
     #[command(after_help = "Example:\n  strainbridge payload job.toml")]
     Payload(JobArguments),
-    /// Size and place lumped masses that bring the model's reactions to the measured ones; write the completed deck
+    /// Find lumped masses that match the model's reactions to the measured ones; write the completed deck
     #[command(
-        after_help = "Example:\n  strainbridge ballast job.toml    # job.out holds the completed deck"
+        after_help = "Example:\n  strainbridge ballast job.toml    # job.out contains the completed deck"
     )]
     Ballast(JobArguments),
-    /// Strain of a job's unit loads, or of a deck's static subcases, by the built-in solver
+    /// Solve the unit loads of a job, or the static subcases of a deck, with the built-in solver
     #[command(
         after_help = "Example:\n  strainbridge solve truck.bdf --out solved    # solved/results.op2, solved/results.vtu"
     )]
     Solve(SolveArguments),
-    /// Elastic modes of a job's or deck's structure, free or supported, with their shapes, effective masses and strain at gauges
+    /// Compute elastic modes of the free or supported structure: shapes, effective masses and strain at gauges
     #[command(after_help = "Example:\n  strainbridge modes truck.bdf --modes 20 --out modes")]
     Modes(ModesArguments),
-    /// Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink
+    /// Find where simulation and measurement disagree, and the missing effect; write the job with this effect
     #[command(
-        after_help = "Example:\n  strainbridge reconcile job.toml    # exit code 1: what it says can't be relied on"
+        after_help = "Example:\n  strainbridge reconcile job.toml    # exit code 1: the answer is unreliable"
     )]
     Reconcile(JobArguments),
-    /// Vehicle parameters and wheel loads from accelerations
+    /// Identify vehicle parameters and wheel loads from accelerations
     #[command(after_help = "Example:\n  strainbridge identify vehicle.toml")]
     Identify(JobArguments),
     /// Recompute a result folder from its inputs and compare hashes and numbers
@@ -138,18 +138,18 @@ pub enum Command {
         after_help = "Example:\n  strainbridge verify job.out    # exit code 1: something differs"
     )]
     Verify(VerifyArguments),
-    /// Remove what strainbridge keeps between runs
+    /// Remove data that strainbridge stores between runs
     #[command(after_help = "Example:\n  strainbridge cache clean --yes")]
     Cache(CacheArguments),
-    /// Remove kept solutions of the built-in solver: short for `cache clean`
+    /// Remove stored solutions of the built-in solver: short for `cache clean`
     #[command(after_help = "Example:\n  strainbridge clean --yes")]
     Clean(CleanArguments),
-    /// What a finding means: cause, limit, remedy, an example
+    /// Explain a finding: cause, limit, remedy, example
     #[command(
         after_help = "Example:\n  strainbridge explain loads-not-separable\n  strainbridge explain --list --json"
     )]
     Explain(ExplainArguments),
-    /// Print the JSON schema of a job, for editors that complete and check TOML by it
+    /// Print the JSON schema of a job, for editors that complete and check TOML
     #[command(
         after_help = "Example:\n  strainbridge schema > job.schema.json    # and `#:schema job.schema.json` as first line of job.toml"
     )]
@@ -159,7 +159,7 @@ pub enum Command {
         after_help = "Example:\n  strainbridge completions bash > ~/.local/share/bash-completion/completions/strainbridge"
     )]
     Completions(CompletionsArguments),
-    /// Write man pages, one a command
+    /// Write one man page for each command
     #[command(after_help = "Example:\n  strainbridge man ~/.local/share/man/man1")]
     Man(ManArguments),
 }
@@ -173,16 +173,16 @@ pub struct FleetArguments {
     /// Records, folders of records, or patterns such as data/**/*.parquet; without any, the results in the output folder are merged
     #[arg(value_name = "FILES")]
     pub files: Vec<PathBuf>,
-    /// A text file with a path a line, or - for standard input; its records are processed in addition to FILES
+    /// Text file with one path in each line, or - for standard input; its records are processed in addition to FILES
     #[arg(long = "files", value_name = "LIST")]
     pub list: Option<PathBuf>,
-    /// Do one part of the files, such as 3/64
+    /// Process one part of the files, such as 3/64
     #[arg(long, value_name = "N/OF", value_parser = shard)]
     pub shard: Option<Shard>,
-    /// Folder where the results of single files are kept, for tasks that share one (default: that of --out)
+    /// Folder for the results of single files, for tasks that share it (default: the folder of --out)
     #[arg(long, value_name = "DIR")]
     pub kept: Option<PathBuf>,
-    /// What `sha256sum` lists of the records: one that is listed and whose result is kept is not read again while its size and time are the same
+    /// Output of `sha256sum` for the records. A listed record with a stored result is not read again if its size and time are unchanged
     #[arg(long, value_name = "FILE", value_parser = digests)]
     pub digests: Option<BTreeMap<String, String>>,
     /// What every command is asked
@@ -221,7 +221,7 @@ pub struct ManArguments {
 /// Which finding.
 #[derive(clap::Args, Debug)]
 pub struct ExplainArguments {
-    /// Its code, as findings state it in brackets
+    /// Code of the finding, as findings state it in brackets
     #[arg(value_name = "CODE", required_unless_present_any = ["list", "reference"])]
     pub code: Option<String>,
     /// All codes
@@ -257,7 +257,7 @@ pub struct CacheArguments {
 /// Tasks on kept solutions.
 #[derive(clap::Subcommand, Debug)]
 pub enum CacheTask {
-    /// Remove kept solutions of the built-in solver
+    /// Remove stored solutions of the built-in solver
     #[command(after_help = "Example:\n  strainbridge cache clean --yes")]
     Clean(CleanArguments),
 }
@@ -265,10 +265,10 @@ pub enum CacheTask {
 /// What is removed.
 #[derive(clap::Args, Debug)]
 pub struct CleanArguments {
-    /// The folder with kept solutions (default: the user's folder for caches)
+    /// Folder with stored solutions (default: the user's folder for caches)
     #[arg(value_name = "FOLDER")]
     pub folder: Option<PathBuf>,
-    /// Remove them without a question
+    /// Remove them without asking
     #[arg(short, long)]
     pub yes: bool,
     /// What every command takes.
@@ -288,13 +288,13 @@ pub struct CommonArguments {
     /// Threads for parallel work (default: all cores)
     #[arg(long, value_name = "N")]
     pub threads: Option<usize>,
-    /// Neither take solutions of the built-in solver from those kept nor keep them
+    /// Neither use nor store solutions of the built-in solver
     #[arg(long)]
     pub no_cache: bool,
-    /// Say faults and findings of severity error alone
+    /// Print only faults and findings of severity error
     #[arg(short, long, conflicts_with = "verbose")]
     pub quiet: bool,
-    /// Say every finding, equal ones too, and seconds by stage
+    /// Print every finding, equal ones too, and seconds by stage
     #[arg(short, long)]
     pub verbose: bool,
 }
@@ -316,8 +316,8 @@ pub struct SolveArguments {
     #[command(flatten)]
     #[allow(missing_docs)]
     pub job: JobArguments,
-    /// Write the total strain of heated structures, thermal expansion included (the apparent strain of a gauge that compensates nothing);
-    /// without it the mechanical strain, which a gauge compensated for its material reads
+    /// Write the total strain of heated structures, with thermal expansion (the strain of an uncompensated gauge). Without this option it is
+    /// the mechanical strain, which a gauge reads that is compensated for its material
     #[arg(long)]
     pub total_strain: bool,
     /// Elastic modes computed in addition to the strain; 0: none
@@ -351,7 +351,7 @@ pub struct ModesArguments {
     /// The deck, or a job
     #[arg(value_name = "DECK|JOB.toml")]
     pub input: PathBuf,
-    /// How many
+    /// Number of modes
     #[arg(long, value_name = "N", default_value_t = crate::workflow::solve::MODES)]
     pub modes: usize,
     #[command(flatten)]
@@ -391,7 +391,7 @@ impl FilesArguments {
 /// What a job is written from, and for.
 #[derive(clap::Args, Debug)]
 pub struct InitArguments {
-    /// The deck, or an OP2 that holds the mesh; `--for identify` and `--for calibrate` do without
+    /// The deck, or an OP2 that contains the mesh; `--for identify` and `--for calibrate` need no deck
     #[arg(value_name = "DECK", required_unless_present = "purpose")]
     pub deck: Option<PathBuf>,
     /// Result files

@@ -100,15 +100,15 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
     let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
     let shown = folder.path().display().to_string();
     let (n, bytes) = folder.size();
-    let solutions = counted(n, "kept solution");
+    let solutions = counted(n, "stored solution");
     let what = format!("{solutions} in `{shown}`, {:.1} MB", bytes as f64 / 1e6);
     if !a.yes {
         match agrees(&format!("Remove {what}?")) {
             Some(true) => {}
             Some(false) => return print(b"nothing is removed\n"),
             None => {
-                let wrong = format!("{what}: no terminal to ask whether to remove them");
-                let fault = Fault::of(shown, "clean", wrong, "call it with `--yes`");
+                let wrong = format!("{what}: there is no terminal to ask whether to remove them");
+                let fault = Fault::of(shown, "clean", wrong, "run the command with `--yes`");
                 return refuse(&fault.into(), &a.common);
             }
         }
@@ -119,7 +119,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             print(format!("{json:#}\n").as_bytes())
         }
         Ok((n, bytes)) => {
-            let solutions = counted(n, "kept solution");
+            let solutions = counted(n, "stored solution");
             let megabytes = bytes as f64 / 1e6;
             print(format!("{solutions} removed from `{shown}`, {megabytes:.1} MB\n").as_bytes())
         }

@@ -112,7 +112,7 @@ pub enum FeError {
     MissingSet {
         /// `LOAD`, `SPC`, `MPC`, `SUPORT1`.
         kind: &'static str,
-        /// Its id.
+        /// Id of the missing set.
         sid: u32,
         /// Subcase id.
         subcase: u32,

@@ -177,7 +177,7 @@ pub(super) fn load_into_support(
             "load-into-support",
             format!("subcase {}", case.subcase),
             format!(
-                "{:.0} % of the load goes straight into the support at grid {id}, dof {}: that part strains nothing, so gauges can't tell it",
+                "{:.0} % of the load goes straight into the support at grid {id}, dof {}: this part strains nothing, so gauges cannot measure it",
                 100.0 * share.min(1.0),
                 dof + 1
             ),

@@ -15,7 +15,7 @@ pub struct SolveReport {
     pub dofs: usize,
     /// Entries of its factor.
     pub factor_nonzeros: usize,
-    /// Its ordering.
+    /// Ordering of the factor.
     pub ordering: Option<OrderingMethod>,
     /// Smallest pivot of the matrix scaled to unit diagonal: below 1e-10 the structure is nearly a mechanism.
     pub smallest_pivot: f64,

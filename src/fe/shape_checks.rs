@@ -50,7 +50,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
         (
             folded,
             "folded-quad",
-            "are folded out of their plane: corners stand off the mean plane by more than a twentieth of the diagonal",
+            "are folded out of their plane: corners are off the mean plane by more than a twentieth of the diagonal",
             "split each into two triangles, and put no gauge there",
             Some((worst, FOLDED)),
         ),

@@ -282,7 +282,7 @@ fn nothing_free(cases: &[&LoadCase]) -> Finding {
         "every-dof-held",
         format!("subcases {}", few(&ids)),
         "supports hold every degree of freedom, so that loads strain nothing",
-        "hold the structure where its supports are, and there alone",
+        "hold the structure only where its supports are",
     )
 }
 

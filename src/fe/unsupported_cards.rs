@@ -83,7 +83,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
         refuse(
             format!("{}{id}", c.card),
             c.at,
-            "the built-in solver does not carry it, and it acts on the answer",
+            "the built-in solver does not support it, and it acts on the answer",
             "delete it if it does not matter here, or solve with Nastran and name its results in the job",
         );
     }
@@ -102,7 +102,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
                 refuse(
                     format!("{card} {sid}"),
                     *at,
-                    "the built-in solver does not carry it",
+                    "the built-in solver does not support it",
                     "give means and gradients alone, or solve with Nastran",
                 );
             }
@@ -114,7 +114,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
                         refuse(
                             format!("{card} {sid}"),
                             *at,
-                            "the built-in solver does not carry this load",
+                            "the built-in solver does not support this load",
                             "replace it by FORCE, MOMENT, PLOAD4 or GRAV, or solve with Nastran",
                         );
                     }
@@ -150,7 +150,7 @@ fn normals_and_rigids(model: &Model, cases: &[LoadCase]) -> Vec<Refusal> {
             refuse(
                 format!("{} {}", r.kind.card(), r.id),
                 r.at,
-                "the built-in solver does not carry ALPHA of rigid elements, which RIGID = LAGRAN or LGELIM asks for",
+                "the built-in solver does not support ALPHA of rigid elements, which RIGID = LAGRAN or LGELIM asks for",
                 "replace the rigid element by a stiff bar of that ALPHA, or solve with Nastran and name its results in the job",
             );
         }

@@ -1,7 +1,7 @@
-//! What every code of a finding means: cause, limit, remedy, an example. The one place where codes are listed.
+//! Cause, limit, remedy and example of every code of a finding. This is the only list of codes.
 //!
-//! The tables stand in `codes/*.txt`, four fields a code under its head `code | severities | who says it`. A test compares them with the codes
-//! that the program gives: one without an entry fails it, so does an entry that nothing gives.
+//! The tables are in `codes/*.txt`: four fields for each code below the line `code | severities | commands`. A test compares them with the codes
+//! of the program. It fails for a code without an entry, and for an entry without a code.
 
 use super::severity::Severity;
 use serde::Serialize;
@@ -15,27 +15,27 @@ const TABLES: [&str; 4] = [
     include_str!("codes/vehicle.txt"),
 ];
 
-/// What a code of a finding means.
+/// Meaning of the code of a finding.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Code {
     /// The code, such as `loads-not-separable`.
     pub code: &'static str,
-    /// The severities that it comes with, the mildest first.
+    /// Possible severities, the mildest first.
     pub severity: Vec<Severity>,
-    /// The commands that say it.
+    /// Commands that report the finding.
     pub said_by: &'static str,
-    /// What brings it about, with the consequence.
+    /// Cause, with its consequence for the answer.
     pub cause: &'static str,
-    /// What is measured against, or `None.`
+    /// Limit that the measured number is compared with, or `None.`
     pub limit: &'static str,
-    /// What to do.
+    /// Remedy, as an imperative.
     pub remedy: &'static str,
-    /// A case of it.
+    /// Example of the finding.
     pub example: &'static str,
 }
 
 impl Code {
-    /// The severities in words.
+    /// Returns the severities as text, such as `warning or error`.
     pub fn severities(&self) -> String {
         let names: Vec<&str> = self.severity.iter().map(|s| s.name()).collect();
         names.join(" or ")
@@ -48,7 +48,7 @@ static CODES: LazyLock<Vec<Code>> = LazyLock::new(|| {
     codes
 });
 
-/// Every code, by name.
+/// Returns all codes, sorted by name.
 pub fn codes() -> &'static [Code] {
     &CODES
 }
@@ -64,7 +64,7 @@ const RENAMED: [(&str, &str); 7] = [
     ("known-loads-unit", "input-unit"),
 ];
 
-/// Returns the entry of a code, or of the one that replaced it; `None` where no finding has it.
+/// Returns the entry of a code, or of the code that replaced it; `None` if no finding has the code.
 pub fn code(name: &str) -> Option<&'static Code> {
     let today = RENAMED.iter().find(|r| r.0 == name);
     let name = today.map_or(name, |r| r.1);

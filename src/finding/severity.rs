@@ -2,20 +2,20 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How much a finding matters.
+/// Severity of a finding. The worst severity of an answer decides its exit code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
-    /// Worth knowing.
+    /// Information: the answer is not affected.
     Info,
-    /// Look before you trust.
+    /// The answer is usable, but check the cause first.
     Warning,
-    /// The answer can't be relied on: exit code 1.
+    /// The answer is unreliable: exit code 1.
     Error,
 }
 
 impl Severity {
-    /// Its name in files and in the reference.
+    /// Returns the name in files and in the reference.
     pub fn name(self) -> &'static str {
         match self {
             Self::Info => "info",
@@ -24,13 +24,13 @@ impl Severity {
         }
     }
 
-    /// That of a name in files; `None` where none is called so.
+    /// Parses a name (`info`, `warning`, `error`); `None` for any other text.
     pub fn named(name: &str) -> Option<Self> {
         let all = [Self::Info, Self::Warning, Self::Error];
         all.into_iter().find(|s| s.name() == name)
     }
 
-    /// The word of it in messages.
+    /// Returns the word in messages: an information is a `note` there.
     pub fn word(self) -> &'static str {
         match self {
             Self::Info => "note",

@@ -5,7 +5,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::fe::{CaseResult, PlaneStrain, StrainTerm};
 use crate::model::{BeamIx, ShellIx, Vec3};
 
-/// Where an arm takes its strain.
+/// Place at which an arm takes its strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spot {
     /// A shell's surface, at its centre or a corner.
@@ -93,7 +93,7 @@ pub fn strain_terms(gauge: &Gauge) -> Vec<StrainTerm> {
     gauge.arms.iter().filter_map(term).collect()
 }
 
-/// What a gauge reads in a load case, strain; `None` where the case has no strain at one of its spots.
+/// Returns the reading of a gauge in a load case, strain; `None` if the case has no strain at one of its spots.
 pub fn reading(gauge: &Gauge, case: &CaseResult) -> Option<f64> {
     gauge.arms.iter().map(|arm| arm_reading(arm, case)).sum()
 }

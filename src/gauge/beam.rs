@@ -140,8 +140,8 @@ pub(super) fn point_on_axis(model: &Model, spec: &GaugeSpec, seat: BeamSeat) -> 
             "bar-point-on-axis",
             &spec.name,
             format!(
-                "gauge `{}` is at point {point} of element {}, and property {} states no distance of it from the neutral axis: the gauge reads axial \
-                 strain alone, and no bending",
+                "gauge `{}` is at point {point} of element {}, and property {} does not state the distance of this point from the neutral \
+                 axis: the gauge reads axial strain and no bending",
                 spec.name, beam.id, property.id
             ),
             "state the stress recovery points of the property, or another `point`",

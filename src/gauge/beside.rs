@@ -4,18 +4,18 @@ use super::surface::{corners, foot_on, to_side};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{BeamIx, Model, ShellIx, Vec3};
 
-/// How far a point lies from an element, and how large the element is, model units.
+/// Distance of a point from an element, and size of the element, model units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beside {
-    /// From the nearest point of the element's reference surface or axis.
+    /// Distance from the nearest point of the reference surface or axis of the element.
     pub distance: f64,
-    /// Its longest side or diagonal, and its faces' or recovery points' distance from there.
+    /// Longest side or diagonal of the element, plus the distance of its faces or recovery points from there.
     pub size: f64,
-    /// How far its faces or recovery points lie from there; `None` for a bar that states none.
+    /// Distance of its faces or recovery points from there; `None` for a bar that states none.
     pub faces: Option<f64>,
 }
 
-/// Of a shell; `None` where it has no area.
+/// Returns the distance of a point from a shell; `None` if the shell has no area.
 pub fn beside_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<Beside> {
     let shell = model.shells.get(ix.us())?;
     let p = corners(model, shell)?;
@@ -28,7 +28,7 @@ pub fn beside_shell(model: &Model, ix: ShellIx, x: Vec3) -> Option<Beside> {
     })
 }
 
-/// Of a bar or beam.
+/// Returns the distance of a point from a bar or beam.
 pub fn beside_beam(model: &Model, ix: BeamIx, x: Vec3) -> Option<Beside> {
     let beam = model.beams.get(ix.us())?;
     let end = |i: usize| Some(model.grids.get(beam.grids[i].us())?.x + beam.offsets[i]);

@@ -149,8 +149,8 @@ fn grid_past_edge(spec: &GaugeSpec, element: u32, past_edge: f64) -> Option<Find
             "gauge-off-structure",
             &spec.name,
             format!(
-                "gauge `{}` on element {element}: an end of its grid of {} lies {past_edge:.4} past the edge of the part. The strain at the \
-                 edge is taken there",
+                "gauge `{}` on element {element}: an end of its grid of {} is {past_edge:.4} past the edge of the part. The strain at the \
+                 edge is used there",
                 spec.name, spec.grid_length
             ),
             "check `grid_length` and the gauge's place, or move the gauge away from the edge",
@@ -193,14 +193,14 @@ fn found(
                 "gauge `{}` is stated {:.4} from the nearest shell, element {element}, which is farther than that is wide",
                 spec.name, f.distance
             ),
-            "check the position's unit, its coordinate system and the deck's origin",
+            "check the unit of the position, its coordinate system and the origin of the deck",
         )
         .with_numbers(f.distance, reach);
     }
     let how = match corners {
         CornerRows::Present => "strain is interpolated there from the corner rows",
         CornerRows::Absent => {
-            "the result has no corner rows, so that strain is taken at the element's centre"
+            "the result has no corner rows, so the strain at the centre of the element is used"
         }
     };
     Finding::new(
@@ -208,12 +208,12 @@ fn found(
         "gauge-at-nearest-surface",
         &spec.name,
         format!(
-            "gauge `{}` sits on the {} of element {element}, {:.4} from the stated position; {how}",
+            "gauge `{}` is on the {} of element {element}, {:.4} from the stated position; {how}",
             spec.name,
             side.word(),
             f.distance
         ),
-        "name the element and the surface if another one is meant",
+        "state the element and the surface if you mean another one",
     )
 }
 

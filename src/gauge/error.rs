@@ -52,7 +52,7 @@ pub enum GaugeError {
 }
 
 impl GaugeError {
-    /// What is wrong, and what to do.
+    /// Returns the fault and the remedy.
     pub fn parts(&self) -> (String, &'static str) {
         match self {
             Self::NormalDirection { gauge, element } => (
@@ -64,7 +64,7 @@ impl GaugeError {
                 "repair the mesh or choose another element",
             ),
             Self::NoShells { gauge } => (
-                format!("gauge `{gauge}`: the model has no shells near which it could sit"),
+                format!("gauge `{gauge}`: the model has no shells to place it on"),
                 "name a bar and its recovery point",
             ),
             Self::NoElement { gauge } => (
@@ -89,9 +89,9 @@ impl GaugeError {
                 what,
             } => (
                 format!(
-                    "gauge `{gauge}`: {what} on bar {element}, whose recovery points have the strain along its axis alone"
+                    "gauge `{gauge}`: {what} on bar {element}, whose recovery points have only the strain along its axis"
                 ),
-                "model this part with shells, or give a gauge along the axis: a quarter bridge or one that bends",
+                "model this part with shells, or give a gauge along the axis: a quarter bridge or a bending bridge",
             ),
         }
     }

@@ -21,7 +21,7 @@ pub struct Offset {
 }
 
 impl Offset {
-    /// So far along its axis.
+    /// Creates a move along the axis of the gauge.
     pub fn along(length: f64) -> Self {
         Self {
             along: length,
@@ -29,7 +29,7 @@ impl Offset {
         }
     }
 
-    /// So far across it.
+    /// Creates a move across the axis of the gauge.
     pub fn across(length: f64) -> Self {
         Self {
             across: length,
@@ -93,7 +93,7 @@ impl<'m> Drawn<'m> {
         })
     }
 
-    /// As it was drawn.
+    /// Returns the gauge at its nominal position.
     pub fn spec(&self) -> &GaugeSpec {
         &self.spec
     }

@@ -47,7 +47,7 @@ pub fn off_skin(model: &Model, gauges: &[Gauge]) -> Option<Finding> {
                 number(skin),
                 names.len()
             ),
-            "leave Z1 and Z2 of the PSHELL out, so that strain is that of the skins",
+            "leave Z1 and Z2 of the PSHELL out, so that strain is taken on the skins",
         )
         .with_numbers(read, skin),
     )

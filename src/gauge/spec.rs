@@ -66,7 +66,7 @@ impl Rosette {
     }
 }
 
-/// Where a gauge is glued, found on the model.
+/// Place of a gauge on the model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GaugePlace {
     /// At the centre of a shell.

@@ -33,7 +33,7 @@ pub fn on_unverified_elements(model: &Model, gauges: &[Gauge]) -> Option<Finding
             Severity::Warning,
             "gauge-on-unverified-element",
             format!("{first}{more}"),
-            "the gauge sits on a CQUADR, CTRIAR, CQUAD8 or CTRIA6: the built-in solver's strain of a single such element is not verified against Nastran's",
+            "the gauge is on a CQUADR, CTRIAR, CQUAD8 or CTRIA6: the built-in solver's strain of a single such element is not verified against Nastran's",
             "take the strain from Nastran ([model] results), or mesh the place with CQUAD4",
         )
         .with_numbers(names.len() as f64, 0.0),

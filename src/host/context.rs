@@ -1,4 +1,4 @@
-//! What a question is asked in: where files come from, where solutions are kept, who hears of progress and may stop the work.
+//! Surroundings of a command: source of files, store of solutions, receiver of progress.
 
 use crate::host::store::SolutionStore;
 use crate::host::whole_file::{FileBytes, Opened, Stamp, load, open};
@@ -7,26 +7,26 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Where files come from.
+/// Source of the files that a command reads. [`Disk`] reads the file system, [`InMemory`] a map.
 pub trait Files: Sync {
-    /// The bytes of a file.
+    /// Reads the bytes of a file.
     ///
     /// # Errors
-    /// Those of the system; [`std::io::ErrorKind::NotFound`] where there is none.
+    /// Returns the error of the system; [`std::io::ErrorKind::NotFound`] if the file does not exist.
     fn load(&self, path: &Path) -> std::io::Result<FileBytes>;
 
-    /// A file opened.
+    /// Opens a file for reading in parts.
     ///
     /// # Errors
-    /// As [`Files::load`].
+    /// Returns the errors of [`Files::load`].
     fn open(&self, path: &Path) -> std::io::Result<Opened> {
         self.load(path).map(Opened::Whole)
     }
 
-    /// The state of a file.
+    /// Returns size and time of the last change of a file.
     ///
     /// # Errors
-    /// As [`Files::load`].
+    /// Returns the errors of [`Files::load`].
     fn stamp(&self, path: &Path) -> std::io::Result<Stamp> {
         let size = self.load(path)?.len() as u64;
         Ok(Stamp {
@@ -36,7 +36,7 @@ pub trait Files: Sync {
     }
 }
 
-/// The file system.
+/// Files of the file system. Relative paths start at the working directory of the process.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
 
@@ -54,7 +54,7 @@ impl Files for Disk {
     }
 }
 
-/// Files held in memory, by path.
+/// Files in memory, by path. Tests and other programs give their files to a command with it.
 #[derive(Clone, Debug, Default)]
 pub struct InMemory {
     files: BTreeMap<PathBuf, Vec<u8>>,
@@ -78,56 +78,56 @@ impl Files for InMemory {
     }
 }
 
-/// Who hears of progress, and may stop the work.
+/// Receiver of progress, which can also stop the work.
 pub trait Progress: Sync {
-    /// A stage begins.
+    /// Reports that a stage begins.
     fn begin(&self, stage: &str) {
         let _ = stage;
     }
 
-    /// The stage begun last ends.
+    /// Reports that the latest stage ends.
     fn end(&self) {}
 
-    /// The present stage has so many parts; 0: it is not known.
+    /// Reports the number of parts of the present stage; 0 if it is unknown.
     fn parts(&self, total: usize) {
         let _ = total;
     }
 
-    /// So many parts more are done.
+    /// Reports that a number of further parts is complete.
     fn advance(&self, parts: usize) {
         let _ = parts;
     }
 
-    /// The wish to stop, for those below who look at it between the parts of a long computation.
+    /// Returns the signal to stop, which long computations test between their parts.
     fn stop(&self) -> Stop {
         Stop::default()
     }
 
-    /// Whether the work is to stop; asked between stages, and between the cases, runs, files and trials of one.
+    /// Returns whether the work must stop. Commands test it between stages, and between the cases, runs, files and trials of a stage.
     fn is_cancelled(&self) -> bool {
         self.stop().is_asked()
     }
 }
 
-/// Hears nothing and stops nothing.
+/// Receiver that ignores progress and never stops the work.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
 impl Progress for Silent {}
 
-/// What a question is asked in.
+/// Surroundings of a command: files, store of solutions, and progress. Every command takes one.
 #[derive(Clone)]
 pub struct Context<'a> {
-    /// Where files come from.
+    /// Source of files.
     pub files: &'a dyn Files,
-    /// Where solutions of the built-in solver are kept; `None`: nowhere.
+    /// Store for solutions of the built-in solver; `None` if they are not stored.
     pub store: Option<Arc<dyn SolutionStore + 'a>>,
-    /// Who hears of progress.
+    /// Receiver of progress.
     pub progress: &'a dyn Progress,
 }
 
 impl<'a> Context<'a> {
-    /// Files from here; no solution is kept, nobody hears.
+    /// Creates a context that reads `files`, stores no solutions and reports no progress.
     pub fn new(files: &'a dyn Files) -> Self {
         Self {
             files,
@@ -136,7 +136,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The same with a place for solutions. It is a handle and is cloned, so that one made in the call itself will do.
+    /// Adds a store for solutions. The store is a handle and is cloned, so it may be a temporary value.
     #[must_use]
     pub fn store(self, store: &(impl SolutionStore + Clone + 'a)) -> Self {
         Self {
@@ -145,7 +145,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// The same with somebody who hears.
+    /// Adds a receiver of progress.
     #[must_use]
     pub fn progress(self, progress: &'a dyn Progress) -> Self {
         Self { progress, ..self }

@@ -5,23 +5,23 @@ use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 
-/// One fault, printed as `file:line: field: what is wrong: what to do`; its words are [`bounded`].
+/// Fault of an input, printed as `file:line: field: what is wrong: what to do`. [`bounded`] shortens long names in its text.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
-    /// File as given.
+    /// File, as the job or the command line states it.
     pub file: String,
-    /// Line, counted from 1; `None` where the fault is the file's as a whole.
+    /// Line, counted from 1; `None` if the fault concerns the whole file.
     pub line: Option<u32>,
     /// Key, card field or column.
     pub field: String,
-    /// What is wrong: expected and found.
+    /// Text that states what was found and what was expected.
     pub wrong: String,
-    /// What to do.
+    /// Remedy, as an imperative.
     pub remedy: String,
 }
 
 impl Fault {
-    /// A fault at a line of a file.
+    /// Creates a fault at a line of a file.
     pub fn at(
         file: impl Into<String>,
         line: u32,
@@ -39,7 +39,7 @@ impl Fault {
         }
     }
 
-    /// A fault of a whole file.
+    /// Creates a fault of a whole file.
     pub fn of(
         file: impl Into<String>,
         field: impl Into<String>,
@@ -70,18 +70,18 @@ impl fmt::Display for Fault {
     }
 }
 
-/// Faults as they are collected, none so far perhaps.
+/// Faults during collection; the list may be empty.
 pub type FaultList = Vec<Fault>;
 
-/// Every fault that was found, one at least: the error of every question.
+/// All faults of the inputs, at least one. It is the error type of every command.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Faults(Vec<Fault>);
 
 impl Faults {
-    /// Nothing where the list is empty.
+    /// Succeeds if the list is empty.
     ///
     /// # Errors
-    /// The faults of the list, where it has any.
+    /// Returns the faults of a list that is not empty.
     pub fn check(list: FaultList) -> Result<(), Self> {
         if list.is_empty() {
             Ok(())
@@ -90,7 +90,7 @@ impl Faults {
         }
     }
 
-    /// The faults of a list, or the one to be said where it is empty.
+    /// Returns the faults of a list, or `otherwise` if the list is empty.
     pub fn or(list: FaultList, otherwise: Fault) -> Self {
         if list.is_empty() {
             otherwise.into()
@@ -99,7 +99,7 @@ impl Faults {
         }
     }
 
-    /// The faults as a list.
+    /// Returns the faults as a list.
     pub fn into_list(self) -> FaultList {
         self.0
     }
@@ -184,7 +184,7 @@ mod tests {
                 "runs.csv",
                 line,
                 "G1",
-                format!("`{text}` is no number"),
+                format!("`{text}` is not a number"),
                 "write a number",
             )
         };

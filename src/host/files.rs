@@ -92,7 +92,7 @@ impl<'a> Inputs<'a> {
         }
     }
 
-    /// What was read, hashes finished, to be resumed.
+    /// Returns the files that were read, with complete hashes, so that another command can continue with them.
     pub fn files_read(&mut self) -> Vec<FileRead> {
         let entries = self.entries.iter_mut();
         entries
@@ -221,7 +221,7 @@ impl<'a> Inputs<'a> {
         Some(entry.2.finish()).filter(|hex| !hex.is_empty())
     }
 
-    /// Where the files stand.
+    /// Returns the paths of the files.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.entries.iter().map(|e| e.1.clone()).collect()
     }
@@ -300,12 +300,12 @@ fn is_table(given: &str) -> bool {
 pub(crate) fn may_be_cut(file: &str, severity: Severity) -> Finding {
     let (message, remedy) = match severity {
         Severity::Error => (
-            "its last line has no end, and its last number lacks digits, a point or an exponent that those of its column have: the file is cut, and that number is wrong",
+            "its last line has no end, and its last number lacks digits, a point or an exponent that the others of its column have: the file is cut, and this number is wrong",
             "copy the file again, or end its last line",
         ),
         Severity::Warning | Severity::Info => (
             "its last line has no end, and its last number may have lost digits: a record is read without that line, any other table with it",
-            "copy the file again if it is cut; else end its last line",
+            "copy the file again if it is cut; otherwise end its last line",
         ),
     };
     Finding::new(severity, "table-may-be-cut", file, message, remedy)
@@ -329,15 +329,15 @@ pub(crate) fn why_unreadable(e: &std::io::Error) -> (String, &'static str) {
         ),
         std::io::ErrorKind::IsADirectory => ("it is a folder".to_owned(), "name a file in it"),
         std::io::ErrorKind::InvalidInput => (
-            "no file: a device, a pipe or a socket".to_owned(),
-            "copy what it gives into a file",
+            "it is a device, a pipe or a socket, not a file".to_owned(),
+            "write its data into a file",
         ),
         std::io::ErrorKind::ResourceBusy => (
             "it changed while it was read".to_owned(),
             "wait until the program that writes it has finished",
         ),
         std::io::ErrorKind::OutOfMemory => (
-            "larger than the memory that is free".to_owned(),
+            "it is larger than the free memory".to_owned(),
             "divide the file, or use a larger machine",
         ),
         _ => (format!("can't be read ({e})"), "check the path"),

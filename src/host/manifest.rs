@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Component, Path, PathBuf};
 
-/// Its name.
+/// File name of the manifest.
 pub(crate) const NAME: &str = ".strainbridge";
 
 /// Command and name of each file.

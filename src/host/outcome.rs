@@ -10,10 +10,10 @@ use serde_json::{Map, Value};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Counts up when a key of `result.json` changes its meaning.
+/// Version of `result.json`. It increases when a key changes its meaning.
 pub const SCHEMA: u32 = 1;
 
-/// The answer to a question, of its own type.
+/// Answer of a command. Each command has its own type of answer.
 pub trait Answer: Serialize {
     /// The command that asks.
     const COMMAND: &'static str;
@@ -30,20 +30,20 @@ pub trait Answer: Serialize {
     }
 }
 
-/// An answer, and how it was come by. The fields of the answer are reached through it: `plan.gauges`.
+/// Answer of a command with inputs, findings and units. It dereferences to the answer, so `plan.gauges` is a field of the answer.
 #[derive(Clone, Debug)]
 pub struct Outcome<A> {
     /// Units of the answer.
     pub units: StatedUnits,
     /// Every file that was read.
     pub inputs: Vec<Input>,
-    /// Where they stand, and other files that the answer came from: what is written never replaces one.
+    /// Paths of the inputs and of other files that the answer depends on. No output replaces one of them.
     pub sources: Vec<PathBuf>,
     /// Findings on the answer, the worst first.
     pub findings: Findings,
     /// Seconds by stage.
     pub seconds: Seconds,
-    /// What is worth knowing of the way, and no part of the answer.
+    /// Notes about the computation that are not part of the answer.
     pub notes: Vec<String>,
     /// The answer.
     pub answer: A,
@@ -57,7 +57,7 @@ impl<A> std::ops::Deref for Outcome<A> {
 }
 
 impl<A> Outcome<A> {
-    /// Whether no finding says that the answer can't be relied on.
+    /// Returns whether no finding has the severity error.
     pub fn is_reliable(&self) -> bool {
         self.findings.worst() < Some(Severity::Error)
     }
@@ -127,7 +127,7 @@ fn reasons(findings: &[Finding]) -> String {
 pub struct Findings(pub Vec<Finding>);
 
 impl Findings {
-    /// The worst severity; `None` where there are none.
+    /// Returns the worst severity; `None` without findings.
     pub fn worst(&self) -> Option<Severity> {
         worst(&self.0)
     }
@@ -145,7 +145,7 @@ impl std::ops::Deref for Findings {
 pub struct Seconds(Map<String, Value>);
 
 impl Seconds {
-    /// Adds seconds under a name.
+    /// Adds seconds to the stage `name`.
     pub fn add(&mut self, name: &str, seconds: f64) {
         let before = self.0.get(name).and_then(Value::as_f64).unwrap_or(0.0);
         let s = before + seconds;
@@ -153,18 +153,18 @@ impl Seconds {
             .insert(name.to_owned(), Value::from((s * 1e6).round() / 1e6));
     }
 
-    /// Seconds of all stages.
+    /// Returns the sum over all stages, s.
     pub fn total(&self) -> f64 {
         self.0.get("total").and_then(Value::as_f64).unwrap_or(0.0)
     }
 }
 
-/// Units of an answer, by quantity; none where an answer has no numbers with units.
+/// Units of an answer, by quantity. The list is empty if the answer has no numbers with units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StatedUnits(Vec<(&'static str, String)>);
 
 impl StatedUnits {
-    /// Units of a job: the model's system, and what reports count in.
+    /// Creates the units of a job from its unit system and its report units.
     pub fn of(system: UnitSystem, report: &ReportUnits) -> Self {
         let unit = |name: &str| name.to_owned();
         Self(vec![
@@ -178,12 +178,12 @@ impl StatedUnits {
         ])
     }
 
-    /// Units of numbers in the model's own system.
+    /// Creates the units of numbers in the unit system of the model.
     pub fn of_model(system: UnitSystem) -> Self {
         Self::of(system, &ReportUnits::of(system))
     }
 
-    /// Quantity and unit.
+    /// Returns pairs of quantity and unit.
     pub fn list(&self) -> &[(&'static str, String)] {
         &self.0
     }
@@ -221,7 +221,7 @@ impl<A: Answer> Outcome<A> {
     /// `result.json`, ending in a line feed; `tables` are those that were written beside it.
     ///
     /// # Errors
-    /// Where the answer has no JSON form, which is a mistake of the program.
+    /// Returns an error if the answer has no JSON form, which is a mistake of the program.
     pub fn to_json(&self, tables: &Tables) -> Result<String, serde_json::Error> {
         let file = ResultFile {
             command: A::COMMAND,
@@ -239,7 +239,7 @@ impl<A: Answer> Outcome<A> {
     }
 }
 
-/// A number for JSON, which has no form for those that are not finite: they become null.
+/// Returns a finite number, or `None`: JSON has no form for infinite numbers and NaN.
 #[must_use]
 pub fn finite(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)

@@ -173,7 +173,7 @@ impl Output {
                 Fault::of(
                     target.display().to_string(),
                     "output",
-                    "the command has read this file, and would write its own over it",
+                    "the command has read this file, and would overwrite it",
                     "choose another folder with `--out`, or give the input another name",
                 )
             } else {
@@ -302,7 +302,7 @@ impl Drop for Output {
     }
 }
 
-/// What other commands wrote into a folder and still stands there, in words; `None`: nothing.
+/// Returns a note on files of other commands that are still in a folder; `None` without such files.
 pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
     let written = Manifest::read(folder);
     let of = |(by, names): (&str, Vec<&str>)| {
@@ -317,7 +317,7 @@ pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
         .collect();
     (!list.is_empty()).then(|| {
         let list = list.join(", ");
-        format!("the folder also holds files of {list}, as they were written then")
+        format!("the folder also contains files of {list} from earlier runs")
     })
 }
 
@@ -328,7 +328,7 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
         return Some(Fault::of(
             target.display().to_string(),
             "output",
-            "this file was changed after strainbridge wrote it, and this run would write over it",
+            "this file was changed after strainbridge wrote it, and this run would overwrite it",
             "choose another folder with `--out`, or give the changed file another name",
         ));
     }
@@ -337,7 +337,7 @@ fn not_ours(ours: &Manifest, target: &Path) -> Option<Fault> {
             target.display().to_string(),
             "output",
             format!(
-                "this name is that of an output, and the file that has it was not written here by strainbridge (`{}` lists what was)",
+                "the command writes a file of this name, and strainbridge did not write the existing one (`{}` lists its files)",
                 manifest::NAME
             ),
             "choose another folder with `--out`, or move the file away",

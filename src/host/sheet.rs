@@ -31,7 +31,7 @@ pub(crate) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     if unpacked > MOST_UNPACKED {
         return Err(format!("a spreadsheet of {} MB, unpacked", unpacked >> 20));
     }
-    let fail = |e: XlsxError| format!("no spreadsheet that can be read ({e})");
+    let fail = |e: XlsxError| format!("a spreadsheet that can't be read ({e})");
     let mut book = Xlsx::new(std::io::Cursor::new(bytes)).map_err(fail)?;
     let names = book.sheet_names();
     let first = names.first().ok_or("a spreadsheet without a sheet")?;

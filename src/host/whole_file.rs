@@ -62,14 +62,14 @@ fn rest_of((file, before, mut bytes): (File, Metadata, Vec<u8>)) -> std::io::Res
 
 /// A file that is open.
 pub enum Opened {
-    /// Its bytes, in memory.
+    /// Bytes, in memory.
     Whole(FileBytes),
     /// One whose format is [read in parts](is_read_in_parts).
     Parts(Arc<InParts>),
 }
 
 impl Opened {
-    /// As a record is opened from.
+    /// Returns the source from which a record is opened.
     pub fn source(&self) -> Source {
         match self {
             Self::Whole(bytes) => Source::Memory(Arc::new(bytes.clone())),
@@ -98,7 +98,7 @@ impl Opened {
         Ok(hex(&hash.finalize()))
     }
 
-    /// What was read is all that was asked for, of one state of the file.
+    /// Checks that all requested bytes were read, and from one state of the file.
     ///
     /// # Errors
     /// Of kind [`ErrorKind::ResourceBusy`] where it was written to since it was opened; where a part could not be read.
@@ -221,10 +221,10 @@ fn check_kind(meta: &Metadata) -> std::io::Result<()> {
     }
 }
 
-/// What the system says of the state of a file: it differs where the file was written to, and costs no reading.
+/// State of a file as the system reports it: it differs after a write, and no byte is read for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stamp {
-    /// Its length in bytes.
+    /// Length of the file, bytes.
     pub size: u64,
     /// When it was written to last, in nanoseconds since 1970; `None` where nobody keeps that.
     pub written_ns: Option<u64>,

@@ -10,13 +10,13 @@ use std::time::Instant;
 
 /// A question on its way to its answer.
 pub struct Work<'a> {
-    /// What it is asked in.
+    /// Context of the command.
     pub cx: Context<'a>,
     /// Files read so far.
     pub inputs: Inputs<'a>,
-    /// What the stages had to say.
+    /// Findings of the stages.
     pub findings: Vec<Finding>,
-    /// What is worth knowing of the way, and no part of the answer.
+    /// Notes about the computation that are not part of the answer.
     pub notes: Vec<String>,
     /// Files that were read and are not listed among the inputs.
     pub sources: Vec<PathBuf>,
@@ -87,7 +87,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// What is said where whoever hears of progress stops the work.
+/// Returns the fault of a command that the receiver of progress stopped.
 pub fn stopped() -> Fault {
     Fault::of("work", "progress", "stopped", "ask again")
 }

@@ -47,7 +47,7 @@ pub struct Inputs {
     pub rows: Matrix,
 }
 
-/// What another installation of the gauges would read.
+/// Rows of S for another installation of the gauges.
 #[derive(Clone, Debug)]
 pub struct AlternativeRows {
     /// [`InputFault::OtherSide`] or [`InputFault::Radians`] of a gauge.
@@ -258,7 +258,7 @@ pub struct Found {
     pub alternatives: Vec<InputFault>,
 }
 
-/// What the command does with the gauges of a fault.
+/// Treatment of the gauges of a fault by the command.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handling {
     /// The result is that of the readings as they are.

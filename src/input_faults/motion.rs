@@ -41,7 +41,7 @@ const RULES: MotionRules = MotionRules {
     mass_kg: [20.0, 120e3],
 };
 
-/// What a channel measures.
+/// Quantity that a channel measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ChannelKind {
     /// Vertical acceleration.
@@ -82,7 +82,7 @@ impl ChannelKind {
 pub struct MotionChannel<'a> {
     /// Name in the file.
     pub name: &'a str,
-    /// What it measures.
+    /// Quantity that the channel measures.
     pub kind: ChannelKind,
     /// Whether the file states its unit.
     pub is_unit_stated: bool,
@@ -132,7 +132,7 @@ pub struct ExplainedFault {
     pub fault: MotionFault,
     /// Unexplained share of the motion as recorded.
     pub before: f64,
-    /// The same with the fault corrected.
+    /// Unexplained share of the motion with the fault corrected.
     pub after: f64,
     /// Other faults that explain it as well.
     pub alternatives: Vec<MotionFault>,

@@ -23,7 +23,7 @@ pub trait Misfit: Sync {
 pub struct Fitted {
     /// Sum of squares that is left, in units of the errors.
     pub chi2: f64,
-    /// Its degrees of freedom.
+    /// Degrees of freedom of the sum of squares.
     pub dof: usize,
     /// Predicted strain by run and gauge.
     pub predicted: Vec<Vec<f64>>,

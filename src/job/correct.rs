@@ -6,14 +6,14 @@ use super::types::{Job, StrainCorrection};
 use crate::finding::{Finding, Severity, few};
 use crate::host::fault::{Fault, FaultList, Faults};
 
-/// What turns the readings of a channel into strain.
+/// Correction that converts the readings of a channel to strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Channel {
     /// Subtracted first, microstrain.
     pub offset: f64,
-    /// What is left is divided by this.
+    /// Divisor of the reading less its offset.
     pub factor: f64,
-    /// Its readings are taken for none.
+    /// Whether the readings of the channel are ignored.
     pub ignore: bool,
 }
 
@@ -32,7 +32,7 @@ impl Channel {
     }
 }
 
-/// What puts the readings of this gauge right.
+/// Returns the correction of the readings of this gauge.
 pub fn channel_of(corrections: &[StrainCorrection], gauge: &str) -> Channel {
     let own = corrections.iter().filter(|c| c.gauge == gauge);
     own.fold(
@@ -73,7 +73,7 @@ pub fn columns_wanted<'a>(
         .collect()
 }
 
-/// What a gauge is turned by beyond its stated angle, degrees.
+/// Returns the rotation of a gauge from its stated angle, degrees.
 pub fn turned_by(corrections: &[StrainCorrection], gauge: &str) -> f64 {
     let own = corrections.iter().filter(|c| c.gauge == gauge);
     own.filter_map(|c| c.angle_deg).sum()

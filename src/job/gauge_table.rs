@@ -161,7 +161,7 @@ impl GaugeColumns {
                     1,
                     header,
                     format!("`{header}` is not a column of a gauge file"),
-                    format!("did you mean `{n}`? Call it otherwise if it is something else"),
+                    format!("did you mean `{n}`? Rename it if it is something else"),
                 ));
             }
         }
@@ -220,8 +220,8 @@ fn column_of(
     let mut found = (0..taken.len()).filter(is_free).filter(is_meant);
     let first = found.next()?;
     if let Some(second) = found.next() {
-        let wrong = format!("two columns hold `{name}`: `{}` too", t.header[first]);
-        let remedy = "delete one of both columns";
+        let wrong = format!("two columns contain `{name}`: `{}` too", t.header[first]);
+        let remedy = "delete one of the two columns";
         faults.push(Fault::at(&*t.file, 1, &*t.header[second], wrong, remedy));
     }
     Some(first)

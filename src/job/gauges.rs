@@ -64,7 +64,7 @@ fn without_direction(
             Severity::Warning,
             "gauges-assumed",
             &*t.file,
-            "the table has no columns `dir_x`, `dir_y`, `dir_z` and `angle_deg`: every gauge is taken along the x axis of its element",
+            "the table has no columns `dir_x`, `dir_y`, `dir_z` and `angle_deg`: every gauge points along the x axis of its element",
             "state the direction of every gauge",
         )
     })
@@ -158,7 +158,11 @@ impl Row<'_> {
             && self.faults.len() == before
         {
             let remedy = "state `dir_x`, `dir_y` and `dir_z`, or leave all three blank";
-            self.fault(name, "no number beside the others".into(), remedy);
+            self.fault(
+                name,
+                "this component is blank, and the others are not".into(),
+                remedy,
+            );
         }
         let [x, y, z] = parts;
         Some([x?, y?, z?])
@@ -174,7 +178,7 @@ impl Row<'_> {
             0 => "give a whole number, 0 for the basic system",
             _ => "give a whole number above 0",
         };
-        self.fault(field, format!("`{x}` is no {what} id"), remedy);
+        self.fault(field, format!("`{x}` is not a valid {what} id"), remedy);
         None
     }
 
@@ -192,7 +196,7 @@ impl Row<'_> {
         }
         let found = from(word);
         if found.is_none() {
-            let (wrong, remedy) = (format!("`{word}` is no {what}"), remedy(word));
+            let (wrong, remedy) = (format!("`{word}` is not a valid {what}"), remedy(word));
             self.fault(name, wrong, remedy);
         }
         found

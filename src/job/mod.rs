@@ -42,10 +42,10 @@ use crate::units::STANDARD_GRAVITY_M_S2;
 use std::path::Path;
 
 impl Job {
-    /// The job in a file.
+    /// Reads and checks a job file with the table of gauges that it names. Commands read strain and runs later.
     ///
     /// # Errors
-    /// Every fault found, with file and line: syntax, unknown keys, wrong types, contradictions, missing files.
+    /// Returns every fault with file and line: syntax, unknown keys, wrong types, contradictions, missing files.
     pub fn read(path: impl AsRef<Path>, files: &dyn Files) -> Result<Self, Faults> {
         let mut inputs = Inputs::of(files);
         let mut job = read_job(&mut inputs, path.as_ref())?;
@@ -53,18 +53,18 @@ impl Job {
         Ok(job)
     }
 
-    /// Gravity, m/s^2 whatever the unit system: that of `[payload]`, else standard gravity.
+    /// Returns gravity in m/s^2, from `[payload]` or else standard gravity. The unit system of the job does not matter.
     pub fn gravity_m_s2(&self) -> f64 {
         let payload = self.payload.as_ref();
         payload.map_or(STANDARD_GRAVITY_M_S2, |p| p.gravity_m_s2)
     }
 
-    /// Gravity in the job's units.
+    /// Returns gravity in the units of the job.
     pub fn gravity(&self) -> f64 {
         self.gravity_m_s2() / self.units.length_m()
     }
 
-    /// Where the payload of `[payload]` acts: the grid stated, else the one grid at which wanted moments act.
+    /// Returns the grid where the payload acts: the grid in `[payload]`, else the only grid at which wanted moments act.
     pub fn payload_grid(&self) -> Option<u32> {
         let payload = self.payload.as_ref()?;
         let mut with_moment = self.loads.iter().filter_map(|l| match l.acts {
@@ -86,10 +86,10 @@ impl AsRef<Path> for Job {
     }
 }
 
-/// The job in a file, with its gauge file read; strain and runs are read when a command asks for them.
+/// Reads and checks a job file with its table of gauges. Commands read strain and runs later.
 ///
 /// # Errors
-/// Every fault found: syntax, unknown keys, wrong types, contradictions, missing files.
+/// Returns every fault: syntax, unknown keys, wrong types, contradictions, missing files.
 pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     let given = path.display().to_string();
     not_a_job::check_name(&given)?;

@@ -46,7 +46,7 @@ fn refused(given: &str, what: &str, before: &str) -> Fault {
     Fault::of(
         given,
         "job",
-        format!("{what}, and no job"),
+        format!("{what}, not a job"),
         format!("`strainbridge init {before}{given}` writes a job from it"),
     )
 }

@@ -61,14 +61,17 @@ fn strangers(file: &str, text: &str, candidates: &mut Candidates) -> FaultList {
     let sections = table.keys().filter(|k| *k != "candidates").cloned();
     let keys = below.into_iter().flat_map(toml::Table::keys);
     let keys = keys.filter(|k| !known.contains(&k.as_str()));
-    let remedy = format!("keep {} here, and the rest in the job", known.join(", "));
+    let remedy = format!(
+        "keep {} here, and all other keys in the job",
+        known.join(", ")
+    );
     sections
         .chain(keys.map(|k| format!("candidates.{k}")))
         .map(|k| {
             Fault::of(
                 file,
                 k,
-                "it does not count in a file of picked lists",
+                "this key is not used in a file of picked lists",
                 &*remedy,
             )
         })
@@ -100,7 +103,7 @@ fn put(job: &mut Job, named: &NamedFile, text: &str, faults: &mut FaultList) {
         .zip(lists(&mut picked))
     {
         if own.is_stated() && other.is_stated() {
-            let wrong = format!("`{name}` stands in the job too");
+            let wrong = format!("`{name}` is in the job too");
             c.fault(
                 section,
                 &format!("candidates.{name}"),

@@ -3,6 +3,7 @@
 use super::shapes::PropertyIds;
 use super::suggest;
 use super::types::Job;
+use crate::finding::few;
 use crate::host::fault::{Fault, FaultList, Faults};
 
 impl PropertyIds {
@@ -25,9 +26,8 @@ impl PropertyIds {
                     unknown_remedy(&name, named),
                 )),
                 several => {
-                    let ids: Vec<String> = several.iter().map(u32::to_string).collect();
                     wrong.push((
-                        format!("properties {} are all called `{name}`", ids.join(", ")),
+                        format!("properties {} are all called `{name}`", few(several)),
                         "state the ids that are meant".to_owned(),
                     ));
                 }

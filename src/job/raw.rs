@@ -431,7 +431,7 @@ pub(super) struct RawReconcile {
 #[derive(Deserialize, JsonSchema, Default, Debug)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct RawEffect {
-    /// Its id in results.
+    /// Id of the effect in results.
     pub id: S<String>,
     /// A CSV file: a row a gauge, a column a load, the change of S for an effect of size one.
     pub signature: S<String>,
@@ -446,11 +446,11 @@ pub(super) struct RawEffect {
 pub(super) struct RawEdit {
     /// A shell property whose thickness is scaled.
     pub property: Option<u32>,
-    /// Its factor.
+    /// Factor of the thickness.
     pub thickness_scale: Option<f64>,
     /// A bush whose stiffness is scaled.
     pub cbush: Option<u32>,
-    /// Its factor.
+    /// Factor of the stiffness.
     pub stiffness_scale: Option<f64>,
 }
 

@@ -9,16 +9,16 @@ const KEYS: &str = include_str!("keys.txt");
 /// What stands in the table for the names of vehicle models.
 const MODELS: &str = "@models";
 
-/// What a key of a job means.
+/// Meaning of a key of a job.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Key {
-    /// Its path, such as `load.grid`; sections and lists of sections alike.
+    /// Path of the key, such as `load.grid`; sections and lists of sections have the same form.
     pub path: &'static str,
-    /// What it means.
+    /// Meaning of the key.
     pub meaning: &'static str,
-    /// Its unit; `None` for words, counts and fractions.
+    /// Unit of the key; `None` for words, counts and fractions.
     pub unit: Option<&'static str>,
-    /// What holds where it is left out, in words; `None` for sections and for keys of which one or another is needed.
+    /// Default in words; `None` for sections, and for keys of which one of several is required.
     pub default: Option<&'static str>,
     /// The words that it takes, where only those will do.
     pub words: Vec<&'static str>,

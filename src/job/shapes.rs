@@ -66,7 +66,7 @@ impl<'de> Deserialize<'de> for Ids {
             fn visit_str<E: Error>(self, v: &str) -> Result<Ids, E> {
                 ids_from_text(v).ok_or_else(|| {
                     E::custom(format!(
-                        "`{v}` is no list of ids, expected text such as \"1 THRU 5000\""
+                        "`{v}` is not a list of ids, expected text such as \"1 THRU 5000\""
                     ))
                 })
             }

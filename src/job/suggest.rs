@@ -29,7 +29,7 @@ pub fn misspelt<'a>(word: &str, names: impl IntoIterator<Item = &'a str>) -> Opt
     (4 * distance <= letters).then_some(name)
 }
 
-/// What to do about an unknown name: the closest, else the list.
+/// Returns the remedy for an unknown name: the closest known name, else the list of names.
 pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) -> String {
     match closest(word, names.clone()) {
         Some(n) => format!("did you mean `{n}`?"),

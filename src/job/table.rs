@@ -115,7 +115,7 @@ pub fn each_part(
 }
 
 fn empty(file: &str) -> Fault {
-    let remedy = "write a header and a row an entry";
+    let remedy = "write a header and one row for each entry";
     Fault::of(file, "header", "the file is empty", remedy)
 }
 
@@ -154,7 +154,7 @@ impl Table {
     /// # Errors
     /// A fault where there is no row.
     pub fn check_rows(&self) -> Result<(), Fault> {
-        let remedy = "write a row an entry";
+        let remedy = "write one row for each entry";
         match self.rows.is_empty() {
             true => Err(Fault::at(
                 &*self.file,
@@ -217,8 +217,8 @@ impl Table {
                     &*self.file,
                     *line,
                     name,
-                    format!("`{text}` is no number"),
-                    "write a number with a decimal point; leave the field blank where nothing was read",
+                    format!("`{text}` is not a number"),
+                    "write a number with a decimal point; leave the field blank if nothing was measured",
                 ))
             }
         }
@@ -241,7 +241,7 @@ impl Table {
         let line = self.rows.get(row).map_or(0, |r| r.0);
         let name = self.header.get(column).map_or("", String::as_str);
         let wrong = format!("a standard deviation of {v} is below zero");
-        let remedy = "write how well it is known, 1 sd; blank: as well as `[runs] noise` says";
+        let remedy = "write its standard deviation, or leave it blank to use `[runs] noise`";
         Err(Fault::at(&*self.file, line, name, wrong, remedy))
     }
 
@@ -263,7 +263,7 @@ impl Table {
                 let name = self.header.get(column).map_or("", String::as_str);
                 let word = quantity.map_or("factor of a load set", Quantity::word);
                 let wrong = format!(
-                    "{} is no {word} of a structure: {} is the most in this unit",
+                    "{} is too large for a {word} of a structure: the largest is {} in this unit",
                     in_words(x),
                     in_words(most / si)
                 );

@@ -12,7 +12,7 @@ pub(crate) fn no_runs(file: &str) -> Fault {
         file,
         "run",
         "the rows are samples of a record, which can't be read as runs",
-        "give the means of static runs, a row each, with their names in a column `run`; `recover` recovers the loads of a record",
+        "give the means of static runs, one row for each run, with its name in a column `run`; `recover` recovers the loads of a record",
     )
 }
 
@@ -26,7 +26,7 @@ pub(crate) fn no_gauge_column(
     let (wrong, remedy) = match &job.sensitivity {
         Some(s) if job.gauges.is_empty() => (
             format!("no column is named after a gauge of `{}`", s.file.given),
-            "call the gauges alike in both tables",
+            "use the same gauge names in both tables",
         ),
         _ => (
             "no column is named after a gauge of the job".to_owned(),
@@ -43,13 +43,7 @@ pub(crate) fn no_gauge_column(
             "{wrong}; columns and gauges differ by case or separators: {}",
             few(&alike)
         );
-        return Fault::at(
-            file,
-            1,
-            "gauge",
-            wrong,
-            "write the names alike in both tables",
-        );
+        return Fault::at(file, 1, "gauge", wrong, "use the same names in both tables");
     }
     let wrong = match columns.is_empty() {
         true => format!("{wrong}; the file has no column of numbers"),
@@ -73,7 +67,7 @@ pub(crate) fn record_fault(file: &str, e: &SeriesError) -> Fault {
             1,
             "rows",
             "a header and no rows",
-            "write a row a sample",
+            "write one row for each sample",
         ),
         SeriesError::NoRate => Fault::at(
             file,

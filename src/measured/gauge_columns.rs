@@ -69,7 +69,7 @@ pub fn no_strain(file: &str, column: &Column) -> Fault {
     Fault::of(
         file,
         &*column.header.name,
-        format!("`{}` is no unit of strain", unit.unwrap_or(&column.unit)),
+        format!("`{}` is not a unit of strain", unit.unwrap_or(&column.unit)),
         "export it in microstrain (uE, um/m) or strain (m/m)",
     )
 }
@@ -126,7 +126,7 @@ enum Holds {
 
 /// Why a column that should be a gauge's can't be.
 enum Wrong {
-    /// Its unit is none of strain.
+    /// The unit is not a unit of strain.
     NoStrain,
     /// Two units.
     Clash,

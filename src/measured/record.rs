@@ -63,7 +63,7 @@ impl Record {
         })
     }
 
-    /// The same, with the columns that are read.
+    /// Returns the record with only these columns.
     pub fn with_columns(self, columns: Vec<(Option<usize>, Channel)>) -> Self {
         Self { columns, ..self }
     }
@@ -100,7 +100,7 @@ impl Record {
         Ok(sums)
     }
 
-    /// The same, without readings: number of the column that is read, and samples.
+    /// Returns the record with blank readings in these spans: number of the column, and samples.
     pub fn without(self, blank: Vec<(usize, Range<usize>)>) -> Self {
         Self { blank, ..self }
     }
@@ -287,7 +287,7 @@ impl Record {
         (from..to).map(|s| self.time_s(s)).collect()
     }
 
-    /// What is to be known of its times.
+    /// Returns the findings on the times of the record.
     pub fn findings(&self) -> Vec<Finding> {
         clock::irregular(&self.file, self.clock())
     }

@@ -62,7 +62,7 @@ fn sole_column(
             &*t.file,
             1,
             &*second.header.whole,
-            format!("two columns hold `{name}`"),
+            format!("two columns contain `{name}`"),
             "leave one of them out, or name the right one in the job (`columns`)",
         )),
     }
@@ -233,7 +233,7 @@ pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fau
 /// A column of the runs file with numbers of one quantity, and their unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct KnownColumn {
-    /// Its place in the table.
+    /// Number of the column in the table.
     pub at: usize,
     /// The unit that the column states, else that of the job; `None` for amplitudes of load sets, which have none.
     pub unit: Option<Unit>,
@@ -289,7 +289,7 @@ pub fn known_column(
     let Some((quantity, of_job)) = quantity.zip(of_job) else {
         if !is_name && stated.unit != "1" {
             let wrong = format!(
-                "`{name}` is a factor of a load set, the column says `{}`",
+                "`{name}` is a factor of a load set, and the column states `{}`",
                 stated.unit
             );
             let remedy = "write how many times the set acts, without a unit";
@@ -299,7 +299,7 @@ pub fn known_column(
     };
     let Some(unit) = find_unit(quantity, &stated.unit) else {
         if !is_name {
-            let wrong = format!("`{}` is no unit of {}", stated.unit, quantity.word());
+            let wrong = format!("`{}` is not a unit of {}", stated.unit, quantity.word());
             let remedy = format!("write one of {}", unit_names(quantity).join(", "));
             faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
         }
@@ -307,14 +307,14 @@ pub fn known_column(
     };
     if unit != of_job && runs.stated_units.contains(&quantity) {
         let wrong = format!(
-            "the column says `{}`, the job says `{}` ({}.units.{})",
+            "the column states `{}`, the job states `{}` ({}.units.{})",
             unit.name,
             of_job.name,
             runs.section,
             quantity.word()
         );
         let remedy = format!(
-            "correct whichever is wrong; without {}.units the column's own unit counts",
+            "correct whichever is wrong; without {}.units the unit of the column is used",
             runs.section
         );
         faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));

@@ -60,7 +60,7 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
     for (row, (line, fields)) in t.rows.iter().enumerate() {
         let run = fields.get(key).cloned().unwrap_or_default();
         if !seen.insert(fields.get(key).map_or("", String::as_str)) {
-            let wrong = format!("run `{run}` stands twice");
+            let wrong = format!("run `{run}` occurs twice");
             faults.push(Fault::at(
                 &*t.file,
                 *line,

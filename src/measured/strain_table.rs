@@ -3,7 +3,7 @@
 use crate::job::StrainCorrection;
 use crate::job::correct::{Channel, channel_of, column_of};
 
-/// What the rows of a strain file are.
+/// Kind of the rows of a strain file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StrainRows {
     /// Static states by name.

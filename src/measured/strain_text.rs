@@ -53,7 +53,7 @@ fn no_rows(file: &str) -> Fault {
         1,
         "rows",
         "a header and no rows",
-        "write a row a run or a sample",
+        "write one row for each run or sample",
     )
 }
 
@@ -102,7 +102,7 @@ impl Reading {
         let second = match run {
             Some(_) => 1.0,
             None => seconds_in(unit).ok_or_else(|| {
-                let wrong = format!("`{unit}` is no unit of time");
+                let wrong = format!("`{unit}` is not a unit of time");
                 Faults::from(Fault::at(
                     &*t.file,
                     1,
@@ -153,7 +153,7 @@ impl Reading {
             if self.is_runs {
                 let name = fields.get(self.key).cloned().unwrap_or_default();
                 if !self.seen.insert(name.clone()) {
-                    let wrong = format!("run `{name}` stands twice");
+                    let wrong = format!("run `{name}` occurs twice");
                     let remedy = "give every run its own name";
                     faults.push(Fault::at(&*t.file, *line, "run", wrong, remedy));
                 }

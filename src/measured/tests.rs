@@ -143,13 +143,13 @@ fn units_of_a_runs_file_stand_in_its_header_or_below_and_contradict_nothing() {
     let f = fault("run,LF.FZ [N],LF.MX\nR1,2,3\n", stated);
     let said = f.to_string();
     assert!(
-        said.starts_with("runs.csv:1: LF.FZ [N]: the column says `N`, the job says `kN`"),
+        said.starts_with("runs.csv:1: LF.FZ [N]: the column states `N`, the job states `kN`"),
         "{said}"
     );
     let f = fault("run,LF.FZ [kg],LF.MX\nR1,2,3\n", "");
     let said = f.to_string();
     assert!(
-        said.contains("`kg` is no unit of force") && said.contains("kN"),
+        said.contains("`kg` is not a unit of force") && said.contains("kN"),
         "{said}"
     );
 }
@@ -177,12 +177,12 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
         (
             below,
             stated.as_str(),
-            "the column says `N`, the job says `kN`",
+            "the column states `N`, the job states `kN`",
         ),
         (
             "run,LF.FZ,LF.MX\n-,kg,N m\nR1,2,3\n",
             "",
-            "`kg` is no unit of force",
+            "`kg` is not a unit of force",
         ),
         (
             "run,LF.FZ [kg],LF.MX\n-,kN,N m\nR1,2,3\n",
@@ -238,7 +238,10 @@ fn labels_and_units_of_gauges_are_told_apart() {
             "run,G1 [mV/V]\nR1,1\n",
         ] {
             let said = read(text, gauges).unwrap_err()[0].to_string();
-            assert!(said.contains("G1: `mV/V` is no unit of strain"), "{said}");
+            assert!(
+                said.contains("G1: `mV/V` is not a unit of strain"),
+                "{said}"
+            );
         }
     }
     let both = read("run,G1 [mV/V]\n-,um/m\nR1,1\n", &["G1"]);
@@ -318,7 +321,7 @@ fn a_table_and_a_record_give_one_verdict_on_a_header() {
 fn where_no_gauges_are_known_a_unit_of_anything_else_is_no_strain() {
     for header in ["torque (N m)", "torque (kNm)", "G1 [mV/V]", "way (mm)"] {
         let said = columns_of_text(header, &[]).unwrap_err()[0].to_string();
-        assert!(said.contains("is no unit of strain"), "{said}");
+        assert!(said.contains("is not a unit of strain"), "{said}");
         // A record holds other channels too: they are left out.
         let column = [name_and_unit(header)];
         let found = find_gauge_columns("r.parquet", &column, &[]).unwrap();
@@ -373,7 +376,7 @@ fn a_row_of_units_tells_which_of_two_columns_holds_a_load() {
     assert_eq!(rows[0].loads_si["LF.FZ"], 2e3);
     let twice = "run,LF.FZ [kN],LF.FZ [N],LF.MX\nR1,2,2000,3\n";
     let said = runs_of(twice, "").unwrap_err()[0].to_string();
-    assert!(said.contains("two columns hold `LF.FZ`"), "{said}");
+    assert!(said.contains("two columns contain `LF.FZ`"), "{said}");
 }
 
 #[test]

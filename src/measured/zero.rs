@@ -39,7 +39,7 @@ impl Zeroed {
         }
     }
 
-    /// What these gauges read in each row, strain; not a number for a gauge without a column.
+    /// Returns the readings of these gauges in each row, strain; NaN for a gauge without a column.
     pub fn readings(&self, gauges: &[String]) -> Vec<Readings> {
         let table = &self.table;
         let column = |g: &String| table.gauges.iter().position(|h| h == g);
@@ -185,7 +185,7 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
         file,
         "strain",
         "no gauge of the job has a reading that is strain",
-        "state readings in microstrain (strain times 1e6), a column a gauge",
+        "state readings in microstrain (strain times 1e6), one column for each gauge",
     )
     .into())
 }
@@ -296,7 +296,7 @@ pub(crate) fn zeros_by_row(
             "zero-followed",
             "measured.zero_runs",
             format!(
-                "the zero is followed through {} runs without load; it wanders by {:.2} microstrain from run to run (rms over gauges)",
+                "the zero is interpolated between {} runs without load; it changes by {:.2} microstrain from run to run (rms over gauges)",
                 at.len(),
                 step
             ),
@@ -351,7 +351,7 @@ fn zero_rows(
     let at: Vec<usize> = measured.zero_runs.iter().filter_map(place).collect();
     if at.is_empty() {
         let wrong = format!("`{}` has none of these runs", table.file);
-        let remedy = "add to it a run without load, measured beside its runs, and name that run here too; or move its runs into the strain file and name them in `hold_out`";
+        let remedy = "add a run without load that was measured together with its runs, and name it here too; or move its runs into the strain file and name them in `hold_out`";
         return Err(fault(wrong, remedy).into());
     }
     Ok(at)

@@ -29,7 +29,7 @@ impl Model {
             .chain((0..self.shear_panels.len()).map(ElementRef::ShearPanel))
     }
 
-    /// Its id.
+    /// Returns the id.
     pub(crate) fn element_id(&self, element: ElementRef) -> u32 {
         match element {
             ElementRef::Shell(i) => self.shells[i].id,
@@ -43,7 +43,7 @@ impl Model {
         }
     }
 
-    /// Its kind, as messages name it.
+    /// Returns the kind, as messages name it.
     pub(crate) fn element_word(&self, element: ElementRef) -> &'static str {
         match element {
             ElementRef::Shell(i) => self.shells[i].shape.card(),
@@ -58,7 +58,7 @@ impl Model {
         }
     }
 
-    /// Its grids and scalar points, each once, in the order of its stiffness.
+    /// Returns the grids and scalar points, each once, in the order of its stiffness.
     pub(crate) fn element_grids(&self, element: ElementRef) -> Vec<GridIx> {
         match element {
             ElementRef::Shell(i) => self.shells[i].all_grids(),

@@ -43,7 +43,7 @@ pub enum FaultKind {
         /// Number of further references.
         more: usize,
     },
-    /// An id stands twice.
+    /// An id occurs twice.
     Duplicate { what: &'static str, first: Place },
     /// A card is there twice with the same content, and is read once.
     Repeated { what: &'static str, first: Place },
@@ -132,9 +132,9 @@ impl ModelFault {
             NotCarried {
                 what: "grid" | "coordinate system" | "shell property",
                 ..
-            } => "replace it by a card that is carried; results do not replace it".into(),
+            } => "replace it by a supported card; results do not replace it".into(),
             NotCarried { .. } => {
-                "replace it by a card that is carried, or solve with Nastran and name the results in the job".into()
+                "replace it by a supported card, or solve with Nastran and name the results in the job".into()
             }
             Duplicate {
                 what: "parameter" | "enforced displacement",
@@ -145,7 +145,7 @@ impl ModelFault {
             NoTemperature { .. } => {
                 "add a TEMP for each grid, or a TEMPD for the grids without one".into()
             }
-            SharedId { .. } => "renumber one of them, so that results tell them apart".into(),
+            SharedId { .. } => "renumber one of them, so that results distinguish them".into(),
             NotPositive { what, .. } => format!("give a {what} above 0"),
             ZeroLength { .. } => "merge the ends by an RBE2, or correct grids and offsets".into(),
             Degenerate { .. } => "correct the order of its grids, or delete the element".into(),
@@ -171,8 +171,8 @@ impl ModelFault {
             Poisson { .. } => "give a ratio above -1 and up to 0.5".into(),
             Underdetermined => "give two of E, G and NU".into(),
             Unsupported { remedy, .. } => (*remedy).into(),
-            Unattached => "attach it, or delete it where nothing refers to it; AUTOSPC holds it otherwise".into(),
-            OffPatch { .. } => "move the point over the patch, name the property or shell that lies there, or give a smaller diameter; shells with mid-side grids are no patch".into(),
+            Unattached => "attach it, or delete it if nothing refers to it; otherwise AUTOSPC holds it".into(),
+            OffPatch { .. } => "move the point over the patch, name the property or shell that lies there, or give a smaller diameter; shells with mid-side grids cannot be a patch".into(),
             Word { expected, .. } => format!("write {expected}"),
         }
     }
@@ -192,14 +192,14 @@ impl fmt::Display for FaultKind {
         match self {
             Missing { what, id } => write!(f, "{what} {id} is missing"),
             NotCarried { what, user, more } => {
-                write!(f, "the card is not carried, and {user}")?;
+                write!(f, "the card is not supported, and {user}")?;
                 if *more > 0 {
                     write!(f, " (and {more} more)")?;
                 }
                 write!(f, " refers to its {what}")
             }
             Duplicate { what, first } => {
-                write!(f, "the {what} stands twice, first on line {}", first.line)
+                write!(f, "the {what} occurs twice, first on line {}", first.line)
             }
             Repeated { what, first } => {
                 write!(

@@ -321,7 +321,7 @@ fn load_sums_scale_their_sets() {
 fn each_kind_of_bad_input_has_its_own_message_with_the_line() {
     let quad = format!("{QUAD}CQUAD4,1,1,1,2,3,4\n");
     let cases: [(&str, u32, &str); 12] = [
-        ("CQUAD4,1,1,1,2,3,4", 9, "element id stands twice"),
+        ("CQUAD4,1,1,1,2,3,4", 9, "element id occurs twice"),
         ("CQUAD4,2,7,1,2,3,4", 9, "shell property 7 is missing"),
         ("CQUAD4,2,1,1,2,3,99", 9, "grid 99 is missing"),
         (
@@ -335,7 +335,7 @@ fn each_kind_of_bad_input_has_its_own_message_with_the_line() {
             "thickness is -0.01",
         ),
         ("PSHELL,2,1\nCQUAD4,2,2,1,2,3,4", 10, "thickness is 0"),
-        ("GRID,1,,5.,0.,0.", 9, "grid id stands twice"),
+        ("GRID,1,,5.,0.,0.", 9, "grid id occurs twice"),
         ("CQUAD4,2,1,1,2,2,1", 9, "no area"),
         (
             "RBE2,5,1,123456,2\nRBE2,6,3,1,2",
@@ -347,7 +347,7 @@ fn each_kind_of_bad_input_has_its_own_message_with_the_line() {
             10,
             "lie on a line",
         ),
-        ("MAT1,1,1.,,.3", 9, "material id stands twice"),
+        ("MAT1,1,1.,,.3", 9, "material id occurs twice"),
         ("SPC1,1,123,99", 9, "grid 99 is missing"),
     ];
     for (more, line, message) in cases {

@@ -2,7 +2,7 @@
 
 use crate::linalg::{Matrix, Vector};
 
-/// What is asked.
+/// Task of the search for ballast masses.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BallastSpec {
     /// How many masses.

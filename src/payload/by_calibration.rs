@@ -18,7 +18,7 @@ pub(super) struct Found {
     pub dof: f64,
     /// Factor on sigma of a 95 % interval.
     pub coverage_factor: f64,
-    /// Where no payload makes this strain.
+    /// Finding if no payload explains this strain.
     pub unlike: Option<Finding>,
 }
 

@@ -24,14 +24,14 @@ pub struct PayloadModel {
     pub calibrated: Option<Uncertainty>,
 }
 
-/// What one run read.
+/// Readings of one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PayloadRun {
     /// Name.
     pub run: String,
     /// Net strain by gauge; NaN where a gauge gave nothing, empty without strain.
     pub strain: Vec<f64>,
-    /// Its standard deviation by gauge.
+    /// Standard deviation of the readings by gauge.
     pub sigma: Vec<f64>,
     /// Changes of the wheel forces, up; NaN where not measured, empty where none is.
     pub reactions: Vec<f64>,
@@ -59,7 +59,7 @@ pub struct WeighSpec {
     pub reaction_sigma: f64,
     /// Largest weight that is possible.
     pub largest: f64,
-    /// Where the payload may be, as shifts; `None`: anywhere between the wheels.
+    /// Region of the payload, as shifts; `None`: anywhere between the wheels.
     pub region: Option<[[f64; 2]; 2]>,
 }
 
@@ -96,7 +96,7 @@ pub struct WeighedRun {
     pub run: String,
     /// Weight; as found even where it is refused.
     pub force: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the weight.
     pub sigma: f64,
     /// Degrees of freedom behind it; infinite where it was not estimated.
     pub dof: f64,
@@ -156,7 +156,7 @@ impl PayloadModel {
     }
 }
 
-/// What carries the payload in a unit response.
+/// Support that carries the payload in a unit response.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Support {
     /// The wheels on a flat floor.

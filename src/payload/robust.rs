@@ -33,7 +33,7 @@ pub struct RunPayload {
     pub interval: [f64; 2],
 }
 
-/// What became of one gauge.
+/// Result of the test of one gauge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeVerdict {
     /// Gauge name.

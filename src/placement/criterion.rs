@@ -28,7 +28,7 @@ pub enum Criterion {
 /// A criterion at an information matrix.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Its value.
+    /// Value of the criterion.
     pub value: f64,
     /// Lower triangular `W` with `W' W = G`: the slope towards a row `a` is `d = |W a|^2`.
     pub root: Vec<f64>,

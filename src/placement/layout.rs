@@ -19,7 +19,7 @@ use std::fmt;
 pub struct Layout {
     /// The gauges, by place and angle.
     pub gauges: Vec<Choice>,
-    /// Its criterion: for D `log det` of its information matrix, for Ds less that of the nuisance block.
+    /// Value of the criterion: for D `log det` of the information matrix, for Ds less that of the nuisance block.
     pub log_det: f64,
     /// No layout that keeps the rules has a larger criterion.
     pub upper_bound: f64,

@@ -51,7 +51,7 @@ impl Spread {
 pub struct Peak {
     /// von Mises stress, model units.
     pub von_mises: f64,
-    /// Its standard deviation, from the loads' at that state.
+    /// Standard deviation of the stress, from the standard deviations of the loads at that state.
     pub sigma: f64,
     /// Index of the state.
     pub at: usize,

@@ -15,7 +15,7 @@ pub struct LoadCaseOf<'a> {
     pub load: Load,
     /// Size in that case.
     pub applied: f64,
-    /// Its strain.
+    /// Strain of the load case.
     pub case: &'a CaseResult,
 }
 

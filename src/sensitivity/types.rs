@@ -10,7 +10,7 @@ use crate::units::Quantity;
 pub struct Load {
     /// Name.
     pub name: String,
-    /// Its size, 1 sd, job units, where stated.
+    /// Expected size of the load, 1 sd, job units; `None` if it is not stated.
     pub expected: Option<f64>,
     /// Asked for, or present but not asked for.
     pub wanted: bool,
@@ -138,7 +138,7 @@ impl Sensitivity {
         dense::condition(&self.values)
     }
 
-    /// The same with scaled columns.
+    /// Returns the condition number of S with scaled columns.
     pub fn condition_number_scaled(&self) -> f64 {
         dense::condition(&self.scaled())
     }

@@ -118,7 +118,8 @@ impl Uncertainty {
         out
     }
 
-    /// Returns the uncertainty without a center: what the errors of S make of it is in the additive part, larger than before at loads beyond the half of it.
+    /// Returns the uncertainty without a center. The additive part then contains the errors of S at the center, and is larger than before at
+    /// loads beyond half of it.
     fn without_center(&self) -> Self {
         if self.center.is_empty() {
             return self.clone();
@@ -191,7 +192,7 @@ impl Uncertainty {
         out
     }
 
-    /// The same for some of the gauges, in the order given by their numbers.
+    /// Returns the uncertainty for some of the gauges, in the order of `gauges`.
     pub fn of_gauges(&self, gauges: &[usize]) -> Self {
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let nk = (self.covariance.len() as f64).sqrt().round() as usize;
@@ -218,7 +219,7 @@ impl Uncertainty {
         }
     }
 
-    /// The same for some of the loads, each in another unit: `loads` has their numbers, and the old units in a new one.
+    /// Returns the uncertainty for some of the loads in other units: `loads` contains their numbers, and the old units in a new one.
     pub fn of_loads(&self, loads: &[(usize, f64)]) -> Self {
         if !self.center.is_empty() {
             return self.without_center().of_loads(loads);
@@ -241,7 +242,7 @@ impl Uncertainty {
         }
     }
 
-    /// Of one load that is a sum of these, `f` of each: the column `S f`.
+    /// Returns the uncertainty of the combined column `S f` for the load combination `f`.
     pub fn along(&self, f: &[f64]) -> Self {
         if !self.center.is_empty() {
             return self.without_center().along(f);

@@ -9,7 +9,7 @@ pub enum SeriesError {
     Length {
         /// Offending channel.
         name: String,
-        /// Its length.
+        /// Length of the channel.
         found: usize,
         /// The first channel.
         first: String,
@@ -129,7 +129,7 @@ impl SeriesError {
             ),
             Self::Missing { name, present } => (
                 format!(
-                    "no channel `{name}`; the record holds {}",
+                    "no channel `{name}`; the record contains {}",
                     present.join(", ")
                 ),
                 "name it in the job or rename the column",
@@ -139,7 +139,9 @@ impl SeriesError {
                 found_hz,
                 declared_hz,
             } => (
-                format!("the time column says {found_hz:.6} Hz, the job says {declared_hz:.6} Hz"),
+                format!(
+                    "the time column gives {found_hz:.6} Hz, the job states {declared_hz:.6} Hz"
+                ),
                 "correct `sample_rate`, or resample the file",
             ),
             Self::UnevenTime {
@@ -180,7 +182,7 @@ impl SeriesError {
                 "give every sample its time",
             ),
             Self::Empty => (
-                "it holds no samples, only a header".to_owned(),
+                "it contains no samples, only a header".to_owned(),
                 "record again, or leave the file out",
             ),
             Self::Hole {
@@ -189,7 +191,7 @@ impl SeriesError {
                 missing,
             } => (
                 format!(
-                    "{missing} samples are missing between {from_s} s and {to_s} s, more than the record holds"
+                    "{missing} samples are missing between {from_s} s and {to_s} s, more than the record contains"
                 ),
                 "cut the record there, or correct its times",
             ),

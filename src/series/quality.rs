@@ -95,7 +95,7 @@ fn check_missing(c: &Channel) -> Option<Finding> {
         Severity::Warning
     };
     let message = format!(
-        "{missing} of {} samples are missing; straight lines stand in for them.",
+        "{missing} of {} samples are missing; straight lines replace them.",
         c.samples.len()
     );
     let remedy = "Use a stretch without gaps, or check cable and logger.";
@@ -233,7 +233,7 @@ fn check_spikes(c: &Channel) -> Option<Finding> {
     }
     let largest = bend.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let message =
-        format!("{count} single samples stand off their neighbours, by up to {largest:.4}.");
+        format!("{count} single samples differ from their neighbours by up to {largest:.4}.");
     let remedy =
         "Look for loose contacts; remove the spikes before band-limiting, which smears them.";
     Some(

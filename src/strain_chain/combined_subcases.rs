@@ -73,7 +73,7 @@ pub(crate) fn read_combination(
             None if factor == 0.0 => {}
             None => {
                 let wrong = format!("subcase {} has no static solution", above[*i].id);
-                return Err(fault(wrong, "give that subcase a LOAD, or the factor 0"));
+                return Err(fault(wrong, "give this subcase a LOAD, or the factor 0"));
             }
         }
     }
@@ -83,7 +83,7 @@ pub(crate) fn read_combination(
     let own = read.deck.case_control.subcases.get(above.len());
     if own.is_some_and(|s| s.load.is_some()) {
         return Err(fault(
-            "a combination has no LOAD of its own".to_owned(),
+            "a combination of subcases can't have a LOAD".to_owned(),
             "write a SUBCASE",
         ));
     }

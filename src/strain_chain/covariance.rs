@@ -4,6 +4,7 @@
 //! loads were taught one by one), then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by
 //! rows; mean squares of S; where the header states `additive`, the covariance of readings at any load by rows.
 
+use crate::finding::few;
 use crate::host::fault::{Fault, Faults};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use serde::{Deserialize, Serialize};
@@ -76,7 +77,7 @@ pub fn read_covariance(
     let broken = || {
         fault(
             "covariance",
-            "no file of `calibrate`, or cut off".to_owned(),
+            "it is not a file of `calibrate`, or it is cut".to_owned(),
         )
     };
     let rest = bytes.strip_prefix(MAGIC).ok_or_else(broken)?;
@@ -109,9 +110,9 @@ pub fn read_covariance(
         return Err(fault(
             "loads",
             format!(
-                "it knows the loads {}, the job has {}",
-                header.loads.join(", "),
-                loads.join(", ")
+                "it contains the loads {}, the job has {}",
+                few(&header.loads),
+                few(loads)
             ),
         ));
     }
@@ -122,7 +123,7 @@ pub fn read_covariance(
     if let Some(missing) = gauges.iter().zip(&places).find(|(_, p)| p.is_none()) {
         return Err(fault(
             "gauges",
-            format!("it does not know gauge `{}`", missing.0),
+            format!("it does not contain gauge `{}`", missing.0),
         ));
     }
     let (covariance, numbers) = numbers.split_at(sizes[0]);

@@ -18,15 +18,15 @@ pub struct DeckModel {
     pub given: String,
     /// The deck; empty for an OP2.
     pub deck: Deck,
-    /// Its model.
+    /// Model of the deck.
     pub model: Model,
     /// Files it was read from: the deck, then its INCLUDEs.
     pub files: Vec<PathBuf>,
-    /// Everything that is wrong: in cards, then in the model.
+    /// All faults: in cards, then in the model.
     pub faults: FaultList,
-    /// Those of [`Self::faults`] that come of cards that are not carried: `check` warns of the cards (`card-not-solved`).
+    /// Faults among [`Self::faults`] that come from unsupported cards: `check` warns of the cards (`card-not-solved`).
     pub not_carried: FaultList,
-    /// What is worth knowing.
+    /// Findings on the deck.
     pub findings: Vec<Finding>,
 }
 
@@ -103,7 +103,7 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
     }
 }
 
-/// The fault of a model whose mass, centre of gravity or moments of inertia are more than numbers can be.
+/// The fault of a model whose mass, centre of gravity or moments of inertia exceed the range of numbers.
 fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
     let about_origin = model.rigid_body_mass(Vec3::zeros());
     let about_centre = model.rigid_body_mass(model.weight().cg);
@@ -113,8 +113,8 @@ fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
         Fault::of(
             given,
             "mass",
-            "the mass of the model, its centre of gravity or moments of inertia are more than numbers can be",
-            "look for a density, thickness, area or CONM2 with an exponent too many",
+            "the mass of the model, its centre of gravity or moments of inertia exceed the range of numbers",
+            "look for a density, thickness, area or CONM2 with a wrong exponent",
         )
     })
 }
@@ -131,7 +131,7 @@ pub fn model_of_op2(given: &str, bytes: &[u8]) -> Result<DeckModel, Fault> {
         return Err(Fault::of(
             given,
             "mesh",
-            "the OP2 holds no geometry",
+            "the OP2 contains no geometry",
             "give the deck, or solve with PARAM,OGEOM,YES",
         ));
     }

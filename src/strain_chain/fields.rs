@@ -41,7 +41,7 @@ pub struct Fields {
     /// Subcase of the deck that is the reference state of the readings, solved here; `None` where another program solved it, or the job has no
     /// such state.
     reference: Option<CaseResult>,
-    /// What was solved beside the loads of the job; `None` where nothing was, as another program solved them.
+    /// Solution of the additional loads; `None` if another program solved the loads of the job.
     pub beside: Option<Solution>,
 }
 

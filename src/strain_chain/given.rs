@@ -117,7 +117,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
                     table.rows.get(*row).map_or(0, |r| r.0),
                     &*loads[l].name,
                     "blank",
-                    "give every influence coefficient (0 where there is none)",
+                    "give every influence coefficient (0 if there is none)",
                 )),
                 Err(f) => faults.push(f),
             }

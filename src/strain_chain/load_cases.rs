@@ -2,6 +2,7 @@
 
 use crate::fe::from_results::{HOLD_ONCE, Repeated, complete, repeated};
 use crate::fe::{CaseResult, Solution};
+use crate::finding::few;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::{Job, JobLoad, NamedFile, Reference};
@@ -183,7 +184,7 @@ fn without_case(job: &Job, load: &JobLoad, solutions: &[Solution]) -> Fault {
     );
     let remedy = match there.is_empty() {
         true => "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned(),
-        false => format!("state `subcase`; the results contain {}", there.join(", ")),
+        false => format!("state `subcase`; the results contain {}", few(&there)),
     };
     Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
 }

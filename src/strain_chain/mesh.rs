@@ -63,7 +63,7 @@ pub struct LoadMeshError {
     pub mesh_error_rel: Option<f64>,
 }
 
-/// What the mesh made of the strain of the unit loads.
+/// Error of the mesh in the strain of the unit loads.
 pub struct MeshError {
     /// By load: strain on the deck's mesh less the limit.
     pub cases: Vec<CaseResult>,
@@ -71,7 +71,7 @@ pub struct MeshError {
     pub left: f64,
 }
 
-/// Where the strain is wanted without what the mesh makes.
+/// Places at which the strain is corrected for the error of the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WantedAt {
     /// At the job's gauges: a large mesh is divided round them alone.
@@ -94,18 +94,18 @@ pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedMo
         let shells = shells_under(gauges.unwrap_or_default());
         if shells.is_empty() {
             return Err(format!(
-                "the model has {n} shells, beyond {MOST_SHELLS} four times as many are not solved, and no shell is known to bear a gauge"
+                "the model has {n} shells and no known gauges, and above {MOST_SHELLS} shells no mesh of four times as many is solved"
             ));
         }
         let mut near = ROWS.iter().map(|rows| model.shells_near(&shells, *rows));
         near.find(|d| count(d) <= MOST_SHELLS).ok_or_else(|| {
             format!(
-                "the gauges stand on so many of {n} shells that more than {MOST_SHELLS} lie round them, and four times as many are not solved"
+                "more than {MOST_SHELLS} of {n} shells are around the gauges, and above this number no mesh of four times as many is solved"
             )
         })?
     };
     model.refined_at(&divided).ok_or_else(|| {
-        "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in displacement frames of their own, or no shells)"
+        "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in other displacement frames, or no shells)"
             .to_owned()
     })
 }
@@ -162,7 +162,7 @@ pub(super) fn not_checked(why: &str) -> Finding {
         Severity::Warning,
         "mesh-not-checked",
         "model.mesh_error",
-        format!("what the mesh makes of the strain is not known: {why}"),
+        format!("the error of the mesh is unknown: {why}"),
         "state `model_uncertainty_rel`, or compare with a finer deck",
     )
 }
@@ -303,12 +303,12 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
             "mesh-coarse-at-gauges",
             "model",
             format!(
-                "the deck's mesh is too coarse at {n} of {} gauges: it reads {}. This is taken out of S, and {:.0} % of it counts as not known",
+                "the deck's mesh is too coarse at {n} of {} gauges: the readings are off by {}. S is corrected for this error, and {:.0} % of it counts as uncertainty",
                 gauges.len(),
                 few(&named),
                 100.0 * left
             ),
-            "refine the deck around these elements, elements half as wide leave a quarter of it; or move the gauges",
+            "refine the deck around these elements (half the width leaves a quarter of the error), or move the gauges",
         )
         .with_numbers(worst, LARGE),
     )
@@ -330,10 +330,11 @@ pub(super) fn uncertainty(
     }
     if n * k > MOST_ENTRIES {
         let message = format!(
-            "S has {} entries, and beyond {MOST_ENTRIES} their covariance is not kept: the mesh's error is taken out, what may be left of it is not weighed",
+            "S has {} entries, and above {MOST_ENTRIES} their covariance is not stored: S is corrected for the mesh error, but intervals do not include what may remain of it",
             n * k
         );
-        let remedy = "use fewer gauges at a time, or state the rest in `model_uncertainty_rel`";
+        let remedy =
+            "use fewer gauges at a time, or state the remaining error in `model_uncertainty_rel`";
         let code = "mesh-error-not-weighed";
         work.findings.push(
             Finding::new(Severity::Warning, code, "model.mesh_error", message, remedy)

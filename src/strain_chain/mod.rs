@@ -190,7 +190,7 @@ pub struct Conditioning {
 }
 
 impl Conditioning {
-    /// Of S.
+    /// Returns rank and condition numbers of S.
     pub fn of(s: &Sensitivity) -> Self {
         Self {
             rank: s.rank(),

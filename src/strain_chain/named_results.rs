@@ -38,7 +38,7 @@ pub fn check_named(work: &Work, job: &Job, absent: Absent) -> Result<(), Faults>
     Faults::check(faults)
 }
 
-/// What to do where results can't be read.
+/// Remedy for results that can't be read.
 pub const RESULTS_REMEDY: &str = "give an OP2, punch or HDF5 file of a static run";
 
 /// The fault of results that can't be read.

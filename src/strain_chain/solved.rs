@@ -6,7 +6,7 @@ use crate::fe::{
     SupportChoice, UnitLoad, relief_finding, solution_of, solve_displacements, solve_modes,
     support_of,
 };
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::store::{Key, read_solution, write_solution};
 use crate::host::work::{Work, stopped};
@@ -21,7 +21,7 @@ use std::fmt::Write;
 /// Elastic modes that are computed beside the strain where nothing else is asked for.
 pub const MODES: usize = 10;
 
-/// What holds the structure of a job under its unit loads.
+/// Returns the support of the structure of a job under its unit loads.
 ///
 /// # Errors
 /// An SPC set that the deck lacks; several that its subcases select; one that moves grids.
@@ -40,9 +40,9 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
         None => Ok(support),
         Some((sid, grid, by)) => Err(Faults::from(fault(
             format!(
-                "SPC set {sid} moves grid {grid} by {by}: the strain of that goes with no load, and would stand in every column of S"
+                "SPC set {sid} moves grid {grid} by {by}: the strain of this displacement belongs to no load, and would be in every column of S"
             ),
-            "hold it at 0, or name another set; `solve` of the deck takes displacements that its subcases enforce",
+            "hold it at 0, or name another set; `solve` on the deck uses displacements that its subcases enforce",
         ))),
     }
 }
@@ -95,11 +95,11 @@ pub fn stands_on_wheels(job: &Job, model: &Model, what: &str) -> Result<(), Faul
         line,
         "model.support",
         format!(
-            "{what} takes a structure that stands on its wheels, and this one is {}",
+            "{what} needs a structure on its wheels, and this one is {}",
             support.words()
         ),
         match support.spc {
-            Some(_) => "write support = \"free\" where wheels carry it",
+            Some(_) => "write support = \"free\" if wheels carry it",
             None => "remove the springs and supports to ground, so that wheels carry it",
         },
     )))
@@ -146,14 +146,14 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     let words: Vec<String> = sets.iter().map(word).collect();
     let wrong = format!(
         "the deck's subcases select different MPC sets ({}): unit loads need one",
-        words.join(", ")
+        few(&words)
     );
     let remedy = "select the MPC set of the structure above the subcases alone";
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
 }
 
 /// Remedy for a deck with two subcases of one number.
-const NUMBER_ONCE: &str = "give each subcase its own number, in increasing order";
+const NUMBER_ONCE: &str = "give each subcase a separate number, in increasing order";
 
 /// Returns the subcase numbers that a deck states more than once, with the places of each.
 fn repeated_subcases(read: &DeckModel) -> BTreeMap<u32, Vec<Place>> {
@@ -233,7 +233,7 @@ pub fn static_case(model: &Model, subcase: &Subcase) -> Result<LoadCase, String>
         return Err(format!("ANALYSIS = {analysis} is not statics"));
     }
     if subcase.deform.is_some() {
-        return Err("DEFORM is not carried".to_owned());
+        return Err("DEFORM is not supported".to_owned());
     }
     let case = LoadCase::of_subcase(model, subcase, label_of(subcase));
     if case.loads.is_empty() && !has_enforced(model, subcase.spc) {
@@ -391,7 +391,7 @@ fn kept(
         .map(|s| read_solution(s, &key, grids, fields));
     let kept = match read {
         Some(Ok(Some(solved))) => {
-            let note = "the solution is taken from those kept (`--no-cache` solves again)";
+            let note = "a stored solution is used (`--no-cache` solves again)";
             if !work.notes.iter().any(|n| n == note) {
                 work.notes.push(note.to_owned());
             }
@@ -411,7 +411,7 @@ fn kept(
     let written = store.as_deref().map(|s| write_solution(s, &key, &solved));
     if let Some(Err(why)) = written {
         work.notes.push(format!(
-            "the solution is not kept for the next command: {why}"
+            "the solution is not stored for the next command: {why}"
         ));
     }
     Ok(solved)

@@ -75,7 +75,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         fault(
             "direction",
             format!(
-                "gauge `{}`: it sits on the axis of coordinate system {}, where radial and tangential directions do not exist",
+                "gauge `{}`: it is on the axis of coordinate system {}, where radial and tangential directions do not exist",
                 g.name, g.cid
             ),
             "give the direction in a rectangular system, or along the axis",
@@ -99,7 +99,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         fault(
             "surface2",
             format!(
-                "gauge `{}`: `element2` is not parallel to `element`, so that no side of it is the opposite one",
+                "gauge `{}`: `element2` is not parallel to `element`, so no side of it is the opposite side",
                 g.name
             ),
             "state `surface2`",

@@ -171,7 +171,7 @@ fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
                 "point-off-element",
                 &g.name,
                 format!(
-                    "{}:{}: the point stated for gauge `{}` lies {} {unit} from its element {element}, which is {} {unit} large: the strain is \
+                    "{}:{}: the point stated for gauge `{}` is {} {unit} from its element {element}, which is {} {unit} large: the strain is \
                      that of the element",
                     g.file, g.line, g.name, short(found.distance), short(found.size)
                 ),

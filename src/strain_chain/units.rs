@@ -8,9 +8,9 @@ use serde::Serialize;
 /// Unit of one load in reports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadUnits {
-    /// Its name; empty for a load set, which is counted in times the set.
+    /// Name of the unit; empty for a load set, which counts in multiples of the set.
     pub name: String,
-    /// Its name in the job's own units.
+    /// Name in the units of the job.
     pub of_job: String,
     /// Report value = job value times this.
     pub factor: f64,
@@ -23,7 +23,7 @@ pub struct LoadSigma {
     pub name: String,
     /// One standard deviation, report units: what `recover` states for loads of their expected size, from noise and model uncertainty.
     pub sigma: f64,
-    /// The same with the tolerances of gluing and of the gauge factor, where the job states some.
+    /// Standard deviation with the tolerances of gluing and of the gauge factor, if the job states them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sigma_as_glued: Option<f64>,
     /// Report unit.

@@ -1,6 +1,6 @@
 //! Kinds of error.
 
-/// What is wrong with each gauge, drawn anew in every trial.
+/// Kind of error of each gauge. Every trial draws a new error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ErrorKind {
     /// Reading times 1 + e, e uniform in +-size.
@@ -39,7 +39,7 @@ impl ErrorKind {
         )
     }
 
-    /// As a job names it.
+    /// Returns the name in a job.
     pub fn word(self) -> &'static str {
         match self {
             Self::RelativeUniform => "relative-uniform",

@@ -40,7 +40,7 @@ impl TrueLoad {
     }
 }
 
-/// What holds for all layouts.
+/// Settings that apply to all layouts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudySpec {
     /// True loads.
@@ -57,10 +57,10 @@ pub struct StudySpec {
     pub seed: u64,
 }
 
-/// What became of the loads.
+/// Errors of the recovered loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StudyRow {
-    /// Of S with its columns scaled; the median over the layouts.
+    /// Condition number of S with scaled columns; the median over the layouts.
     pub condition_number: f64,
     /// Mean error by load.
     pub bias: Vec<f64>,

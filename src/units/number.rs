@@ -22,7 +22,7 @@ pub fn number(x: f64) -> String {
     }
 }
 
-/// So many digits after the point; a dash where it is not known or has no end.
+/// Formats a number with `digits` decimals; a dash for NaN and infinity.
 pub fn fixed(x: f64, digits: usize) -> String {
     match x.is_finite() {
         true => format!("{x:.digits$}"),

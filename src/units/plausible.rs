@@ -47,7 +47,7 @@ pub fn check_units(
             "units-contradict-unitsys",
             "PARAM,UNITSYS",
             format!(
-                "The job says `{}`, the deck says PARAM,UNITSYS,{}",
+                "The job states `{}`, the deck states PARAM,UNITSYS,{}",
                 system.name(),
                 text.trim()
             ),

@@ -82,7 +82,7 @@ impl UnitSystem {
         }
     }
 
-    /// Its own unit of a quantity, named as reports name it.
+    /// Returns the unit of a quantity in this system, with its name in reports.
     pub fn unit(self, quantity: Quantity) -> Unit {
         let name = match (self, quantity) {
             (Self::MKgS, Quantity::Force) | (Self::MmTS, Quantity::Force) => "N",

@@ -3,7 +3,7 @@
 /// Newtons in a pound-force (exact: 0.45359237 kg times 9.80665 m/s^2).
 pub(super) const POUND_FORCE_N: f64 = 4.448_221_615_260_5;
 
-/// What a unit measures.
+/// Quantity that a unit measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[allow(missing_docs)]
 pub enum Quantity {
@@ -42,9 +42,9 @@ impl Quantity {
 /// A unit: `value_si = value * si`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
-    /// As written.
+    /// Name of the unit, as files write it.
     pub name: &'static str,
-    /// What it measures.
+    /// Quantity of the unit.
     pub quantity: Quantity,
     /// SI units in one of it.
     pub si: f64,

@@ -143,7 +143,7 @@ pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
              from it. Its unit is not the one it is taken for, its noise is stated too large, or nothing moved.",
             number(share)
         );
-        let remedy = "State the unit beside the channel's name, `f_wheel [kN]`, or the noise that the sensor has.";
+        let remedy = "State the unit after the name of the channel, `f_wheel [kN]`, or the noise that the sensor has.";
         let code = "readings-below-noise";
         Finding::new(Severity::Error, code, channel, message, remedy).with_numbers(share, DROWNED)
     })

@@ -13,7 +13,7 @@ use crate::series::detrend::rms;
 pub struct ChassisForce {
     /// The body.
     pub body: String,
-    /// Its inertia times its acceleration, M q'' in heave (thesis 5.8, 5.11).
+    /// Inertia of the body times its acceleration, M q'' in heave (thesis 5.8, 5.11).
     pub by_mass: Vec<f64>,
     /// Half width of the 95 % interval of `by_mass`: the inertia, noise and gains of the accelerometers.
     pub by_mass_half: Vec<f64>,

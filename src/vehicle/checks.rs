@@ -10,7 +10,7 @@ use serde::Serialize;
 pub struct MassClosure {
     /// Sprung and unsprung mass identified.
     pub identified: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the identified mass.
     pub sigma: f64,
     /// Mean wheel force over gravity.
     pub weighed: f64,
@@ -109,7 +109,7 @@ fn mirrored(name: &str) -> Option<String> {
 /// A parameter that ended at its bound: the data ask for a value against nature.
 pub fn at_bound(name: &str, bound: f64, is_damping: bool) -> Finding {
     let what = if is_damping {
-        "Damping can't be told from zero, or something else moves the phase."
+        "Damping is indistinguishable from zero, or something else changes the phase."
     } else {
         "The data ask for a value beyond it."
     };

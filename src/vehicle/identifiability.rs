@@ -68,10 +68,10 @@ pub fn weak_sentences(fit: &Fit, parameters: &[Parameter], unknown: &[usize]) ->
             .map(|p| p.name.as_str())
             .collect();
         sentences.push(if let [one] = names.as_slice() {
-            format!("{one} hardly acts in this record: its interval holds everything. Drive so that it works, or state it as known.")
+            format!("{one} is not excited in this record, and its interval is unbounded. Record a manoeuvre that excites it, or state it in `known`.")
         } else {
             format!(
-                "{} act alike in this record: only a combination of them is known. State one of them as known, or record a drive that moves them apart.",
+                "{} have indistinguishable effects in this record: only a combination of them is known. State one of them in `known`, or record a drive that separates them.",
                 names.join(" and ")
             )
         });

@@ -129,7 +129,7 @@ impl Identification {
                 .wrong_input()
                 .is_some_and(|f| f.severity == Severity::Error);
         (!told && !is_explained).then(|| {
-            let message = "No parameter can be told from this record.";
+            let message = "This record determines no parameter.";
             Finding::new(
                 Severity::Error,
                 "nothing-identifiable",

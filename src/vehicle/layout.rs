@@ -57,7 +57,7 @@ impl Shape {
 pub struct Body {
     /// Suffix of its parameters, such as `b` in `m_b`.
     pub name: String,
-    /// Its motions.
+    /// Motions of the body.
     pub shape: Shape,
     /// Where motions that it has not take place (an axle's x).
     pub x: f64,

@@ -10,11 +10,11 @@ use crate::series::channels::Channels;
 
 /// A part to fit.
 pub(super) struct PartProblem {
-    /// Its parameters.
+    /// Parameters of the part.
     pub names: Vec<Parameter>,
-    /// Its motion in the record.
+    /// Motion in the record.
     pub motion: Motion,
-    /// Its equations.
+    /// Equations of the part.
     pub equations: Vec<Equation>,
     /// What each parameter may be.
     pub allowed: Vec<Allowed>,

@@ -14,11 +14,11 @@ pub enum VehicleError {
     Sensors {
         /// The body.
         body: String,
-        /// Its motions.
+        /// Number of motions of the body.
         needed: usize,
         /// Motions that the sensors span.
         found: usize,
-        /// Its channels.
+        /// Channels of the body.
         channels: Vec<String>,
     },
     /// No equation is left.
@@ -36,7 +36,7 @@ pub enum VehicleError {
     Bounds {
         /// The parameter.
         name: String,
-        /// Its upper limit.
+        /// Upper limit of the parameter.
         high: f64,
     },
 }

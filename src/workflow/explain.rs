@@ -4,15 +4,15 @@ use crate::finding::explain::{self, Code};
 use crate::host::fault::{Fault, Faults};
 use crate::job::suggest::remedy;
 
-/// What every finding means, by code.
+/// Returns cause, limit, remedy and example of every finding, sorted by code.
 pub fn explain_all() -> &'static [Code] {
     explain::codes()
 }
 
-/// What a finding means: cause, limit, remedy, an example.
+/// Returns cause, limit, remedy and example of a finding. Former codes lead to the code that replaced them.
 ///
 /// # Errors
-/// A fault where no finding has the code, with the closest that one has.
+/// Returns a fault with the closest code if no finding has `code`.
 pub fn explain(code: &str) -> Result<&'static Code, Faults> {
     explain::code(code).ok_or_else(|| {
         let wrong = format!("no finding has the code `{code}`");

@@ -105,7 +105,7 @@ pub struct WheelLoad {
     pub name: String,
     /// Mean, where masses tell it.
     pub value: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the wheel load.
     pub sigma: Option<f64>,
     /// Unit in words.
     pub unit: String,
@@ -143,10 +143,10 @@ pub(crate) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
         .map_err(|e| vehicle_fault(job, data_name, &e).into())
 }
 
-/// Vehicle parameters and wheel loads from accelerations.
+/// Identifies vehicle parameters from accelerations, and recovers wheel loads with them.
 ///
 /// # Errors
-/// Every fault of the job and its records.
+/// Returns every fault of the job and its records.
 pub fn identify(job: &Job, cx: &Context) -> Result<Outcome<Identified>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;

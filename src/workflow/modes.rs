@@ -97,10 +97,10 @@ impl Answer for Modes {
     }
 }
 
-/// The lowest `count` elastic modes of a job's structure on the job's support, with the strain of its gauges.
+/// Computes the lowest `count` elastic modes of the structure of a job, on the support of the job, with the strain of its gauges.
 ///
 /// # Errors
-/// Every fault of the job and its deck; what stops the solver.
+/// Returns every fault of the job and its deck, or the fault that stops the solver.
 pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
     let mut work = Work::of_job(cx, job);
     let Some(files) = &job.model else {
@@ -119,11 +119,11 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
     Ok(work.finish(units, answer))
 }
 
-/// The lowest `count` elastic modes of a deck's structure on the SPC set that its case control selects, free where it selects none;
-/// the deck may be of any solution sequence.
+/// Computes the lowest `count` elastic modes of the structure of a deck. The SPC set that case control selects supports it; without one it
+/// is free. The deck may have any solution sequence.
 ///
 /// # Errors
-/// Every fault of the deck; what stops the solver.
+/// Returns every fault of the deck, or the fault that stops the solver.
 pub fn modes_of_deck(path: &Path, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
     let mut work = Work::new(cx);
     let given = path.display().to_string();

@@ -59,10 +59,10 @@ impl Answer for Sensed {
     }
 }
 
-/// S of the job's gauges, or of each allowed surface at each angle of the grid where it has none.
+/// Computes S of the gauges of a job. Without gauges it computes S of its candidates: each allowed surface at each angle step.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names.
+/// Returns every fault of the job and of the files that it names.
 pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;

@@ -119,10 +119,10 @@ struct Task {
     support: Option<String>,
 }
 
-/// The unit loads of a job, solved by the built-in solver.
+/// Solves the unit loads of a job with the built-in solver.
 ///
 /// # Errors
-/// Every fault of the job and its deck; what stops the solver.
+/// Returns every fault of the job and its deck, or the fault that stops the solver.
 pub fn solve(
     job: &Job,
     options: SolveOptions,
@@ -135,10 +135,10 @@ pub fn solve(
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// The static subcases of a deck, solved by the built-in solver.
+/// Solves the static subcases of a deck with the built-in solver.
 ///
 /// # Errors
-/// Every fault of the deck; what stops the solver.
+/// Returns every fault of the deck, or the fault that stops the solver.
 pub fn solve_deck(
     path: &Path,
     options: SolveOptions,

@@ -29,7 +29,7 @@ pub struct Strains {
     /// The deck as given.
     #[serde(skip)]
     pub given: String,
-    /// Its model.
+    /// Model of the deck.
     #[serde(skip)]
     pub model: Model,
     /// The strain.
@@ -51,10 +51,10 @@ impl Answer for Strains {
     }
 }
 
-/// Shell and bar strain of every static subcase, for `strains.csv`.
+/// Reads shell and bar strain of every static subcase, in element and basic frame. `strains.csv` contains the rows.
 ///
 /// # Errors
-/// Files that can't be read, or that are no deck and results.
+/// Returns files that can't be read, or that are not a deck and its results.
 pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome<Strains>, Faults> {
     let mut work = Work::new(cx);
     let given = deck.display().to_string();
@@ -110,7 +110,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
             Severity::Info,
             "normal-strain-unknown",
             format!("properties {}", few(&ids)),
-            "their material does not give the strain along the thickness: the basic-frame tensor holds the part in the surface alone",
+            "the strain along their thickness is unknown: the basic-frame tensor contains only the part in the surface",
             "",
         ));
     }
@@ -121,7 +121,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
             Severity::Warning,
             "no-strain-rows",
             given.as_str(),
-            "the results hold neither strain nor stress of shells, bars or beams in a static subcase",
+            "the results contain neither strain nor stress of shells, bars or beams in a static subcase",
             "ask for STRAIN(FIBER) = ALL in every subcase, or let `solve` on the deck compute it",
         ));
     }

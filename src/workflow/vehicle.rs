@@ -177,7 +177,7 @@ fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
             "channel-misspelt",
             file,
             format!("did you mean {}? What has another name is taken as not measured", pairs.join(", ")),
-            "Name the columns after the model's channels, or say with `columns` of [vehicle] which is which.",
+            "Name the columns after the model's channels, or assign the columns with `columns` of [vehicle].",
         )
     })
 }
@@ -312,7 +312,7 @@ fn read_record(
                     &*named.given,
                     1,
                     channel.name.clone(),
-                    format!("`{}` is no unit of {}", channel.unit, kind.word()),
+                    format!("`{}` is not a unit of {}", channel.unit, kind.word()),
                     "write m/s2, mm/s2, g, N, kN or another unit that the job may use",
                 )
             })),

@@ -65,10 +65,10 @@ pub struct Made {
     pub records: Vec<String>,
 }
 
-/// How a result folder was made, by its `result.json`.
+/// Reads from `result.json` which command made a result folder, and from which inputs.
 ///
 /// # Errors
-/// A fault where there is none, or it is none of ours.
+/// Returns a fault if the folder has no `result.json` of strainbridge.
 pub fn made(folder: &Path) -> Result<Made, Fault> {
     let file = folder.join("result.json");
     let name = file.display().to_string();
@@ -115,13 +115,13 @@ fn records_of_fleet(result: &Value) -> Vec<String> {
     paths.collect::<BTreeSet<_>>().into_iter().collect()
 }
 
-/// A result folder against what its inputs give now.
+/// Compares a result folder with the results that its inputs give now.
 ///
-/// `again` makes the same answer anew from what the folder says of itself and from the job or deck that it was made from, and returns the folder
-/// where it wrote it. Whoever calls says how: the command starts a process of its own, in which nothing that this one holds can colour the answer.
+/// `again` computes the answer again from the command that the folder states and from its job or deck. It returns the folder with the new
+/// files. The caller decides how: the command line starts a separate process, which shares no state with this one.
 ///
 /// # Errors
-/// Folders that can't be read, a job or deck that isn't found, and what `again` returns.
+/// Returns folders that can't be read, a missing job or deck, or the faults of `again`.
 pub fn verify(
     folder: &Path,
     again: impl FnOnce(&Made, &Path) -> Result<PathBuf, Faults>,
@@ -137,10 +137,10 @@ pub fn verify(
     Ok(work.finish(StatedUnits::default(), found))
 }
 
-/// The job or deck that a folder was made from: as it was given, else beside a folder of the default name.
+/// Returns the job or deck of a result folder: the stated path, else the path next to a folder of the default name.
 ///
 /// # Errors
-/// A fault where it stands in neither place.
+/// Returns a fault if the file is in neither place.
 pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
     let given = made.inputs.first().map(|i| PathBuf::from(&i.path));
     let beside = |p: &PathBuf| Some(folder.parent()?.join(p.file_name()?));

@@ -246,7 +246,7 @@ fn days_that_are_not_there_and_shares_that_are_not_one_are_faults() {
         (
             kind("a", 0.5, "1") + &kind("a", 0.5, "2"),
             2,
-            "stands twice",
+            "occurs twice",
         ),
         ("target = { \"C.FZ\" = 1.0 }\n".to_owned(), 2, "C.FZ"),
         ("target = { \"A.FZ\" = 0.0 }\n".to_owned(), 2, "above 0"),
@@ -611,7 +611,7 @@ fn a_fault_of_a_kind_stands_at_its_line_whatever_is_wrong_with_those_before() {
     let (code, said) = fleet(&dir, &["T1_1.csv"], &[]);
     assert_eq!(code, 2, "{said}");
     let faults = said["faults"].as_array().unwrap();
-    let twice = |f: &&Value| f["wrong"].to_string().contains("stands twice");
+    let twice = |f: &&Value| f["wrong"].to_string().contains("occurs twice");
     let line = JOB.lines().count() + 3 + 4 + 1;
     assert_eq!(faults.iter().find(twice).unwrap()["line"], line, "{said}");
 }

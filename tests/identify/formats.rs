@@ -139,9 +139,9 @@ fn units_of_channels_that_are_not_used_do_not_matter_and_those_of_used_ones_do()
     let (code, _, said) = identify(&dir, "other.csv", with("temperature [degC]").as_bytes());
     assert_eq!(code, Some(0), "{said}");
     for (wrong, expected) in [
-        ("a_body [N]", "`N` is no unit of acceleration"),
-        ("a_body [degC]", "`degC` is no unit of acceleration"),
-        ("f_wheel [m/s2]", "`m/s2` is no unit of force"),
+        ("a_body [N]", "`N` is not a unit of acceleration"),
+        ("a_body [degC]", "`degC` is not a unit of acceleration"),
+        ("f_wheel [m/s2]", "`m/s2` is not a unit of force"),
     ] {
         let name = wrong.split(' ').next().unwrap();
         let right = head.split(',').find(|h| h.starts_with(name)).unwrap();

@@ -103,7 +103,7 @@ fn combinations_that_state_no_sum_are_refused_by_line() {
         (
             format!("{two}SUBCOM 3\nLOAD = 1\nSUBSEQ = 1.,1.\n"),
             8,
-            "no LOAD of its own",
+            "can't have a LOAD",
         ),
         (
             "SPC = 1\nSUBCASE 1\nLOAD = 1\nSUBCASE 2\nSUBCOM 3\nSUBSEQ = 1.,1.\n".to_owned(),

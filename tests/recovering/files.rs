@@ -72,7 +72,7 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
     let (code, said, _) = reconcile("held-without-zero", &all[..2], &none);
     assert_eq!(code, Some(2), "{said}");
     assert!(
-        said.contains("`held.csv` has none of these runs: add to it a run without load"),
+        said.contains("`held.csv` has none of these runs: add a run without load"),
         "{said}"
     );
     let unknown = with_own_zero(9, 12, -700.0, ["Z3", "other"]);
@@ -179,7 +179,7 @@ fn units_of_run_tables_are_read_as_those_of_records() {
         let (code, said, _, _) = recover("units-volts", &in_units(volts, below), "");
         assert_eq!(code, 2, "{said}");
         assert!(
-            said.contains("G2") && said.contains("`mV/V` is no unit of strain"),
+            said.contains("G2") && said.contains("`mV/V` is not a unit of strain"),
             "{said}"
         );
     }

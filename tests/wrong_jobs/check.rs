@@ -182,7 +182,7 @@ fn of_a_record_check_says_what_recover_says() {
     let of_s: [(Damage, Ends); 4] = [
         (
             ("a word in S", &|t| with_field(t, 1, "abc")),
-            Ends::Fault("`abc` is no number"),
+            Ends::Fault("`abc` is not a number"),
         ),
         (
             ("a gauge twice", &twice),
@@ -306,7 +306,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
         (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),
         (
             ("a word", &|t| with_field(t, 2, "abc")),
-            Ends::Fault("`abc` is no number"),
+            Ends::Fault("`abc` is not a number"),
         ),
         (
             ("no load", &|t| t.replacen("R.FZ", "X.FZ", 1).into_bytes()),
@@ -318,7 +318,7 @@ fn of_runs_check_says_what_respond_and_reconcile_say() {
         (("nothing", &|t| t.as_bytes().to_vec()), Ends::Right),
         (
             ("a word", &|t| with_field(t, 1, "abc")),
-            Ends::Fault("`abc` is no number"),
+            Ends::Fault("`abc` is not a number"),
         ),
         (
             ("a gauge less", &|t| lines(t, 12)),
@@ -357,7 +357,7 @@ fn a_point_away_from_the_element_beside_it_is_an_error_that_names_gauge_and_dist
         let (code, said) = ask(command, &job);
         assert_eq!(code, 1, "{command}: {said}");
         // From the edge of the element, within 125 mm of its middle, to the point.
-        let at = said.find("lies 111").unwrap_or_else(|| panic!("{said}"));
+        let at = said.find("is 111").unwrap_or_else(|| panic!("{said}"));
         assert!(
             said[..at].contains("gauges.csv:2") && said.contains("`P01`"),
             "{said}"

@@ -131,7 +131,7 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
         );
     }
     for (key, wrong) in [
-        ("zero", "about their mean"),
+        ("zero", "differences from their mean"),
         ("hold_out", "nothing would be held out"),
     ] {
         let dir = copied(&format!("own_{key}"), "frame");

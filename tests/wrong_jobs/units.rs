@@ -70,7 +70,7 @@ const SAYS: [(&str, &[&str]); 9] = [
         "readings-below-noise",
         &[
             "state readings in microstrain",
-            "State the unit beside the channel's name",
+            "State the unit after the name of the channel",
         ],
     ),
     ("reading-beyond-gauges", &["state readings in microstrain"]),

@@ -16,9 +16,9 @@ use crate::place::Place;
 pub struct OtherCard {
     /// Upper case, without `*`.
     pub name: String,
-    /// Its first field where that is an integer from 0: the id of an element or a set.
+    /// First field where that is an integer from 0: the id of an element or a set.
     pub first: Option<u32>,
-    /// Its first line.
+    /// First line of the card.
     pub at: Place,
     /// Bytes of its first line to the end of its last, comments between included.
     pub(super) start: usize,

@@ -23,7 +23,7 @@ pub struct Fault {
 pub struct FieldName {
     /// As the quick reference guides count: 2 to 9 on the first line, 12 to 19 on the second ..
     pub number: u32,
-    /// Its name in the guides.
+    /// Name in the guides.
     pub name: &'static str,
 }
 
@@ -197,7 +197,7 @@ impl Wrong {
                 format!("the card has no such field, found: {found}")
             }
             Self::NoContinuation { label } => {
-                format!("the card asks for a continuation that no line has: {label}")
+                format!("the card names a continuation that no line has: {label}")
             }
             Self::NotACard { found } if found.is_empty() => {
                 "the line is neither a card nor a continuation".to_owned()
@@ -236,7 +236,7 @@ impl Wrong {
                 "the deck ends within a line and without ENDDATA: it is cut".to_owned()
             }
             Self::NotADeck => {
-                "no Nastran deck: no card of bulk data and no section stands in it".to_owned()
+                "not a Nastran deck: it contains no bulk data card and no section".to_owned()
             }
             Self::Statement { found, why } => format!("{why}: {found}"),
             Self::UnknownName { near, cards } => {
@@ -275,7 +275,7 @@ impl Wrong {
                 "put the continuation below its card, or give both the same name in columns 73-80 and 1-8"
             }
             Self::Ambiguous { .. } => {
-                "give each continuation a name of its own, or put it directly below its card"
+                "give each continuation a separate name, or put it directly below its card"
             }
             Self::Replication { .. } => {
                 "write the card out, or put the card that is to be repeated above"

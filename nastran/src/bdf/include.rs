@@ -16,9 +16,9 @@ pub struct IncludeRequest {
 /// A file as the loader found it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Loaded {
-    /// Its path; the same file must always get the same path.
+    /// Path; the same file must always get the same path.
     pub path: String,
-    /// Its bytes.
+    /// Bytes of the file.
     pub bytes: Vec<u8>,
     /// Path of another file that the name may stand for, where its contents differ.
     pub differing_path: Option<String>,

@@ -3,7 +3,7 @@
 /// A line without its ending.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line<'a> {
-    /// Its bytes, without the line ending.
+    /// Bytes, without the line ending.
     pub text: &'a [u8],
     /// Offset of its first byte.
     pub start: usize,

@@ -72,15 +72,15 @@ fn increased(above: &[u8], increment: &[u8], step: &[u8]) -> Result<Vec<u8>, Wro
     let inner = increment
         .strip_prefix(b"(")
         .map_or(increment, |r| r.strip_suffix(b")").unwrap_or(r));
-    let by =
-        read_number(super::line::trim(inner)).ok_or_else(|| wrong("the increment is no number"))?;
+    let by = read_number(super::line::trim(inner))
+        .ok_or_else(|| wrong("the increment is not a number"))?;
     let from = if above.is_empty() {
         Some(zero_like(by))
     } else {
         read_number(above)
     };
     match (
-        from.ok_or_else(|| wrong("the field above is no number"))?,
+        from.ok_or_else(|| wrong("the field above is not a number"))?,
         by,
     ) {
         (Number::Integer(a), Number::Integer(b)) => Ok(a

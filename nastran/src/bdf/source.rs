@@ -7,7 +7,7 @@ use crate::place::Place;
 pub struct Source {
     /// As the loader names it.
     pub path: String,
-    /// Its bytes, unchanged.
+    /// Bytes of the file, unchanged.
     pub bytes: Vec<u8>,
 }
 

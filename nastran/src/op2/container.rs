@@ -35,7 +35,7 @@ pub struct TableEntry {
     pub kind: TableKind,
     /// Byte where it starts.
     pub offset: usize,
-    /// Its records after the sub-table name.
+    /// Records after the sub-table name.
     pub(super) records: std::ops::Range<usize>,
 }
 

@@ -24,7 +24,7 @@ pub enum PunchError {
     /// The block is complex, SORT2 or of a type that is not decoded.
     #[error("block `{block}` is not decoded: {why}")]
     NotDecoded {
-        /// Its table and element type.
+        /// Table and element type.
         block: String,
         /// The reason.
         why: String,

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 /// The model, as in models/truck-shell.
 pub(super) const DECK: &str = include_str!("../../../models/truck-shell/truck.bdf");
-/// Its name in the story's folder.
+/// Name in the story's folder.
 pub(in crate::cli) const DECK_NAME: &str = "truck.bdf";
 
 /// One chapter: its folder and what happened.

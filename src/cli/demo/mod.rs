@@ -49,7 +49,7 @@ pub(super) const FOLDER: &str = "strainbridge-demo";
 /// What was hidden in the story, what of it was found, and what that is worth.
 #[derive(Serialize)]
 pub struct Story {
-    /// Its chapters.
+    /// Chapters of the story.
     steps: Vec<StepTold>,
     /// Effects that `reconcile` named.
     named: Vec<String>,

@@ -27,7 +27,7 @@ pub fn check_coordinates(model: &Model, name: &str, geometry: &Model) -> Vec<Fin
         return Vec::new();
     }
     let message = format!(
-        "{count} grids stand elsewhere in the results than in the deck; grid {} by {:.3e}",
+        "{count} grids have other coordinates in the results than in the deck; grid {} differs by {:.3e}",
         worst.1, worst.0
     );
     let remedy = "give the deck of this run, or run the deck again";

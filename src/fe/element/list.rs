@@ -27,7 +27,7 @@ impl Prepared<'_> {
         }
     }
 
-    /// Its stiffness.
+    /// Returns the stiffness.
     ///
     /// # Errors
     /// A shape or property that makes no element.

@@ -9,18 +9,18 @@ const KEPT: usize = 64;
 /// Their bytes.
 const MOST_BYTES: u64 = 4 << 30;
 
-/// A folder of the file system: `<key>.solution`, a few at most.
+/// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest ones above a fixed number and size.
 #[derive(Clone, Debug)]
 pub struct Folder(PathBuf);
 
 impl Folder {
-    /// Solutions in this folder, which is made when the first is kept.
+    /// Uses this folder. It is created when the first solution is stored.
     pub fn at(folder: impl Into<PathBuf>) -> Self {
         Self(folder.into())
     }
 
-    /// Solutions in the user's folder for caches: `STRAINBRIDGE_CACHE`, else `strainbridge` in `XDG_CACHE_HOME`, in the system's place for
-    /// caches, or in that for temporary files.
+    /// Uses the folder `STRAINBRIDGE_CACHE`. Without this variable it is `strainbridge` in `XDG_CACHE_HOME`, in the cache folder of the
+    /// system, or in the folder for temporary files.
     pub fn of_user() -> Self {
         let at = |name: &str| {
             let path = PathBuf::from(std::env::var_os(name)?);
@@ -38,21 +38,21 @@ impl Folder {
         Self(base.unwrap_or_else(std::env::temp_dir).join("strainbridge"))
     }
 
-    /// The folder.
+    /// Returns the path of the folder.
     pub fn path(&self) -> &Path {
         &self.0
     }
 
-    /// Returns how many solutions are kept in the folder, and their bytes.
+    /// Returns the number of stored solutions and their bytes.
     pub fn size(&self) -> (usize, u64) {
         let kept = self.kept();
         (kept.len(), kept.iter().map(|k| k.1).sum())
     }
 
-    /// Removes every kept solution of the folder, and the folder where that leaves it empty: how many, and their bytes.
+    /// Removes every stored solution, and the folder if it is empty then. Returns their number and bytes.
     ///
     /// # Errors
-    /// The first that can't be removed.
+    /// Returns the error of the first file that can't be removed.
     pub fn clean(&self) -> std::io::Result<(usize, u64)> {
         half_written::remove_stale(&self.0);
         let (mut n, mut bytes) = (0, 0);
@@ -112,7 +112,7 @@ impl SolutionStore for Folder {
                 Ok(Some(bytes))
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(e) => Err(format!("the kept solution can't be read ({e})")),
+            Err(e) => Err(format!("the stored solution can't be read ({e})")),
         }
     }
 

@@ -2,7 +2,7 @@
 
 use sha2::{Digest, Sha256};
 
-/// What a solution is kept under.
+/// Key of a stored solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Key(pub(super) [u8; 32]);
 
@@ -12,7 +12,7 @@ impl Key {
         Self(Sha256::digest(identity.as_bytes()).into())
     }
 
-    /// Its first half, hexadecimal: the name of a file.
+    /// Returns the first half of the key in hexadecimal digits: the name of a file.
     pub fn name(&self) -> String {
         self.0[..16].iter().map(|b| format!("{b:02x}")).collect()
     }

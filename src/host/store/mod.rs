@@ -17,7 +17,7 @@ use crate::fe::Solved;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Where solutions are kept, as bytes under a key. A store is a handle: its clones share what they keep.
+/// Store of solutions, as bytes under a key. A store is a handle: its clones share the stored solutions.
 pub trait SolutionStore: Send + Sync {
     /// The bytes kept under a key; `None` where there are none.
     ///
@@ -47,7 +47,7 @@ pub(crate) fn read_solution(
     };
     solution_file::decode(&bytes, key, grids, cases)
         .map(Some)
-        .ok_or_else(|| "the kept solution is damaged".to_owned())
+        .ok_or_else(|| "the stored solution is damaged".to_owned())
 }
 
 /// Keeps a solution.

@@ -36,7 +36,7 @@ pub(super) fn combinations(c: &mut Collector, raw: &[Spanned<RawCombination>]) -
             continue;
         };
         if out.iter().any(|o| o.name == name) {
-            let wrong = format!("combination `{name}` stands twice");
+            let wrong = format!("combination `{name}` occurs twice");
             let remedy = "give every combination its own name";
             c.fault(section, "combination.name", wrong, remedy);
         }

@@ -47,7 +47,7 @@ pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Optio
         c.fault(
             slope,
             "fleet.slope_below_knee",
-            "there is no `knee_range` below which it would hold",
+            "it applies below `knee_range`, and the job has no `knee_range`",
             "add `knee_range`, or leave it out",
         );
     }
@@ -117,7 +117,7 @@ fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
     for section in &raw.mission {
         let Some(k) = kind(c, section) else { continue };
         if !names.insert(k.name.clone()) {
-            let wrong = format!("`{}` stands twice", k.name);
+            let wrong = format!("`{}` occurs twice", k.name);
             let remedy = "give every kind of days its own name";
             c.fault(section, "fleet.mission.name", wrong, remedy);
         }

@@ -322,7 +322,7 @@ pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
     if matches!(g.place, StatedPlace::Position(..)) && g.pair.is_some() && !on_element {
         fault(
             "element2",
-            "stands beside a position",
+            "the gauge states a position",
             "give `element` for the first pair too",
         );
     }

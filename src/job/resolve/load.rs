@@ -42,7 +42,7 @@ fn support(c: &mut Collector, raw: &S<NumberOrWord>) -> SupportChoice {
             return SupportChoice::Set(*n as u32);
         }
         NumberOrWord::Number(n) => {
-            let wrong = format!("`{n}` is no id of an SPC set");
+            let wrong = format!("`{n}` is not an id of an SPC set");
             c.fault(at, "model.support", wrong, SUPPORT_REMEDY);
         }
         NumberOrWord::Word(w) => {
@@ -73,7 +73,7 @@ pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>], behind: Behind)
         };
         if let Some(first) = out.iter().find(|l| l.name == load.name) {
             let wrong = format!(
-                "load `{}` stands twice, first on line {}",
+                "load `{}` occurs twice, first on line {}",
                 load.name, first.line
             );
             c.fault(section, "load.name", wrong, "give every load its own name");
@@ -162,7 +162,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
             c.fault(
                 set,
                 "load.load_set",
-                "stands beside `grid`",
+                "the load states `grid` as well",
                 "keep one of them",
             );
             None
@@ -187,7 +187,7 @@ pub(super) fn check_results(c: &mut Collector, model: Option<&ModelFiles>, loads
         let Some(result) = &load.result else { continue };
         if !model.results.iter().any(|r| r.given == result.given) {
             let names: Vec<&str> = model.results.iter().map(|r| r.given.as_str()).collect();
-            let wrong = format!("`{}` is none of `model.results`", result.given);
+            let wrong = format!("`{}` is not one of `model.results`", result.given);
             let remedy = if names.is_empty() {
                 "add it to `model.results`".into()
             } else {

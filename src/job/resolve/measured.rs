@@ -72,7 +72,7 @@ pub(super) fn measured(
     let own = |other: &NamedFile| other.given == strain.given;
     let zero = c.named(&raw.zero, "measured.zero");
     if let (Some(at), Some(_)) = (&raw.zero, zero.as_ref().filter(|z| own(z))) {
-        let wrong = "this is the strain file itself: its loads would be those about their mean";
+        let wrong = "this is the strain file itself: loads would be differences from their mean";
         let remedy = "name a file measured without load, or leave it out";
         c.fault(at, "measured.zero", wrong, remedy);
     }
@@ -143,8 +143,8 @@ pub(super) fn runs(
         c.fault(
             ground,
             "runs.ground",
-            "measured wheel forces hold what the ground does",
-            "write `wheel_forces = \"flat_ground_model\"` beside it, or leave it out",
+            "measured wheel forces already contain the effect of the ground",
+            "write `wheel_forces = \"flat_ground_model\"` as well, or leave it out",
         );
     }
     Some(Runs {
@@ -177,7 +177,12 @@ fn region(c: &mut Collector, raw: &S<Vec<[f64; 2]>>, key: &str) -> Option<Region
         return None;
     }
     if axes.iter().any(|[a, b]| !(a <= b)) {
-        c.fault(value, key, "a range runs downward", "write low before high");
+        c.fault(
+            value,
+            key,
+            "a range begins above its end",
+            "write low before high",
+        );
         return None;
     }
     Some(axes.clone())

@@ -38,7 +38,7 @@ pub(super) fn units(
         match find_unit(quantity, name.value()) {
             Some(u) => *to = u,
             None => {
-                let wrong = format!("`{}` is no unit of {}", name.value(), quantity.word());
+                let wrong = format!("`{}` is not a unit of {}", name.value(), quantity.word());
                 c.fault(
                     name,
                     &key,

@@ -27,7 +27,7 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
                 g,
                 &key("gain"),
                 "a gain of 0 leaves nothing to divide by".to_owned(),
-                "write reading over truth, such as 1.05, or -1 for a turned sign",
+                "write reading over truth, such as 1.05, or -1 for a reversed sign",
             );
             1.0
         }
@@ -92,7 +92,7 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
         c.fault(
             b,
             "vehicle.band_hz",
-            format!("[{low}, {high}] is no band"),
+            format!("[{low}, {high}] is not a band"),
             "write [low, high] in Hz, such as [0.7, 20.0]",
         );
         None
@@ -204,7 +204,7 @@ fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
         c.fault(
             section,
             &format!("vehicle.known.{name}"),
-            format!("`{v:e}` is no mass, stiffness or damping of a vehicle"),
+            format!("`{v:e}` is not a mass, stiffness or damping of a vehicle"),
             "correct the number; it counts in the units of the job",
         );
     }
@@ -213,7 +213,7 @@ fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
         let none = |v: f64, open: f64| v.is_nan() || v != open && v.abs() > LARGEST_KNOWN;
         let wrong = if none(*low, f64::NEG_INFINITY) || none(*high, f64::INFINITY) {
             format!(
-                "[{low:e}, {high:e}] are no limits of a mass, stiffness or damping of a vehicle"
+                "[{low:e}, {high:e}] are not limits of a mass, stiffness or damping of a vehicle"
             )
         } else if low >= high {
             format!("[{low}, {high}] leaves nothing between its limits")
@@ -224,7 +224,7 @@ fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
             section,
             &format!("vehicle.bounds.{name}"),
             wrong,
-            "write [low, high] in the units of the job, such as [0.0, 1e6]; `inf` where there is no limit; what is known exactly stands in `known`",
+            "write [low, high] in the units of the job, such as [0.0, 1e6]; `inf` if there is no limit; put exactly known values in `known`",
         );
     }
     let far = |x: &f64| !(x.abs() <= LARGEST_KNOWN);
@@ -232,7 +232,7 @@ fn numbers(c: &mut Collector, section: &Spanned<RawVehicle>) {
         c.fault(
             section,
             &format!("vehicle.places.{place}"),
-            "no place on a vehicle",
+            "this place is not on a vehicle",
             "write [x, y] in the job's unit of length",
         );
     }
@@ -334,7 +334,7 @@ fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedE
             c.fault(
                 entry,
                 "reconcile.effect",
-                "neither a `signature` nor one whole `edit`",
+                "neither a `signature` nor one complete `edit`",
                 "give signature = \"change.csv\", edit = { property = 14, thickness_scale = 0.9 } or edit = { cbush = 77, stiffness_scale = 0.5 }",
             );
             return None;

@@ -8,7 +8,7 @@ use crate::job::shapes::PropertyIds;
 pub struct Ballast {
     /// How many masses; default 1.
     pub masses: usize,
-    /// Where they may sit.
+    /// Region in which the masses may be.
     pub region: Option<Region>,
     /// Properties whose grids may carry them; `None`: all shells (bars where there are none).
     pub properties: Option<PropertyIds>,

@@ -8,13 +8,13 @@ pub struct StrainCorrection {
     pub gauge: String,
     /// 1, or -1 where it is wired backwards.
     pub sign: f64,
-    /// What it reads of the strain.
+    /// Reading divided by strain.
     pub gain: f64,
-    /// What it reads without strain, microstrain.
+    /// Reading without strain, microstrain.
     pub offset_microstrain: f64,
     /// The channel with which it is exchanged.
     pub exchanged_with: Option<String>,
-    /// What the gauge is turned by, degrees, beyond its stated angle.
+    /// Rotation of the gauge from its stated angle, degrees.
     pub angle_deg: Option<f64>,
     /// The channel is taken for silent.
     pub ignore: bool,

@@ -11,6 +11,6 @@ pub struct Dynamic {
     pub frequency_uncertainty_rel: f64,
     /// One standard deviation of the damping, share of it.
     pub damping_uncertainty_rel: f64,
-    /// Where the section stands.
+    /// Line of the section in the job.
     pub line: u32,
 }

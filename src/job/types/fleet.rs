@@ -48,9 +48,9 @@ pub struct TargetDamage {
 /// A kind of days.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MissionKind {
-    /// Its name.
+    /// Name of the kind of days.
     pub name: String,
-    /// Its share of the hours.
+    /// Share of the hours.
     pub share: f64,
     /// Names of its days, `*` for any text; none: every day.
     pub days: Vec<String>,

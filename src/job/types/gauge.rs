@@ -30,7 +30,7 @@ pub enum StatedPlace {
 pub struct JobGauge {
     /// Name: the column of the strain file.
     pub name: String,
-    /// Where it sits.
+    /// Stated place of the gauge.
     pub place: StatedPlace,
     /// Location in job units as the table states it beside the element, where it does: for drawings, and held against the element.
     pub position: Option<[f64; 3]>,

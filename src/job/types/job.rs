@@ -32,7 +32,7 @@ use std::path::PathBuf;
 pub struct Job {
     /// The job file as given on the command line.
     pub file: String,
-    /// Its folder: what paths in it are relative to.
+    /// Folder of the job: paths in the job are relative to it.
     pub folder: PathBuf,
     /// The files it was read from: itself, then tables read with it.
     pub read: Vec<FileRead>,

@@ -20,7 +20,7 @@ impl Component {
     /// All, in dof order.
     pub const ALL: [Component; 6] = [Self::FX, Self::FY, Self::FZ, Self::MX, Self::MY, Self::MZ];
 
-    /// As in a job.
+    /// Returns the name in a job.
     pub fn name(self) -> &'static str {
         ["FX", "FY", "FZ", "MX", "MY", "MZ"][self as usize]
     }
@@ -83,7 +83,7 @@ pub enum LoadRole {
 pub struct JobLoad {
     /// Name.
     pub name: String,
-    /// What acts.
+    /// Load as the job states it.
     pub acts: LoadActs,
     /// The load in its subcase, job units, signed; not zero.
     pub applied: f64,
@@ -91,7 +91,7 @@ pub struct JobLoad {
     pub result: Option<NamedFile>,
     /// Subcase, where the job says; else its number in job order.
     pub subcase: Option<u32>,
-    /// Its number in job order, from 1: the subcase that `cases` gives it.
+    /// Number in job order, from 1: the subcase of the load in the deck that `cases` writes.
     pub number: u32,
     /// Wanted or nuisance.
     pub role: LoadRole,

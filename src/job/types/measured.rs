@@ -13,7 +13,7 @@ pub enum Reference {
     Subcase(u32),
 }
 
-/// What is kept from fitting.
+/// Data that no fit uses.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HoldOut {
     /// Nothing.
@@ -29,7 +29,7 @@ pub enum HoldOut {
 pub struct Measured {
     /// Strain file.
     pub strain: NamedFile,
-    /// Its mean is subtracted.
+    /// Record or runs whose mean is subtracted.
     pub zero: Option<NamedFile>,
     /// Runs of the strain file at which no load acts: the zero is followed through them.
     pub zero_runs: Vec<String>,

@@ -10,7 +10,7 @@ pub struct ModelFiles {
     pub deck: NamedFile,
     /// Result files; empty: the built-in solver computes them.
     pub results: Vec<NamedFile>,
-    /// What holds the structure.
+    /// Support of the structure.
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,

@@ -14,7 +14,7 @@ pub struct Payload {
     pub gravity_m_s2: f64,
     /// The payload's weight acts in the analyst's model.
     pub weight_in_model: bool,
-    /// Where it may be.
+    /// Region in which the payload may be.
     pub region: Option<Region>,
     /// Use strain; default both where present.
     pub use_strain: bool,

@@ -33,7 +33,7 @@ pub enum Optimality {
 }
 
 impl Optimality {
-    /// As in a job.
+    /// Returns the name in a job.
     pub fn name(self) -> &'static str {
         match self {
             Self::D => "D",
@@ -79,7 +79,7 @@ pub struct Placement {
     pub symmetric: Option<usize>,
     /// Cost of a wiring's name (`quarter`, .., `rosette`) in channels; default 1, a rosette 3.
     pub costs: Vec<(String, f64)>,
-    /// What a layout may cost; default: `gauges`.
+    /// Largest cost of a layout; default: `gauges`.
     pub budget: Option<f64>,
     /// Numbers of gauges for the curve; empty: none is drawn.
     pub curve: Vec<usize>,

@@ -44,9 +44,9 @@ pub struct Reconcile {
 /// `[[reconcile.effect]]`: a hypothesis of the user's own.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DescribedEffect {
-    /// Its id in results.
+    /// Id of the effect in results.
     pub id: String,
-    /// What it does at size one.
+    /// Change of the model at size one.
     pub source: EffectSource,
     /// One standard deviation of its size before a run is seen.
     pub prior: f64,
@@ -54,7 +54,7 @@ pub struct DescribedEffect {
     pub line: u32,
 }
 
-/// What a described effect does at size one.
+/// Change of the model by a described effect of size one.
 #[derive(Clone, Debug, PartialEq)]
 pub enum EffectSource {
     /// A table: the change of S, a row a gauge, a column a load.

@@ -1,6 +1,6 @@
 //! `[recover]`.
 
-/// What `recover` writes beside `loads.csv`.
+/// File that `recover` writes in addition to `loads.csv`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LoadFile {
     /// `loads.rsp`: the history in RPC III.

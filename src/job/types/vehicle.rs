@@ -46,7 +46,7 @@ pub struct Vehicle {
     pub line: u32,
 }
 
-/// What is known to be wrong with a channel of the records, one of each kind; [`crate::vehicle::adjustment::Adjustment`] joins several.
+/// Known faults of a channel of the records, one of each kind; [`crate::vehicle::adjustment::Adjustment`] combines several.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelCorrection {
     /// Reading over truth.

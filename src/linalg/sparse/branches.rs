@@ -14,7 +14,7 @@ const TASKS: usize = 16;
 /// A supernode with all that is below it.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Branch {
-    /// Its supernodes.
+    /// Supernodes of the branch.
     pub(super) supernodes: Range<usize>,
     /// Their groups.
     pub(super) groups: Range<usize>,

@@ -64,7 +64,7 @@ impl Supernodes {
         self.below[s] as usize
     }
 
-    /// Its values in the factor.
+    /// Returns the values in the factor.
     pub(super) fn values(&self, s: Range<usize>) -> Range<usize> {
         self.value_start[s.start]..self.value_start[s.end]
     }

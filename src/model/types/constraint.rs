@@ -50,7 +50,7 @@ pub enum RigidKind {
 }
 
 impl RigidKind {
-    /// Its card in messages.
+    /// Returns the card in messages.
     pub fn card(&self) -> &'static str {
         match self {
             Self::Mean { .. } => "RBE3",
@@ -80,7 +80,7 @@ impl RigidKind {
         }
     }
 
-    /// Its grids, dependent or not; some may stand several times.
+    /// Returns the grids, dependent or not; some may stand several times.
     pub fn grids(&self) -> Vec<GridIx> {
         match self {
             Self::Body {
@@ -101,7 +101,7 @@ impl RigidKind {
         }
     }
 
-    /// Its dependent dofs.
+    /// Returns the dependent dofs.
     pub fn dependent(&self) -> Vec<(GridIx, Dofs)> {
         match self {
             Self::Body { dependent, .. } => dependent.clone(),

@@ -64,7 +64,7 @@ impl JointCard {
 /// An end of a joint: translation and rotation of its point as the sum over grids of `motion * (u, theta)`, all in the basic frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JointEnd {
-    /// Its point, basic frame.
+    /// Point of the joint, basic frame.
     pub x: Vec3,
     /// Grids, each once, and what each of them adds.
     pub motion: Vec<(GridIx, Matrix6<f64>)>,

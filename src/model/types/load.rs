@@ -124,7 +124,7 @@ pub enum Load {
     Enforced {
         /// Grid.
         grid: GridIx,
-        /// Its dofs.
+        /// Degrees of freedom that are moved.
         dofs: Dofs,
         /// Displacement or rotation.
         value: f64,

@@ -131,7 +131,7 @@ pub struct Material {
     pub at: Place,
 }
 
-/// Its law; matrices are stress = G strain with engineering shear.
+/// Law of a material; matrices are stress = G strain with engineering shear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum MaterialKind {

@@ -5,9 +5,9 @@ use nastran::place::Place;
 /// A card that the model does not carry.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnsupportedCard {
-    /// Its name.
+    /// Name of the unsupported card.
     pub card: String,
-    /// Its element id or set id.
+    /// Element id or set id.
     pub id: Option<u32>,
     /// Where it stands.
     pub at: Place,

@@ -3,9 +3,9 @@
 /// A sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Its number in the record.
+    /// Number of the sample in the record.
     pub at: usize,
-    /// Its value.
+    /// Value of the point.
     pub value: f64,
 }
 

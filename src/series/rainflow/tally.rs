@@ -15,7 +15,7 @@ pub const NOISE: [f64; 3] = [1.0, 2.0, 3.0];
 pub struct Extreme {
     /// The value.
     pub value: f64,
-    /// Its sample.
+    /// Sample of the extreme value.
     pub at: usize,
 }
 

@@ -229,7 +229,7 @@ fn stored(
         } else if rows == 1 && declared_hz.is_none() {
             Err(SeriesError::Line {
                 line: reader.line(0, 0, 0),
-                what: "one sample: nothing tells the time between samples".into(),
+                what: "one sample: the time between samples is unknown".into(),
                 remedy: "give two rows or more, or name the column of a single state `run`",
             })
         } else {

@@ -6,9 +6,9 @@ use crate::units::{Quantity, find_unit, microstrain_in};
 /// A channel of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Its name, without the unit.
+    /// Name, without the unit.
     pub name: String,
-    /// Its unit as the file states it; empty where it doesn't.
+    /// Unit as the file states it; empty where it doesn't.
     pub unit: String,
     /// What the file calls it.
     pub header: Header,

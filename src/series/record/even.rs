@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 /// A checked record.
 pub struct Record {
     reader: Box<dyn RecordReader>,
-    /// Its clock.
+    /// Clock of the record.
     pub clock: Clock,
     steps: Option<Steps>,
     /// First sample of each piece on even steps, and the number of samples.
@@ -78,7 +78,7 @@ impl Record {
         self.reader.left_out()
     }
 
-    /// Its columns, in file order.
+    /// Returns the columns, in file order.
     pub fn columns(&self) -> &[Column] {
         self.reader.columns()
     }

@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 /// How a record is opened.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// Its sample rate as stated elsewhere, Hz: needed where the file has no times, else held against them.
+    /// Sample rate as stated elsewhere, Hz: needed where the file has no times, else held against them.
     pub declared_hz: Option<f64>,
     /// Seconds in one stored time, for a file that states no unit of time.
     pub time_unit_s: Option<f64>,

@@ -47,7 +47,7 @@ pub struct Parquet {
 #[derive(Clone, Copy)]
 struct Part {
     group: usize,
-    /// Its first row there.
+    /// First row of the part in its group.
     from: usize,
     rows: usize,
     /// The unit that it belongs to.

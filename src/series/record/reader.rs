@@ -44,7 +44,7 @@ pub enum Times {
 /// What is asked of each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pick {
-    /// Its time, s.
+    /// Time of the row, s.
     Time,
     /// A column, as stored.
     Column(usize),
@@ -68,13 +68,13 @@ pub struct Block<'a> {
 pub struct OtherChannel {
     /// Name of its group; empty where the file states none.
     pub group: String,
-    /// Its name, without the unit.
+    /// Name, without the unit.
     pub name: String,
-    /// Its unit as the file states it; empty where it doesn't.
+    /// Unit as the file states it; empty where it doesn't.
     pub unit: String,
     /// Number of samples.
     pub samples: usize,
-    /// Its sample rate, Hz, where the file states one.
+    /// Sample rate, Hz, where the file states one.
     pub rate_hz: Option<f64>,
 }
 
@@ -83,7 +83,7 @@ pub type Sink<'a> = dyn FnMut(Block<'_>) -> ControlFlow<()> + 'a;
 
 /// A file as rows of numbers, in pieces that can be decoded by themselves and in parallel.
 pub trait RecordReader: Send + Sync {
-    /// Its columns but time, in file order.
+    /// Returns the columns but time, in file order.
     fn columns(&self) -> &[Column];
     /// Name of the group of a column; empty where the format or the file has none.
     fn group(&self, _column: usize) -> &str {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 /// A file that is read part by part, by many threads at a time.
 pub trait Parts: Send + Sync {
-    /// Its length in bytes.
+    /// Returns the length in bytes.
     fn size(&self) -> u64;
 
     /// Fills `out` with the bytes from number `from` on.
@@ -25,7 +25,7 @@ pub enum Source {
 }
 
 impl Source {
-    /// Its length in bytes.
+    /// Returns the length in bytes.
     pub fn size(&self) -> u64 {
         match self {
             Self::Memory(bytes) => (**bytes).as_ref().len() as u64,

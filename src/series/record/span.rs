@@ -27,7 +27,7 @@ pub struct Stretch {
     pub from_s: f64,
     /// Time of its last sample, s, or of the last of the piece that it begins in.
     pub to_s: f64,
-    /// Its step, s.
+    /// Step of time, s.
     pub step_s: f64,
 }
 

@@ -90,7 +90,7 @@ impl TimeColumn {
             Meaning::Instant(worth) | Meaning::Duration(worth) => Ok(worth),
             Meaning::Number(worth) => {
                 let s = seconds_in(&self.unit).ok_or_else(|| SeriesError::Broken {
-                    wrong: format!("`{}` is no unit of time", self.unit),
+                    wrong: format!("`{}` is not a unit of time", self.unit),
                     remedy: "give times in s or ms",
                 })?;
                 Ok(worth * s)

@@ -68,7 +68,7 @@ pub enum RpcError {
     Value {
         /// The key.
         key: String,
-        /// Its value, or `absent`.
+        /// Value, or `absent`.
         found: String,
         /// What it should be.
         expected: &'static str,
@@ -77,7 +77,7 @@ pub enum RpcError {
     Kind {
         /// The key.
         key: &'static str,
-        /// Its value.
+        /// Value in the header.
         found: String,
     },
 }

@@ -15,9 +15,9 @@ pub struct Target {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Its smallest value.
+    /// Smallest value of the channel.
     pub min: f64,
-    /// Its largest value.
+    /// Largest value of the channel.
     pub max: f64,
 }
 

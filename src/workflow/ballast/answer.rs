@@ -66,11 +66,11 @@ impl Answer for Ballasted {
 pub struct HungMass {
     /// Mass.
     pub mass: f64,
-    /// Its range.
+    /// 95 % interval of the mass.
     pub mass_range: [f64; 2],
     /// Place in plan.
     pub position: [f64; 2],
-    /// Its ranges.
+    /// 95 % intervals of the position.
     pub position_range: [[f64; 2]; 2],
     /// Grid of the completed deck.
     pub grid: u32,
@@ -87,7 +87,7 @@ pub struct Reaction {
     pub name: String,
     /// As measured.
     pub measured: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the reaction.
     pub sigma: f64,
     /// Of the deck as it was.
     pub before: f64,
@@ -100,11 +100,11 @@ pub struct Reaction {
 pub struct Together {
     /// Mass.
     pub mass: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the total mass.
     pub mass_sigma: f64,
     /// Place in plan.
     pub position: [f64; 2],
-    /// Its standard deviations.
+    /// Standard deviations of the common centre.
     pub position_sigma: [f64; 2],
 }
 
@@ -268,7 +268,7 @@ pub(super) fn judge(
         Severity::Info,
         "flat-floor",
         "reactions",
-        "the model stands on a flat, level, frictionless floor; its own springs decide how the wheels share the weight, tyres are rigid",
+        "the model is on a flat, level, frictionless floor; its springs determine how the wheels share the weight, and tyres are rigid",
         "",
     ));
     let (mut worst, mut name) = (0.0_f64, "");

@@ -28,10 +28,11 @@ use task::{Task, force};
 /// Noise of a measured reaction where the job states none, of the mean reaction.
 const ASSUMED_NOISE: f64 = 0.01;
 
-/// Lumped masses that bring the model's reactions to the measured ones, and the deck with them in it, read back and solved.
+/// Finds lumped masses that match the model's reactions to the measured ones. Returns them with the completed deck, which is read back and
+/// solved as a check.
 ///
 /// # Errors
-/// Every fault of the job and its deck; a region that can't hold a mass; a model that already weighs more.
+/// Returns every fault of the job and its deck, a region without a place for a mass, or a model that already weighs more.
 pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let mut work = Work::of_job(cx, job);
     let read = read_asked(&mut work, job)?;
@@ -251,7 +252,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
                     Severity::Info,
                     "reaction-noise-assumed",
                     "runs.noise.force",
-                    "the job does not say how well the reactions are measured: 1 % of their mean is taken",
+                    "the job does not state the noise of the reactions: 1 % of their mean is assumed",
                     "state [runs] noise = { force = 0.06 }",
                 )
                 .with_numbers(ASSUMED_NOISE * mean * force(job), 0.0),

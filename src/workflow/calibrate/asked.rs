@@ -16,7 +16,8 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Reads which runs `[calibration]` and the column `check` of the table select, whose runs are in column `key`; runs of the strain file are `strain`.
+    /// Reads which runs `[calibration]` and the column `check` of the table select. Column `key` of the table contains its runs; `strain`
+    /// are the runs of the strain file.
     pub fn of(
         (job, headers): (&Job, &[Column]),
         (table, key): (&Table, usize),

@@ -22,7 +22,7 @@ const UNKNOWN: f64 = 10.0;
 pub(super) struct Known {
     /// Row of the strain table.
     pub row: usize,
-    /// Its loads, job units.
+    /// Loads of the run, job units.
     pub loads: KnownLoads,
     /// Number of its group of repeats.
     pub group: usize,
@@ -227,7 +227,7 @@ fn named_twice(table: &Table, key: usize) -> FaultList {
     });
     again
         .map(|(_, row)| {
-            let wrong = format!("run `{}` stands twice", name_of(row));
+            let wrong = format!("run `{}` occurs twice", name_of(row));
             Fault::at(
                 &*table.file,
                 row.0,

@@ -33,10 +33,10 @@ use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::text_of;
 use crate::workflow::recover::listed;
 
-/// S of a job's gauges learnt from its runs of known load.
+/// Estimates S of the gauges of a job from runs with known loads. S of a model or of a table, if the job has one, is the prior.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; runs without known loads.
+/// Returns every fault of the job and of the files that it names, or runs without known loads.
 pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;

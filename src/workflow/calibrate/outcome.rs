@@ -150,7 +150,7 @@ pub struct GluedGauge {
     pub by_position: bool,
     /// As drawn.
     pub spec: GaugeSpec,
-    /// Its wiring, as a job writes it.
+    /// Wiring, as a job writes it.
     pub bridge: &'static str,
     /// Element and side of the other pair of a bridge.
     pub pair: Option<(u32, Surface)>,
@@ -196,7 +196,7 @@ pub struct ModelErrorSummary {
 /// A left-out run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LeftOutSummary {
-    /// Its name.
+    /// Name of the run.
     pub run: String,
     /// Distance from what is known, sigmas, root mean square over loads.
     pub distance: f64,
@@ -226,7 +226,7 @@ pub struct DependenceSummary {
     pub column: String,
     /// Relative change of the loads' sum per unit of the column.
     pub slope_rel: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the slope.
     pub sigma: f64,
     /// Chance of such a slope where there is none.
     pub chance: f64,

@@ -31,7 +31,7 @@ pub(super) struct Payloads {
 
 /// A load that is the weight times an arm.
 struct Made {
-    /// Its number.
+    /// Number of the load.
     load: usize,
     /// By row of the table: the arm, where an sd of the weight is stated.
     arms: Vec<Option<f64>>,

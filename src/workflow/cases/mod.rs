@@ -100,10 +100,10 @@ pub fn edited_files(
     includes::relocated(deck, write_edited(deck, edits), folder, stem)
 }
 
-/// The job's deck with one unit-load subcase a load, ready for Nastran.
+/// Makes the deck of a job with one unit-load subcase for each load, ready for Nastran. All other lines of the deck stay unchanged.
 ///
 /// # Errors
-/// Every fault of the job and its deck; entries that can't be edited.
+/// Returns every fault of the job and its deck, or entries that can't be edited.
 pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     let mut work = Work::of_job(cx, job);
     let fault = |field: &str, wrong: &str, remedy: &str| {
@@ -166,7 +166,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// Ids of all load sets.
+/// Returns the ids of all load sets.
 pub fn load_ids(deck: &Deck) -> Vec<u32> {
     let c = &deck.cards;
     let mut ids: Vec<u32> = c
@@ -200,14 +200,14 @@ const DYNAMIC: [&str; 14] = [
     "TABLED4", "TABLED5", "TLOAD1", "TLOAD2", "RANDPS",
 ];
 
-/// Ids of dynamic loads and tables of a deck.
+/// Returns the ids of dynamic loads and tables of a deck.
 pub fn dynamic_ids(deck: &Deck) -> Vec<u32> {
     let cards = deck.others.iter();
     let of_kind = cards.filter(|c| DYNAMIC.contains(&c.name.as_str()));
     of_kind.filter_map(|c| c.first).collect()
 }
 
-/// The card of a load at a grid; at a scalar point, which has one dof and no frame, an SLOAD.
+/// Returns the card of a load at a grid. At a scalar point, which has one dof and no frame, it is an SLOAD.
 pub fn load_card(model: Option<&Model>, load: &Force, component: Component) -> String {
     let point = model.and_then(|m| m.grids.get(m.grid_ix(load.grid)?.us()));
     if point.is_some_and(Grid::is_scalar) {
@@ -353,7 +353,7 @@ fn select_structure(
                 "the deck's subcases select several MPC sets: the unit loads take {}",
                 kept.first().copied().unwrap_or_default()
             ),
-            "correct MPC in unit_loads.bdf if another set holds while the gauges are read",
+            "correct MPC in unit_loads.bdf if another set applies while gauges are read",
         ));
     }
     if let Some(spc) = support.spc {

@@ -73,7 +73,7 @@ fn not_asked(job: &Job, grids: usize) -> Finding {
         "solution-not-checked",
         job.model.as_ref().map_or("model", |m| &m.deck.given),
         format!("the deck is not solved here: whether it can be, where gauges may go{readings} is not checked"),
-        "run `sensitivity` or `place` on the job: the solution is kept for the commands that follow",
+        "run `sensitivity` or `place` on the job: later commands use the stored solution",
     )
     .with_numbers(grids as f64, most_grids(job) as f64)
 }

@@ -227,7 +227,7 @@ impl DeckEntry {
         &self.path
     }
 
-    /// Its mesh.
+    /// Returns the mesh.
     pub fn model(&self) -> Option<&Model> {
         self.model.as_ref()
     }

@@ -23,10 +23,10 @@ pub use records::RecordEntry;
 pub use results::ResultEntry;
 use std::path::{Path, PathBuf};
 
-/// What is in decks, results and jobs, every fault, and whether they belong together. Faults of the files are part of the answer.
+/// Reads decks, results and jobs, lists their contents and faults, and compares them with each other. Faults of the files are part of the answer.
 ///
 /// # Errors
-/// None of the files' own.
+/// Returns an error only if the command itself fails, never for a fault of a file.
 pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<Checked>, Faults> {
     let mut work = Work::new(cx);
     let mut found = Checked::default();

@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The day whose damage an hour is 1.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReferenceAnswer {
-    /// Its vehicle.
+    /// Vehicle of the reference day.
     pub vehicle: String,
     /// The day.
     pub day: String,

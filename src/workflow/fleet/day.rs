@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 /// One load over the record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoadDay {
-    /// Its name.
+    /// Name of the load.
     pub name: String,
     /// Unit of every number of it.
     pub unit: String,
@@ -25,7 +25,7 @@ pub struct LoadDay {
 /// One gauge over the record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct GaugeDay {
-    /// Its name.
+    /// Name of the gauge.
     pub name: String,
     /// Mean reading less the job's zero, microstrain.
     #[serde(deserialize_with = "number")]
@@ -39,13 +39,13 @@ pub struct GaugeDay {
     /// What the loads leave unexplained, rms, microstrain.
     #[serde(deserialize_with = "number")]
     pub residual: f64,
-    /// Its reading over what the loads recovered from all gauges predict for it, by least squares.
+    /// Reading divided by the prediction from the loads that all gauges determine, by least squares.
     #[serde(deserialize_with = "number")]
     pub gain: f64,
     /// Mean of its reading less what the other gauges predict for it, microstrain.
     #[serde(deserialize_with = "number")]
     pub offset: f64,
-    /// Its share in its own prediction: of an error of it, `1 - leverage` stands in its residual.
+    /// Share in its own prediction: of an error of it, `1 - leverage` stands in its residual.
     #[serde(deserialize_with = "number")]
     pub leverage: f64,
     /// Samples without a reading.

@@ -19,7 +19,7 @@ const CAUSES: [&str; 3] = ["inputs-exchanged", "input-sign-reversed", "gauge-dea
 /// A gauge of a vehicle over its days.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GaugeHistory {
-    /// Its name.
+    /// Name of the gauge.
     pub name: String,
     /// Days on which it gave nothing or one value, all day or a part of it.
     pub dead_days: Vec<String>,
@@ -36,7 +36,7 @@ pub struct GaugeHistory {
     pub gain: Vec<Option<f64>>,
     /// Mean reading less what the other gauges predict, each day, microstrain.
     pub offset: Vec<Option<f64>>,
-    /// Its share in its own prediction, each day.
+    /// Share in its own prediction, each day.
     #[serde(skip)]
     pub leverage: Vec<f64>,
 }

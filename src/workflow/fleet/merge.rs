@@ -58,7 +58,7 @@ pub struct SampleOf {
 /// The record of a day.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecordOf {
-    /// Its path.
+    /// Path of the record.
     pub path: String,
     /// Digest of its bytes.
     pub sha256: String,
@@ -69,7 +69,7 @@ pub struct RecordOf {
 /// A load of a vehicle over all its days.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VehicleLoad {
-    /// Its name.
+    /// Name of the load.
     pub name: String,
     /// Unit.
     pub unit: String,
@@ -79,7 +79,7 @@ pub struct VehicleLoad {
     pub tally: Tally,
     /// Damage with its interval.
     pub damage: DamageInterval,
-    /// Its damage over that of the reference day, an hour of each.
+    /// Damage divided by the damage of the reference day, an hour of each.
     pub to_reference: Option<Ratio>,
     /// Where the largest and the smallest value stand.
     pub extremes: [Option<SampleOf>; 2],
@@ -92,9 +92,9 @@ pub struct VehicleLoad {
 /// A vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Vehicle {
-    /// Its name.
+    /// Name of the vehicle.
     pub name: String,
-    /// Its days, in order.
+    /// Days, in order.
     pub days: Vec<String>,
     /// Their records, in order.
     pub records: Vec<RecordOf>,

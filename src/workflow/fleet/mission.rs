@@ -9,9 +9,9 @@ use serde::Serialize;
 /// A load of the mission.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MissionLoad {
-    /// Its name.
+    /// Name of the load.
     pub load: String,
-    /// Its unit; damage is in its power.
+    /// Unit; damage is in its power.
     pub unit: String,
     /// Damage of the mission.
     pub damage: f64,
@@ -36,9 +36,9 @@ pub struct MissionLoad {
 /// A kind of days.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindAnswer {
-    /// Its name.
+    /// Name of the kind of days.
     pub name: String,
-    /// Its share of the hours.
+    /// Share of the hours.
     pub share: f64,
     /// Records of it.
     pub files: usize,
@@ -51,7 +51,7 @@ pub struct KindAnswer {
 pub struct MissionAnswer {
     /// That it is an extrapolation, and from what.
     pub statement: String,
-    /// Its hours.
+    /// Hours of the mission.
     pub hours: f64,
     /// Kinds of days, as the job has them.
     pub kinds: Vec<KindAnswer>,

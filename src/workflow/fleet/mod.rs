@@ -75,12 +75,12 @@ pub struct FleetSpec {
     pub digests: BTreeMap<String, String>,
 }
 
-/// Loads, cycles, damage and faults of many records, by vehicle.
+/// Recovers the loads of many records and sums cycles, damage and channel faults by vehicle.
 ///
-/// A record that can't be read is a failed file and a finding of severity error; the others are done all the same.
+/// A record that can't be read is a failed file with an error finding. All other records are processed.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; an output folder that can't be written.
+/// Returns every fault of the job and of the files that it names, or an output folder that can't be written.
 pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>, Faults> {
     let mut work = Work::of_job(cx, job);
     let Some(section) = &job.fleet else {
@@ -257,7 +257,7 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             Severity::Error,
             "fleet-result-damaged",
             path,
-            "this kept result is cut, or was changed after it was written: it counts for nothing",
+            "this stored result is cut, or was changed after it was written: it does not count",
             "run the records again into this folder, then remove it if it is still there",
         )
     }));
@@ -348,8 +348,8 @@ fn told_replaced(paths: &[String]) -> Option<Finding> {
             Severity::Info,
             "fleet-record-replaced",
             few(paths),
-            format!("{n} records hold other bytes than when they were done before under the same path: they were done anew, and count as they are now"),
-            "nothing, where they were written anew; records of another folder need paths of their own",
+            format!("{n} records changed since an earlier run and were processed again"),
+            "none is needed if they were written again; records of another folder need other paths",
         )
         .with_numbers(n as f64, 0.0)
     })

@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A load of a vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VehicleLoadAnswer {
-    /// Its name.
+    /// Name of the load.
     pub load: String,
     /// Unit of `max`, `min`; damage is in its power.
     pub unit: String,
@@ -30,13 +30,13 @@ pub struct VehicleLoadAnswer {
     pub max: Option<f64>,
     /// Day of the largest value.
     pub max_day: String,
-    /// Its record and its time there.
+    /// Record and time of the largest value.
     pub max_at: Option<SampleOf>,
     /// Smallest value.
     pub min: Option<f64>,
     /// Day of the smallest value.
     pub min_day: String,
-    /// Its record and its time there.
+    /// Record and time of the smallest value.
     pub min_at: Option<SampleOf>,
     /// Cycles; those of the residue count half.
     pub cycles: f64,
@@ -83,7 +83,7 @@ pub struct VehicleLoadAnswer {
 /// A vehicle.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct VehicleAnswer {
-    /// Its name.
+    /// Name of the vehicle.
     pub name: String,
     /// How many files count.
     pub files: usize,
@@ -434,8 +434,7 @@ fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
     let shares: Vec<String> = v.loads.iter().map(share).collect();
     let most = v.loads.iter().map(|l| l.doubtful_share).fold(0.0, f64::max);
     let message = format!(
-        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums \
-         know nothing of it",
+        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums do not include this error",
         v.doubtful_days.len(),
         v.days.len(),
         few(&shares)

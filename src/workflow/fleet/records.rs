@@ -21,7 +21,7 @@ pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
             shown,
             "--files",
             "the list names no record",
-            "write a path a line, or leave --files out to merge what is kept",
+            "write one path in each line, or leave --files out to merge the stored results",
         )),
         false => Ok(paths),
     }

@@ -90,10 +90,10 @@ impl Answer for Proposal {
     }
 }
 
-/// A commented job from a deck and its results, to stand in `folder`.
+/// Proposes a commented job in `folder` from a deck and its results. It tries whether `place` finds gauges for the proposed loads.
 ///
 /// # Errors
-/// Files that can't be read; a job that is there already; a deck without grids.
+/// Returns files that can't be read, an existing job, or a deck without grids.
 pub fn init(
     deck_path: &Path,
     results: &[PathBuf],
@@ -112,7 +112,7 @@ pub fn init(
             &*given,
             "GRID",
             "no grid in it",
-            "give a deck, or an OP2 that holds the mesh",
+            "give a deck, or an OP2 that contains the mesh",
         );
         return Err(Faults::or(deck.faults, none));
     }

@@ -16,7 +16,7 @@ const MOST_GRIDS: usize = 24;
 #[derive(Clone)]
 pub(super) struct ProposedLoad {
     pub name: String,
-    /// Its lines of the job: where it acts.
+    /// Lines of the job that state where the load acts.
     pub what: String,
     pub applied: f64,
     pub subcase: Option<u32>,

@@ -27,7 +27,7 @@ const GAUGES: &str = r#"
 file = "job.out/gauges.csv"           # as `place` wrote it; or a [[gauge]] each
 
 [measured]
-strain = "strain.csv"                 # check: a column a gauge, microstrain; a row a run (`run`) or a sample (`time`)
+strain = "strain.csv"                 # check: one column for each gauge, microstrain; one row for each run (`run`) or sample (`time`)
 # zero = "zero.csv"                   # readings without load: their mean is subtracted
 noise_microstrain = 1.0               # check: of a reading, 1 sd
 model_uncertainty_rel = 0.02          # check: of the predicted strain, 1 sd
@@ -35,7 +35,7 @@ model_uncertainty_rel = 0.02          # check: of the predicted strain, 1 sd
 
 const RUNS: &str = r#"
 [runs]
-file = "runs.csv"                     # check: `run`, a column a load (as named above), payload_mass, payload_x, payload_y
+file = "runs.csv"                     # check: `run`, one column for each load (names as above), payload_mass, payload_x, payload_y
 # columns = { "LF.FZ" = "FZ_LF_kN" }  # where the file names them otherwise
 units = { force = "kN", mass = "kg", length = "m" }
 noise = { force = 0.1 }               # check: of the scales, 1 sd
@@ -107,7 +107,7 @@ name = "front"                        # check: a column of the runs file
 name = "rear"
 
 [measured]
-strain = "strain.csv"                 # check: a column a gauge, microstrain; a row a run (`run`)
+strain = "strain.csv"                 # check: one column for each gauge, microstrain; one row for each run (`run`)
 noise_microstrain = 1.0               # check: of a reading, 1 sd
 "#;
 

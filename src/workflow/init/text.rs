@@ -228,7 +228,7 @@ impl JobPlan<'_> {
             + "# [gauges]\n\
          # file = \"job.out/gauges.csv\"\n\
          # [measured]\n\
-         # strain = \"strain.csv\"                # a column a gauge, microstrain; a row a run (`run`) or a sample (`time`)\n\
+         # strain = \"strain.csv\"                # one column for each gauge, microstrain; one row for each run (`run`) or sample (`time`)\n\
          # zero = \"zero.csv\"\n\
          # noise_microstrain = 1.0\n\
          # model_uncertainty_rel = 0.02\n"

@@ -78,7 +78,7 @@ pub struct WeighedPayload {
     pub run: String,
     /// Weight.
     pub force: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the force.
     pub force_sigma: Option<f64>,
     /// Lower end of its 95 % interval.
     pub force_low: Option<f64>,
@@ -86,11 +86,11 @@ pub struct WeighedPayload {
     pub force_high: Option<f64>,
     /// Mass.
     pub mass: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the mass.
     pub mass_sigma: Option<f64>,
     /// Place in plan.
     pub position: [Option<f64>; 2],
-    /// Its standard deviations; `None` where the place is known.
+    /// Standard deviations of the position; `None` where the place is known.
     pub position_sigma: Option<[Option<f64>; 2]>,
     /// Where it lies with 95 %; `None` where the place is known.
     pub region: Option<Ellipse>,
@@ -139,7 +139,7 @@ pub struct SingleGauge {
     pub name: String,
     /// Weight.
     pub estimate: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the estimate.
     pub sigma: Option<f64>,
     /// Whether it counts.
     pub used: bool,

@@ -25,7 +25,7 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
             short(*force)
         ),
         Refusal::OutsideRegion { sigmas } => format!(
-            "the place found lies {} standard deviations outside the region where the payload can be",
+            "the computed place is {} standard deviations outside the region where the payload can be",
             short(*sigmas)
         ),
         Refusal::OutOfBalance {
@@ -38,7 +38,7 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
             short(*wheels),
             short(*sigmas)
         ),
-        Refusal::Undetermined => "nothing that was read tells the weight".to_owned(),
+        Refusal::Undetermined => "the readings do not determine the weight".to_owned(),
     }
 }
 
@@ -90,7 +90,7 @@ fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &W
                 Severity::Error,
                 "wheel-lifts-off",
                 format!("{}: {}", r.run, task.wheels[w]),
-                "this payload at this place lifts the wheel off the floor: the structure does not stand as the model says",
+                "this payload at this place lifts the wheel off the floor: the structure is not supported as in the model",
                 "check the place of the payload, and the model's masses (`ballast`)",
             )
             .with_numbers(*t, 0.0),
@@ -110,7 +110,7 @@ fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
                 Severity::Warning,
                 "place-not-determined",
                 &r.run,
-                "the 95 % region of the place is as large as the region where the payload can be: the readings don't tell it",
+                "the 95 % region of the place is as large as the region where the payload can be: the readings do not determine it",
                 "add gauges between the axles on both rails, or wheel forces",
             )
             .with_numbers(axes[0], room),
@@ -221,7 +221,7 @@ pub(super) fn findings(
                     "payload-vague",
                     &r.run,
                     format!(
-                        "the readings don't tell a payload from none: it is {} {} at most, with 97.5 %",
+                        "the readings do not distinguish a payload from an empty structure: it is {} {} at most, with 97.5 %",
                         short(r.interval[1]),
                         task.job.report_units.force.name
                     ),

@@ -26,10 +26,10 @@ use crate::units::factor;
 use model::Parts;
 use task::Task;
 
-/// Mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
+/// Computes the mass of a payload from strain, wheel forces or both. It also computes the position if the data determine it.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; neither strain nor wheel forces to weigh by.
+/// Returns every fault of the job and of the files that it names, or a job with neither strain nor wheel forces.
 pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;

@@ -311,8 +311,7 @@ fn standing(
         Severity::Info,
         "flat-floor",
         "payload",
-        "where wheel forces are not measured the structure stands on a flat, level, frictionless floor; its own springs decide how the \
-         wheels share the payload, tyres are rigid",
+        "without measured wheel forces, the structure is assumed on a flat, level, frictionless floor; its springs determine how the wheels share the payload, and tyres are rigid",
         "",
     ));
     let (gauges, wheel_columns, payload_columns) = match prepared {

@@ -31,7 +31,7 @@ pub struct NetReading {
     pub name: String,
     /// Reading.
     pub net_microstrain: Option<f64>,
-    /// Its standard deviation.
+    /// Standard deviation of the net reading, microstrain.
     pub sigma_microstrain: Option<f64>,
     /// Their ratio.
     pub signal_to_noise: Option<f64>,
@@ -133,7 +133,7 @@ pub(super) fn runs_of(
             &*job.file,
             task.payload.line,
             "payload",
-            "a given S has no floor: without measured wheel forces the payload can't be told from them",
+            "a given S has no floor: without measured wheel forces the payload is not determined",
             "give a [model], or measured wheel forces with `use = [\"strain\", \"reactions\"]`",
         )));
     }
@@ -259,7 +259,7 @@ fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
                 Severity::Info,
                 "reaction-noise-assumed",
                 "runs.noise.force",
-                "the job does not say how well the wheel forces are measured: 1 % of the largest is taken",
+                "the job does not state the noise of the wheel forces: 1 % of the largest is assumed",
                 "state [runs] noise = { force = 0.06 }",
             ));
         }
@@ -464,7 +464,7 @@ fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String
                 Severity::Warning,
                 "gauges-too-weak",
                 few(&weak),
-                "the net reading does not stand out of the noise in any run: these gauges can say nothing of the payload",
+                "the net reading does not exceed the noise in any run: these gauges do not measure the payload",
                 "leave them out, or glue gauges where the payload strains the structure (`place`)",
             )
             .with_numbers(best, WEAK),

@@ -45,7 +45,7 @@ pub(super) struct Chosen {
     pub efficiency_bound: f64,
     pub proved: bool,
     pub nodes: usize,
-    /// Its costs, where they were counted.
+    /// Costs, where they were counted.
     pub cost: Option<f64>,
     /// The least condition number met, where that was looked for.
     pub least_condition: Option<f64>,

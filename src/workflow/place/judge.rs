@@ -299,7 +299,7 @@ pub(super) fn judge_layout(
                 Severity::Info,
                 "certificate-loose",
                 "efficiency_bound",
-                "the bound leaves room between this layout and the best possible: it is loose where gauges are few or kept apart",
+                "the bound is far above this layout. With few gauges or a wide spacing it is often too high, and the layout may be the best one",
                 "",
             )
             .with_numbers(layout.efficiency_bound, 0.9),

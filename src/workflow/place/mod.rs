@@ -33,10 +33,10 @@ use crate::strain_chain::{
 };
 use crate::workflow::recover::listed;
 
-/// Gauges for the loads of a job: chosen from its candidates with a certificate, beside the installed ones where it has some.
+/// Chooses gauges for the loads of a job from its candidates, with a certificate. If the job has installed gauges, it evaluates them as well.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; a layout that nothing fits.
+/// Returns every fault of the job and of the files that it names, or candidates that allow no layout.
 pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;

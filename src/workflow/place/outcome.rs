@@ -31,7 +31,7 @@ pub struct Placed {
     pub proved: bool,
     /// Nodes of the proof.
     pub nodes: usize,
-    /// Its costs, where they were counted.
+    /// Costs, where they were counted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cost: Option<f64>,
     /// Gauges that stay.
@@ -125,7 +125,7 @@ pub struct Candidates {
 /// A gauge that placement chose.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlacedGauge {
-    /// Its name.
+    /// Name of the gauge.
     pub name: String,
     /// Element id.
     pub element: u32,
@@ -139,7 +139,7 @@ pub struct PlacedGauge {
     pub angle_deg: f64,
     /// As the technician sees that side: on the bottom it turns the other way.
     pub angle_seen_deg: f64,
-    /// Its leverage.
+    /// Leverage of the gauge.
     pub leverage: f64,
     /// Sum of its strains under the expected loads, microstrain.
     pub expected_microstrain: f64,
@@ -189,7 +189,7 @@ pub struct StrainOfLoad {
 pub struct WorstLoss {
     /// The gauge.
     pub gauge: String,
-    /// Its leverage.
+    /// Leverage of the gauge.
     pub leverage: f64,
     /// Efficiency left without it, 0 to 1.
     pub efficiency_left: f64,
@@ -198,7 +198,7 @@ pub struct WorstLoss {
 /// A gauge kept for validation.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Reserved {
-    /// Its name.
+    /// Name of the gauge.
     pub name: String,
     /// Standard deviation of what the others predict for it, its own noise included.
     pub prediction_sd_microstrain: f64,

@@ -20,7 +20,7 @@ const ASSUMED_STRAIN: f64 = 100.0;
 pub(super) struct Kind {
     /// As wired.
     pub bridge: Bridge,
-    /// Its candidates, on all sites.
+    /// Candidates of the wiring, on all sites.
     pub candidates: Candidates,
 }
 

@@ -117,7 +117,7 @@ impl<'a> Task<'a> {
                 "gauges-assumed",
                 "placement.gauges",
                 format!(
-                    "the job does not say how many gauges: twice the number of loads are placed, {}",
+                    "the job does not state the number of gauges: twice the number of loads are placed, {}",
                     2 * k
                 ),
                 "state [placement] gauges",

@@ -54,7 +54,13 @@ pub(super) fn on_wanted(
         .map(Some)
         .map_err(|group| {
             let ids: Vec<u32> = places.chunk_by(|a, b| a.0 == b.0).map(|g| g[0].0).collect();
-            let wrong = format!("no gauge on element {} keeps the spacing from the others and tells the loads apart", ids[group]);
-            refuse(wrong, "reduce [placement] spacing, or want elements further apart")
+            let wrong = format!(
+                "no gauge on element {} keeps the spacing from the others and separates the loads",
+                ids[group]
+            );
+            refuse(
+                wrong,
+                "reduce [placement] spacing, or want elements further apart",
+            )
         })
 }

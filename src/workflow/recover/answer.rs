@@ -180,7 +180,7 @@ pub struct RunFit {
     pub run: String,
     /// Sum of squares over stated errors.
     pub chi2: f64,
-    /// Its degrees of freedom.
+    /// Degrees of freedom.
     pub degrees_of_freedom: usize,
     /// Factor on sigma of the 95 % interval.
     pub coverage_factor: f64,

@@ -49,7 +49,7 @@ pub(super) fn check_band(names: &[String], content: &[Option<f64>], up_to_hz: f6
         let message = format!(
             "its content reaches {f:.2} Hz, beyond the {up_to_hz} Hz up to which it is recovered: what is faster is not in it"
         );
-        let remedy = "raise `up_to_hz` of [dynamic], where the gauges tell the loads there";
+        let remedy = "raise `up_to_hz` of [dynamic], if the gauges determine the loads there";
         Some(
             Finding::new(
                 Severity::Warning,

@@ -135,7 +135,7 @@ fn remedy_of(e: &Unfit) -> &'static str {
             "recover with fewer gauges, or state a lower `up_to_hz`, which takes fewer modes"
         }
         Unfit::Rings { .. } => {
-            "state a lower `up_to_hz`, or add gauges that tell the loads where the others read next to nothing of them"
+            "state a lower `up_to_hz`, or add gauges that measure the loads of which the others measure little"
         }
     }
 }
@@ -285,7 +285,7 @@ pub(super) fn without_record() -> Finding {
         Severity::Warning,
         "dynamic-without-record",
         "dynamic",
-        "the strain file holds runs, which are taken as at rest: [dynamic] does nothing",
+        "the strain file contains runs, which are treated as quasi-static: [dynamic] has no effect",
         "name a record, or take [dynamic] out",
     )
 }

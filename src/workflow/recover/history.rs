@@ -21,7 +21,7 @@ pub struct HistoryRow {
 }
 
 impl History {
-    /// Its samples in order of time.
+    /// Returns the samples in order of time.
     pub fn rows(&self) -> impl Iterator<Item = HistoryRow> {
         let head = self.head.iter();
         let samples = head.flat_map(|h| {
@@ -34,7 +34,7 @@ impl History {
         })
     }
 
-    /// Its samples as they came, in order of time.
+    /// Returns the samples as they came, in order of time.
     pub fn blocks(&self) -> &[Block] {
         &self.blocks
     }

@@ -114,7 +114,7 @@ pub(super) fn spread(
             1,
             "rows",
             "a header and no rows",
-            "write a row a sample",
+            "write one row for each sample",
         )));
     }
     Ok(readings)

@@ -79,7 +79,7 @@ pub(super) fn take_out(
         Severity::Info,
         "payload-known",
         "runs",
-        "the strain of the payload that the runs file states is taken from the readings: the loads are those beside it",
+        "the strain of the payload in the runs file is subtracted from the readings: the loads do not include the payload",
         "",
     ));
     if !unknown.is_empty() {
@@ -87,8 +87,8 @@ pub(super) fn take_out(
             Severity::Warning,
             "payload-unknown",
             few(&unknown),
-            "the runs file states no payload for these runs: it is taken for none",
-            "state its mass (0 where there is none) and its place",
+            "the runs file states no payload for these runs: none is assumed",
+            "state its mass (0 without a payload) and its place",
         ));
     }
     Ok(loads)

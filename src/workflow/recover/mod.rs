@@ -62,11 +62,11 @@ use crate::sensitivity::check_separability;
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{Conditioning, Prepared, prepare};
 
-/// Loads of the runs or the record of a job with their intervals. Every sample of a record stays in memory ([`RecoveredRecord::history`]);
-/// [`recover_into`] hands them on instead.
+/// Recovers the loads of the runs or the record of a job with their intervals. Every sample of a record stays in memory
+/// ([`RecoveredRecord::history`]); [`recover_into`] writes the samples to a sink instead.
 ///
 /// # Errors
-/// Every fault of the job and of what it names.
+/// Returns every fault of the job and of the files that it names.
 pub fn recover(job: &Job, cx: &Context) -> Result<Outcome<Recovered>, Faults> {
     let mut history = History::default();
     let mut outcome = recover_into(job, cx, &mut history)?;
@@ -76,10 +76,10 @@ pub fn recover(job: &Job, cx: &Context) -> Result<Outcome<Recovered>, Faults> {
     Ok(outcome)
 }
 
-/// The same; the loads of a record go to `sink` as they come, a few pieces of it in memory at a time. Runs leave `sink` alone.
+/// Recovers loads like [`recover`], and writes the samples of a record to `sink` piece by piece. Runs do not use `sink`.
 ///
 /// # Errors
-/// Every fault of the job and of what it names; those of `sink`.
+/// Returns every fault of the job and of the files that it names, or the faults of `sink`.
 pub fn recover_into(
     job: &Job,
     cx: &Context,

@@ -144,7 +144,7 @@ pub struct Block {
 /// A sample.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample<'a> {
-    /// Its number in the record.
+    /// Number of the sample in the record.
     pub at: usize,
     /// Time, s.
     pub time: f64,
@@ -155,7 +155,7 @@ pub struct Sample<'a> {
 }
 
 impl Block {
-    /// Its samples of `n_loads` loads each.
+    /// Returns the samples of `n_loads` loads each.
     pub fn samples(&self, n_loads: usize) -> impl Iterator<Item = Sample<'_>> {
         let mut gaps = self.loads.gaps.iter().peekable();
         let loads = self.loads.values.chunks_exact(n_loads.max(1));

@@ -81,7 +81,7 @@ pub(super) fn without_reference<'a>(
             "noise-assumed",
             "measured.noise_microstrain",
             format!(
-                "the job does not say how much readings scatter: {} microstrain (1 sd) is taken, and all intervals rest on it",
+                "the job does not state the noise of the readings: {} microstrain (1 sd) is assumed, and all intervals depend on it",
                 measured.noise_microstrain
             ),
             "state noise_microstrain: the scatter of a gauge at rest",

@@ -98,7 +98,7 @@ pub(super) fn check(
     if row_of.iter().all(Option::is_none) {
         work.findings.push(not_compared(
             "no row of the strain file belongs to a load state: predicted and measured strain are not compared",
-            "name runs alike in both tables",
+            "use the same names of runs in both tables",
         ));
         return Ok(out);
     }

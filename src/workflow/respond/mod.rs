@@ -24,10 +24,11 @@ use crate::strain_chain::{Prepared, WantedAt, has_covariance, prepare, read_fiel
 use crate::units::factor;
 use std::collections::BTreeSet;
 
-/// Strain and stress by superposition of the unit fields: the hottest elements of a job, or those it names, over all states of its loads.
+/// Computes strain and stress by superposition of the unit fields, over all load states of a job. The elements are the ones with the highest
+/// stress, or the ones that the job names.
 ///
 /// # Errors
-/// Every fault of the job and of what it names; a given S, which has no fields.
+/// Returns every fault of the job and of the files that it names, or a given S, which has no fields.
 pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
     let mut work = Work::of_job(cx, job);
     let answer = responded(&mut work, &job.estimating()?)?;
@@ -202,7 +203,7 @@ fn about_damage(slope: f64) -> Finding {
     )
 }
 
-/// Grids of the element of a row.
+/// Returns the grids of the element of a row.
 pub fn grids(model: &Model, row: &ResponseRow) -> Vec<GridIx> {
     match row.place {
         Place::Shell { shell, .. } => model

@@ -126,7 +126,7 @@ fn finish(
             &*named.given,
             "loads",
             "no row with all loads",
-            "give a row a run or a sample",
+            "give one row for each run or sample",
         )));
     }
     if blank > 0 {
@@ -151,7 +151,7 @@ fn finish(
         "load-errors-independent",
         &named.given,
         if exact.is_empty() {
-            "a table of intervals holds no correlations between loads: their errors are taken as independent".to_owned()
+            "a table of intervals contains no correlations between loads: their errors are treated as independent".to_owned()
         } else {
             format!("{} have no interval in the file and count as exact", exact.join(", "))
         },

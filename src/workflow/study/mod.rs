@@ -76,7 +76,7 @@ impl Answer for Studied {
 pub struct StudiedLayout {
     /// Which layout.
     pub layout: String,
-    /// Its number of gauges.
+    /// Number of gauges.
     pub gauges: usize,
     /// Kind and size of the error.
     pub error: String,
@@ -108,10 +108,10 @@ pub struct StudiedLoad {
     pub wanted: bool,
 }
 
-/// Recovery repeated under stated errors, for a range of gauge counts and layouts.
+/// Repeats the recovery of loads under stated errors, for several gauge counts and layouts.
 ///
 /// # Errors
-/// Every fault of the job and of the files it names; loads of unknown size.
+/// Returns every fault of the job and of the files that it names, or loads of unknown size.
 pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;
@@ -283,7 +283,7 @@ fn truth(
         &*job.file,
         study.line,
         "load.expected",
-        format!("nothing says how large {} are", without.join(", ")),
+        format!("the sizes of {} are not stated", without.join(", ")),
         "state `expected` of every load, or a runs file with them",
     )))
 }
@@ -336,7 +336,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
             Severity::Warning,
             "place-without-effect",
             "position",
-            "S is given, or the gauges sit on bars: nothing tells how strain changes with place, and errors of place do nothing here",
+            "S is given, or the gauges are on bars: the change of strain with position is unknown, and position errors have no effect here",
             "give a [model] with shells",
         ));
     }

@@ -26,11 +26,11 @@ pub struct CaseControl {
 /// A statement of case control.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseLine {
-    /// Its first line.
+    /// First line of the statement.
     pub at: Place,
     /// The subcase it stands in, an index of [`CaseControl::subcases`]; `None` above the first.
     pub subcase: Option<usize>,
-    /// Its first word, upper case, as written.
+    /// First word, upper case, as written.
     pub name: String,
     /// The statement without comments, its lines joined.
     pub text: String,

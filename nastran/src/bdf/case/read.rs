@@ -267,7 +267,7 @@ impl Reader<'_> {
                 let why = "THRU needs two ids that ascend before and behind it, and may not be behind EXCEPT within the range";
                 self.fault("SET", text, why)
             }
-            (Ok(_), Err(word)) => self.fault("SET", &word, "the item of the set is no id"),
+            (Ok(_), Err(word)) => self.fault("SET", &word, "the item of the set is not an id"),
             (Err(_), _) => self.fault("SET", head, "the set has no number"),
         }
     }

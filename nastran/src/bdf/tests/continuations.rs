@@ -78,7 +78,7 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
         "{asked:?}"
     );
     assert!(
-        asked[1].starts_with("test.bdf:1: the card asks for a continuation that no line has: P4"),
+        asked[1].starts_with("test.bdf:1: the card names a continuation that no line has: P4"),
         "{asked:?}"
     );
     // nor does one below a card that asks for none, whatever is between

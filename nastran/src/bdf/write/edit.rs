@@ -16,7 +16,7 @@ pub enum EditError {
     /// The card is made by replication, or others are made from it.
     #[error("the card at line {} is part of a replication: write the cards out first", .0.line)]
     Replicated(Place),
-    /// Its continuation lines stand elsewhere in the deck.
+    /// Continuation lines stand elsewhere in the deck.
     #[error("the continuations of the card at line {} stand elsewhere: put them below it first", .0.line)]
     ContinuationsApart(Place),
 }

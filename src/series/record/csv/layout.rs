@@ -191,7 +191,7 @@ impl Layout {
             None => {
                 let factor = seconds_in(unit).ok_or_else(|| SeriesError::Line {
                     line: 1,
-                    what: format!("`{unit}` is no unit of time"),
+                    what: format!("`{unit}` is not a unit of time"),
                     remedy: "give times in s or ms",
                 })?;
                 let digits = values().map(decimals).max().unwrap_or(0);

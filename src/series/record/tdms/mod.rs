@@ -131,7 +131,7 @@ impl Tdms {
             scale = vec![-epoch_s.unwrap_or(0.0), 1.0];
         } else {
             let second = seconds_in(&unit)
-                .ok_or_else(|| broken(format!("`{unit}` of `{}` is no unit of time", c.name)))?;
+                .ok_or_else(|| broken(format!("`{unit}` of `{}` is not a unit of time", c.name)))?;
             scale.iter_mut().for_each(|factor| *factor *= second);
         }
         let one = scale.get(1).copied().unwrap_or(1.0).abs();

@@ -195,8 +195,11 @@ fn history(
     }
     let told = |t: String| Some(t).filter(|t| !t.is_empty() && !t.eq_ignore_ascii_case("none"));
     let time_unit = told(field(7, 47, 67)).unwrap_or_default();
-    let second = seconds_in(&time_unit)
-        .ok_or_else(|| bad(&format!("`{time_unit}` of its abscissa is no unit of time")))?;
+    let second = seconds_in(&time_unit).ok_or_else(|| {
+        bad(&format!(
+            "`{time_unit}` of its abscissa is not a unit of time"
+        ))
+    })?;
     let start_s = second * real(6, 30, 43).unwrap_or(0.0);
     let step_s = real(6, 43, 56).filter(|s| *s > 0.0);
     let step_s = second * step_s.ok_or_else(|| bad("no time between samples"))?;

@@ -14,7 +14,7 @@ pub trait ToFields {
     /// Card name.
     fn card_name(&self) -> &'static str;
 
-    /// Its fields, from field 2 on, 8 to a line.
+    /// Returns the fields, from field 2 on, 8 to a line.
     fn to_fields(&self) -> Vec<Field>;
 
     /// The card as lines of a deck, which read back as this card.
