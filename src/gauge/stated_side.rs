@@ -5,8 +5,7 @@ use super::side::normal;
 use super::surface::{centre, corners, foot_on, from_skins, to_side};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
-use crate::model::{Model, ShellIx, Vec3};
-use nalgebra::{Matrix3, Vector3};
+use crate::model::{Mat3, Model, ShellIx, Vec3};
 
 /// A point between, on or off the skins of a shell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,15 +101,15 @@ fn bulge(model: &Model, ix: ShellIx, x: Vec3) -> Option<f64> {
         centre(model, shell)?,
     );
     let n = axes.row(2).transpose();
-    let (mut normal_matrix, mut right) = (Matrix3::<f64>::zeros(), Vector3::<f64>::zeros());
+    let (mut normal_matrix, mut right) = (Mat3::zeros(), Vec3::zeros());
     for near in neighbours(model, ix) {
         let to = axes * (centre(model, model.shells.get(near.us())?)? - middle);
         let m = normal(model, near)?;
         let m = axes * m * m.dot(&n).signum();
         // Unknowns: K along the first axis, across, along the second axis.
         let rows = [
-            (Vector3::new(to.x, to.y, 0.0), m.x / m.z),
-            (Vector3::new(0.0, to.x, to.y), m.y / m.z),
+            (Vec3::new(to.x, to.y, 0.0), m.x / m.z),
+            (Vec3::new(0.0, to.x, to.y), m.y / m.z),
         ];
         for (row, slope) in rows {
             normal_matrix += row * row.transpose();
