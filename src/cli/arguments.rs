@@ -83,7 +83,7 @@ pub enum Command {
     Sensitivity(JobArguments),
     /// Choose gauges, with a certificate of how far from the best possible they are
     #[command(
-        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html (report.pdf with feature pdf)"
+        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.html, report.html (report.pdf with feature pdf)"
     )]
     Place(JobArguments),
     /// Learn S from runs of known load, fused with the model's S where there is one
