@@ -172,7 +172,7 @@ fn page(found: &Outcome<Ballasted>) -> Page {
         format!("across, {length}"),
         format!("95 %, {length}"),
     ];
-    let sections = vec![
+    let mut sections = vec![
         table_section(
             &format!("Reactions, {}", units.force.name),
             &["wheel", "measured", "before", "after", "off"],
@@ -194,7 +194,6 @@ fn page(found: &Outcome<Ballasted>) -> Page {
         (r.name.clone(), [gaps[0], gaps[1], f64::NAN])
     };
     let gaps: Vec<(String, [f64; 3])> = found.reactions.iter().map(gap).collect();
-    let mut sections = sections.to_vec();
     sections.push(figure_section(
         "Reactions before and after",
         gap_by_channel(
