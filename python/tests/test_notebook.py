@@ -50,8 +50,8 @@ def test_a_layout_is_shown_as_its_report_shows_it(strip_folder):
     page, read = shown(out)
     report = Read(out.report())
     # The sections of the report, its gauges, its sentences.
-    assert read.texts["h4"] == [t for t in report.texts["h2"] if t != "Findings"]
-    cells = read.texts["td"]
+    assert read.texts["h4"] == [t for t in report.texts["h2"] if t != "Notes and tests"]
+    cells = read.texts["td"] + read.texts["th"]
     assert [g.name for g in out.gauges if g.name not in cells] == []
     assert any("<" not in f.message for f in out.findings)
     assert all(f.message.rstrip(".") in page.replace("&quot;", '"').replace("&amp;", "&") for f in out.findings if "<" not in f.message)
@@ -72,7 +72,7 @@ def test_loads_are_shown_with_the_verdict_first(matrix_folder):
     bad = sb.recover(job)
     said = shown(bad)[0]
     assert any(f.severity != "info" for f in bad.findings)
-    verdict = "Look before you trust this answer" if bad.is_reliable else "This answer can't be relied on"
+    verdict = "The result is usable, with" if bad.is_reliable else "cannot be relied on"
     assert 0 < said.find(verdict) < said.find("<h4")
 
 

@@ -83,7 +83,7 @@ pub enum Command {
     Sensitivity(JobArguments),
     /// Choose gauges, with a bound on the distance from the best layout
     #[command(
-        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.md, report.html (report.pdf with feature pdf)"
+        after_help = "Example:\n  strainbridge place job.toml    # job.out/gauges.csv, gauges.xlsx, gluing_sheet.html, report.html (report.pdf with feature pdf)"
     )]
     Place(JobArguments),
     /// Compute S from runs with known loads, combined with the model's S if there is a model

@@ -28,6 +28,9 @@ pub struct Code {
     pub cause: &'static str,
     /// Limit that the measured number is compared with, or `None.`
     pub limit: &'static str,
+    /// The measured number `{m}` and the limit `{l}` in words, `%` for a share in percent; empty where the message has them.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub numbers: &'static str,
     /// Remedy, as an imperative.
     pub remedy: &'static str,
     /// Example of the finding.
@@ -86,6 +89,7 @@ fn read_table(table: &'static str) -> Vec<Code> {
         match name {
             "cause" => entry.cause = words,
             "limit" => entry.limit = words,
+            "numbers" => entry.numbers = words,
             "remedy" => entry.remedy = words,
             "example" => entry.example = words,
             _ => {}
@@ -104,6 +108,7 @@ fn read_head(line: &'static str) -> Option<Code> {
         said_by,
         cause: "",
         limit: "",
+        numbers: "",
         remedy: "",
         example: "",
     })
@@ -119,6 +124,8 @@ mod tests {
             let words = [c.said_by, c.cause, c.limit, c.remedy, c.example];
             assert!(words.iter().all(|w| !w.is_empty()), "{}", c.code);
             assert!(!c.severity.is_empty(), "{}", c.code);
+            let both = c.numbers.contains("{m") && c.numbers.contains("{l");
+            assert!(c.numbers.is_empty() || both, "{}", c.code);
             assert_eq!(code(c.code), Some(c));
         }
         assert!(codes().windows(2).all(|w| w[0].code < w[1].code));

@@ -1,15 +1,12 @@
 //! Findings in plain words.
 
 use crate::finding::Finding;
+use crate::finding::explain::code;
 
 /// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
 pub fn finding_text(f: &Finding) -> String {
     let (place, message) = placed(&f.message);
-    let numbers = match f.shown_numbers() {
-        Some((m, Some(l))) => format!(" (measured {}, limit {})", short(m), short(l)),
-        Some((m, None)) => format!(" (measured {})", short(m)),
-        None => String::new(),
-    };
+    let numbers = numbers_in_words(f).map_or_else(String::new, |words| format!(" ({words})"));
     let remedy = if f.remedy.is_empty() {
         String::new()
     } else {
@@ -21,6 +18,30 @@ pub fn finding_text(f: &Finding) -> String {
         f.code, f.subject
     );
     line.replace('\n', " ")
+}
+
+/// Returns the measured number of a finding and its limit in words: `scaled condition number 116.4, limit 50`. `None` where the message has
+/// them already.
+pub fn numbers_in_words(f: &Finding) -> Option<String> {
+    let (measured, limit) = f.shown_numbers()?;
+    let words = code(f.code)?.numbers;
+    if words.is_empty() {
+        return None;
+    }
+    let percent = |x: f64| format!("{} %", short(100.0 * x));
+    let of = |words: &str, sign: &str, x: f64| {
+        let share = words.replace(&format!("{{{sign}%}}"), &percent(x));
+        share.replace(&format!("{{{sign}}}"), &short(x))
+    };
+    Some(of(&of(words, "m", measured), "l", limit?))
+}
+
+/// Returns a text with a capital first letter.
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| {
+        first.to_uppercase().chain(letters).collect()
+    })
 }
 
 /// The place that a message begins with, as `file:line: `, and what follows; editors go there.
@@ -78,11 +99,24 @@ mod tests {
             message,
             "join it",
         );
-        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element (measured 2, limit 1). Remedy: join it";
-        assert_eq!(finding_text(&f.clone().with_numbers(2.0, 1.0)), line);
-        // A limit of 0 belongs to a count, which the message has.
-        let counted = finding_text(&f.with_numbers(2.0, 0.0));
-        assert_eq!(counted, line.replace(" (measured 2, limit 1)", ""));
+        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element. Remedy: join it";
+        // The message has these numbers.
+        assert_eq!(finding_text(&f.with_numbers(2.0, 1.0)), line);
+        let weak = Finding::new(
+            Severity::Warning,
+            "loads-weakly-separable",
+            "A, B",
+            "hard to separate",
+            "",
+        );
+        let line = "warning [loads-weakly-separable] A, B: hard to separate (scaled condition number 116.4, limit 50)";
+        assert_eq!(finding_text(&weak.with_numbers(116.44, 50.0)), line);
+        let share = Finding::new(Severity::Warning, "not-rigid", "a", "not rigid", "");
+        let words = numbers_in_words(&share.with_numbers(0.2, 0.15)).unwrap();
+        assert_eq!(
+            words,
+            "share that no rigid motion explains 20 %, limit 15 %"
+        );
         let f = Finding::new(Severity::Error, "gauge-dead", "P1", "two\nlines.", "");
         assert_eq!(finding_text(&f), "error [gauge-dead] P1: two lines");
     }

@@ -21,8 +21,8 @@ fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
     // Nothing stands out to the side, so a phone needs no scrolling there.
     assert_eq!(page["wider"], 0);
     assert_eq!(page["overlaps"], serde_json::json!([]));
+    assert_eq!(page["rules"], serde_json::json!([]));
     let list = page["titles"].as_array().unwrap();
-    assert_eq!(list[0], "Findings");
     for title in titles {
         assert!(list.iter().any(|t| t == title), "{title} of {list:?}");
     }
@@ -34,6 +34,40 @@ fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
         // An empty picture has one colour; thin lines on white cover about a hundredth.
         assert!(figure["other"].as_f64().unwrap() > 0.005, "{figure}");
         assert!(figure["colours"].as_u64().unwrap() > 20, "{figure}");
+    }
+}
+
+/// Parts of a first screen: sentence, key numbers, picture, table of the result.
+const PARTS: [&str; 4] = ["verdict", "numbers", "picture", "table"];
+
+/// The first screen of 1280 x 800 holds all its parts, with JavaScript on and off; that of a phone the sentence and no part aside of it.
+fn answers_first(page: &Value, has_picture: bool) {
+    let shown = |seen: &Value, size: [f64; 2], parts: &[&str]| {
+        for part in parts.iter().filter(|p| has_picture || **p != "picture") {
+            let found = seen[part].as_array();
+            let found = found.unwrap_or_else(|| panic!("no {part}: {seen}"));
+            let [left, top, right, bottom] = [0, 1, 2, 3].map(|i| found[i].as_f64().unwrap());
+            assert!(left >= -0.5 && top >= -0.5, "{part}: {seen}");
+            assert!(right <= size[0] + 0.5, "{part} aside: {seen}");
+            assert!(bottom <= size[1] + 0.5, "{part} below: {seen}");
+            assert!(
+                right - left > 100.0 && bottom - top > 20.0,
+                "{part}: {seen}"
+            );
+        }
+    };
+    match page.get("still") {
+        Some(still) => {
+            shown(&page["first"], [1280.0, 800.0], &PARTS);
+            shown(still, [1280.0, 800.0], &PARTS);
+            assert_eq!(still["summary"], page["first"]["summary"]);
+            assert_eq!(still["empty"], 0);
+            assert!(!has_picture || still["pictures"].as_u64() >= Some(1));
+        }
+        None => {
+            shown(&page["first"], [390.0, 800.0], &PARTS[..2]);
+            shown(&page["first"], [390.0, 1e5], &PARTS[2..3]);
+        }
     }
 }
 
@@ -111,6 +145,12 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
         ("identify", "quarter_truck", &["identify.toml"]),
         ("calibrate", "bridge", &["calibrate.toml"]),
         ("calibrate", "onboard", &["calibrate.toml"]),
+        (
+            "fleet",
+            "fleet",
+            &["fleet.toml", "A_2026-05-01.csv", "B_2026-05-02.csv"],
+        ),
+        ("cases", "frame", &["place.toml"]),
     ];
     let reports: Vec<PathBuf> = pages.iter().map(|(c, d, f)| page_of(c, d, f)).collect();
     let paths: Vec<&Path> = reports.iter().map(PathBuf::as_path).collect();
@@ -120,6 +160,7 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
     for (i, page) in seen.iter().enumerate() {
         let (command, folder, _) = pages[i / 2];
         is_sound(page, &[], &[]);
+        answers_first(page, command != "cases");
         assert!(
             page["bytes"].as_f64().unwrap() < MOST_BYTES,
             "{command} {folder}: {}",
@@ -187,6 +228,7 @@ fn reports_open_without_errors_or_requests_show_their_figures_and_name_the_gauge
     for (i, page) in pages.iter().enumerate() {
         let (titles, figures) = kinds[i / 2];
         is_sound(page, titles, figures);
+        answers_first(page, true);
         has_a_model(page);
         if i / 2 < 3 {
             names_a_gauge(page);

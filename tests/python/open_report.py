@@ -37,6 +37,68 @@ GAUGES = """() => {
 }"""
 
 
+# Boxes of the parts of the first screen, and its sentence.
+FIRST = """() => {
+  const box = (s) => {
+    const e = document.querySelector(s);
+    if (!e || !e.checkVisibility()) return null;
+    const r = e.getBoundingClientRect();
+    return [r.left, r.top, r.right, r.bottom];
+  };
+  const summary = document.querySelector(".verdict .summary");
+  return { verdict: box(".verdict"), numbers: box(".tiles"), picture: box(".picture svg"), table: box(".result table"), summary: summary && summary.textContent };
+}"""
+
+# What breaks a rule of pages for everyone: landmarks, headings, names of controls and pictures, headers of tables, contrast, focus.
+RULES = """() => {
+  const out = [], say = (rule, e) => out.push(rule + ": " + (e.outerHTML || e.textContent).slice(0, 120));
+  const all = (s) => [...document.querySelectorAll(s)].filter((e) => e.checkVisibility({ visibilityProperty: true }));
+  if (!document.documentElement.lang || !document.title) out.push("language and title");
+  if (all("main").length !== 1) out.push("one main");
+  if (all("h1").length !== 1) out.push("one h1");
+  let level = 0;
+  for (const h of all("h1, h2, h3, h4")) { const n = +h.tagName[1]; if (n > level + 1) say("heading skips a level", h); level = n; }
+  for (const t of all("table")) if (t.rows.length && !t.querySelector("th")) say("table without headers", t);
+  for (const h of all("th")) if (!h.scope) say("header without scope", h);
+  for (const e of all("[role=img], figure[data-figure], [role=application]")) if (!e.getAttribute("aria-label")) say("picture without words", e);
+  for (const e of all("img")) if (!e.alt) say("picture without words", e);
+  for (const e of all("select, input, textarea")) if (!(e.labels && e.labels.length) && !e.getAttribute("aria-label") && !e.title) say("control without a label", e);
+  for (const e of all("button, a, summary")) if (!e.textContent.trim() && !e.getAttribute("aria-label")) say("nothing to read", e);
+  const ids = new Set();
+  for (const e of document.querySelectorAll("[id]")) { if (ids.has(e.id)) say("id twice", e); ids.add(e.id); }
+  for (const e of all("*")) {
+    const s = getComputedStyle(e), scrolls = /auto|scroll/.test(s.overflowX + s.overflowY) && (e.scrollWidth > e.clientWidth + 1 || e.scrollHeight > e.clientHeight + 1);
+    if (scrolls && e !== document.documentElement && e.tabIndex < 0 && !e.querySelector("a, button, select, input, [tabindex='0']")) say("scrolls without focus", e);
+  }
+  const rgb = (c) => (c.match(/[\\d.]+/g) || []).map(Number);
+  const light = ([r, g, b]) => { const f = (v) => (v /= 255) <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); };
+  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walk.nextNode(); node; node = walk.nextNode()) {
+    const e = node.parentElement;
+    if (!node.textContent.trim() || e.closest("script, style, noscript, svg, option, .words, :disabled") || !e.checkVisibility({ visibilityProperty: true })) continue;
+    if (!e.closest("main")) say("outside main", e);
+    let back = [255, 255, 255];
+    for (let p = e; p; p = p.parentElement) { const c = rgb(getComputedStyle(p).backgroundColor); if (c.length === 3 || c[3] > 0.99) { back = c; break; } }
+    const s = getComputedStyle(e), size = parseFloat(s.fontSize), large = size >= 24 || (size >= 18.66 && +s.fontWeight >= 700);
+    const [a, b] = [light(rgb(s.color)), light(back)].sort((x, y) => y - x);
+    if ((a + 0.05) / (b + 0.05) < (large ? 3 : 4.5)) say("contrast " + ((a + 0.05) / (b + 0.05)).toFixed(2), e);
+  }
+  return [...new Set(out)].slice(0, 12);
+}"""
+
+
+def without_scripts(browser, path):
+    """What a page shows where JavaScript is off: the first screen, and whether anything that needs scripts is left empty."""
+    context = browser.new_context(viewport={"width": 1280, "height": 800}, java_script_enabled=False)
+    page = context.new_page()
+    page.goto("file://" + os.path.abspath(path))
+    seen = page.evaluate(FIRST)
+    seen["empty"] = page.evaluate("[...document.querySelectorAll('.canvas, .controls')].filter((e) => e.checkVisibility()).length")
+    seen["pictures"] = page.evaluate("[...document.querySelectorAll('svg')].filter((e) => e.checkVisibility()).length")
+    context.close()
+    return seen
+
+
 def look(browser, path, width):
     errors, requests = [], []
     phone = width < 600
@@ -55,6 +117,8 @@ def look(browser, path, width):
         "seconds": time.time() - start - 0.3,
         "bytes": os.path.getsize(path),
         "titles": page.locator("h2").all_inner_texts(),
+        "first": page.evaluate(FIRST),
+        "rules": page.evaluate(RULES),
         "wider": page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth"),
         "figures": [],
     }
@@ -96,6 +160,8 @@ def look(browser, path, width):
         name = os.path.basename(os.path.dirname(os.path.abspath(path))) + f"-{width}.png"
         page.evaluate("window.scrollTo(0, 0)")
         page.screenshot(path=os.path.join(os.environ["SHOTS"], name), full_page=True)
+    if not phone:
+        seen["still"] = without_scripts(browser, path)
     seen["errors"], seen["requests"] = errors, requests
     context.close()
     return seen

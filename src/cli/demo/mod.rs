@@ -19,7 +19,7 @@ use crate::host::work::Work;
 use crate::job::Job;
 use crate::report::command::{Report, save, write_page};
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{Card, Page};
+use crate::report::page::{Card, KeyNumber, Page};
 use crate::units::UnitSystem;
 use crate::workflow;
 use chapter::{Chapter, DECK, Step, number_of, percent, percent_at_least};
@@ -112,6 +112,10 @@ impl Report for Outcome<Story> {
             payload: self.payload_error,
         };
         Some(page::page(&self.chapters, &figures))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        Vec::new()
     }
 
     fn console(&self) -> Console {
@@ -259,7 +263,8 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     write(folder, "strain.csv", &measured.strain_csv)?;
     write(folder, "runs.csv", &measured.runs_csv)?;
     let job = write(folder, "recover.toml", &jobs::recover("strain.csv"))?;
-    let step = play(work, "recover", folder, "3-recover", &job)?;
+    let mut step = play(work, "recover", folder, "3-recover", &job)?;
+    step.card = step.card.with_figure(&measured.figure_of(&step.result));
     let before = measured.error_of(&step.result);
     story.push(Chapter {
         folder: "3-recover",
@@ -317,7 +322,8 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
     let corrected = |job: String| format!("{job}\n{corrections}");
     let job = corrected(jobs::recover(strain));
     let job = write(folder, "recover_again.toml", &job)?;
-    let step = play(work, "recover", folder, "5-recover-again", &job)?;
+    let mut step = play(work, "recover", folder, "5-recover-again", &job)?;
+    step.card = step.card.with_figure(&measured.figure_of(&step.result));
     let after = measured.error_of(&step.result);
     story.push(Chapter {
         folder: "5-recover-again",

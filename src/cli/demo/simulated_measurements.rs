@@ -8,11 +8,12 @@ use crate::fe::{CaseResult, UnitLoad};
 use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
 use crate::host::fault::{Fault, Faults};
 use crate::model::{GridIx, Model, Vec3};
+use crate::report::figure::{Figure, intervals};
 use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
 use nastran::bdf::{MemoryLoader, read_deck};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
@@ -75,6 +76,39 @@ impl Simulated {
             }
         }
         (off / size).sqrt()
+    }
+
+    /// The recovered wheel loads of the run with the largest error, with their intervals, and the true ones in red.
+    pub(super) fn figure_of(&self, result: &Value) -> Figure {
+        let of_run = |(run, wheels, _): &(String, Vec<f64>, f64)| {
+            let row = |((wheel, _), truth): (&(&str, u32), &f64)| {
+                let mut loads = result["loads"].as_array().into_iter().flatten();
+                let name = format!("{wheel}.FZ");
+                let load = loads.find(|l| l["run"] == *run && l["name"] == name)?;
+                let ends = ["low", "value", "high"].map(|k| load[k].as_f64().unwrap_or(f64::NAN));
+                Some((name, ends, *truth))
+            };
+            let rows: Vec<_> = WHEELS.iter().zip(wheels).filter_map(row).collect();
+            let off: f64 = rows
+                .iter()
+                .map(|(_, v, truth)| (v[1] - truth).powi(2))
+                .sum();
+            (off, run.clone(), rows)
+        };
+        let runs = self.truth.iter().map(of_run);
+        let (_, run, rows) = runs.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
+        let shown = rows.iter().map(|(name, ends, _)| (name.clone(), *ends));
+        let title = format!("run {run}: recovered (blue, 95 %) and true (red) load, kN");
+        let mut figure = intervals(&[(run, shown.collect())], &title);
+        if let Some((_, traces)) = figure.choices.first_mut() {
+            let names: Vec<&String> = rows.iter().map(|r| &r.0).collect();
+            let truth: Vec<f64> = rows.iter().map(|r| r.2).collect();
+            traces.push(json!({
+                "type": "scatter", "mode": "markers", "x": truth, "y": names,
+                "marker": { "size": 9, "color": "#c0392b", "symbol": "x" },
+            }));
+        }
+        figure
     }
 
     /// The same for the payload.

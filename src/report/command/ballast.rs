@@ -1,13 +1,15 @@
 //! Files and words of `ballast`.
 
 use super::{Report, write_page};
+use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::page::{Page, table_section};
-use crate::units::number;
+use crate::report::figure::gap_by_channel;
+use crate::report::page::{KeyNumber, Page, figure_section, table_section};
+use crate::units::{number, plus_minus};
 use crate::workflow::ballast::{Ballasted, HungMass, Reaction};
 
 /// Columns of masses.csv.
@@ -66,6 +68,31 @@ impl Report for Outcome<Ballasted> {
 
     fn page(&self) -> Option<Page> {
         Some(page(self))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let units = &self.job.report_units;
+        let half = NORMAL_95 * self.together.mass_sigma;
+        let off = self.reactions.iter().map(|r| (r.after - r.measured).abs());
+        vec![
+            KeyNumber::new(
+                format!(
+                    "{} {}",
+                    plus_minus(self.together.mass, half),
+                    units.mass.name
+                ),
+                "mass added, all masses together",
+            ),
+            KeyNumber::new(self.masses.len().to_string(), "lumped masses"),
+            KeyNumber::new(
+                format!("{} {}", number(off.fold(0.0, f64::max)), units.force.name),
+                "largest difference of a reaction that is left",
+            ),
+            KeyNumber::new(
+                format!("{} of {}", self.numbers_fixed, self.numbers_asked),
+                "numbers of the masses that the reactions determine",
+            ),
+        ]
     }
 
     fn console(&self) -> Console {
@@ -145,7 +172,7 @@ fn page(found: &Outcome<Ballasted>) -> Page {
         format!("across, {length}"),
         format!("95 %, {length}"),
     ];
-    let sections = vec![
+    let mut sections = vec![
         table_section(
             &format!("Reactions, {}", units.force.name),
             &["wheel", "measured", "before", "after", "off"],
@@ -162,6 +189,19 @@ fn page(found: &Outcome<Ballasted>) -> Page {
             ),
         ),
     ];
+    let gap = |r: &Reaction| {
+        let gaps = [r.before, r.after].map(|v| (v - r.measured).abs());
+        (r.name.clone(), [gaps[0], gaps[1], f64::NAN])
+    };
+    let gaps: Vec<(String, [f64; 3])> = found.reactions.iter().map(gap).collect();
+    sections.push(figure_section(
+        "Reactions before and after",
+        gap_by_channel(
+            &gaps,
+            &format!("{}, difference from measured", units.force.name),
+        ),
+        "Before: the deck as given. After: the completed deck. Smaller is better.",
+    ));
     let title = &found.job.title;
     Page::new(
         title,

@@ -7,7 +7,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page, percent};
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
 use crate::strain_chain::covariance_bytes;
 use crate::units::{MICROSTRAIN, Quantity, half_width, number};
@@ -121,6 +121,28 @@ impl Report for Outcome<Calibrated> {
     fn page(&self) -> Option<Page> {
         let page = calibrate_page(&self.job.title, self, &self.findings);
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let c = &self.calibration;
+        let mut numbers = vec![
+            KeyNumber::new(
+                format!("{} of {}", c.coverage.held, c.coverage.of),
+                "left-out runs within their 95 % intervals",
+            ),
+            KeyNumber::new(c.runs.to_string(), "calibration runs"),
+        ];
+        let scatter = c
+            .repeat_scatter_rel
+            .map(|v| KeyNumber::new(percent(v), "scatter between repeats"));
+        numbers.extend(scatter);
+        numbers.push(KeyNumber::new(percent(c.noise_rel), "noise, of the strain"));
+        let changed = c.gauges.iter().filter(|g| g.looks_like != "none").count();
+        numbers.push(KeyNumber::new(
+            format!("{changed} of {}", c.gauges.len()),
+            "gauges differ from the model",
+        ));
+        numbers
     }
 
     fn console(&self) -> Console {

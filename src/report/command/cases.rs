@@ -5,7 +5,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page};
 use crate::units::number;
 use crate::workflow::cases::UnitLoadDeck;
 use serde_json::Value;
@@ -27,6 +27,13 @@ impl Report for Outcome<UnitLoadDeck> {
             Vec::new(),
         );
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        vec![
+            KeyNumber::new(self.subcases.len().to_string(), "unit-load subcases"),
+            KeyNumber::new(self.support.clone(), "structure"),
+        ]
     }
 
     fn console(&self) -> Console {

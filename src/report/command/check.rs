@@ -6,7 +6,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::model::Model;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{Block, Page, Section};
+use crate::report::page::{Block, KeyNumber, Page, Section};
 use crate::report::scene::{Places, scene_of_model, scene_section};
 use crate::workflow::check::Checked;
 
@@ -17,6 +17,20 @@ impl Report for Outcome<Checked> {
 
     fn page(&self) -> Option<Page> {
         Some(page(self))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let files = self.decks.len() + self.results.len() + self.records.len() + self.jobs.len();
+        let mut numbers = vec![
+            KeyNumber::new(files.to_string(), "files read"),
+            KeyNumber::new(self.faults.len().to_string(), "faults"),
+        ];
+        if let Some(deck) = self.decks.first() {
+            let [grids, elements] = deck.counts();
+            numbers.push(KeyNumber::new(grids.to_string(), "grids"));
+            numbers.push(KeyNumber::new(elements.to_string(), "elements"));
+        }
+        numbers
     }
 
     fn console(&self) -> Console {

@@ -7,7 +7,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page};
 use crate::series::rainflow::Ratio;
 use crate::units::number;
 use crate::workflow::fleet::{Fleet, MissionAnswer, VehicleAnswer, VehicleLoadAnswer};
@@ -69,6 +69,27 @@ impl Report for Outcome<Fleet> {
         Some(page(self))
     }
 
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let hours: f64 = self.vehicles.iter().map(|v| v.hours).sum();
+        let done = self.files.iter().filter(|f| f.status == "done").count();
+        let mut numbers = vec![
+            KeyNumber::new(self.vehicles.len().to_string(), "vehicles"),
+            KeyNumber::new(format!("{} h", number(hours)), "recorded"),
+            KeyNumber::new(format!("{done} of {}", self.files.len()), "files counted"),
+        ];
+        let worst = self
+            .rows()
+            .max_by(|a, b| a.1.relative.total_cmp(&b.1.relative));
+        numbers.extend(worst.map(|(v, l)| {
+            let meaning = format!(
+                "damage an hour over that of all vehicles, the largest: {} {}",
+                v.name, l.load
+            );
+            KeyNumber::new(format!("{} times", number(l.relative)), meaning)
+        }));
+        numbers
+    }
+
     fn console(&self) -> Console {
         let row = |(v, l): (&VehicleAnswer, &VehicleLoadAnswer)| {
             let ends = [l.min, l.max].map(|v| number(v.unwrap_or(f64::NAN)));
@@ -104,6 +125,7 @@ impl Report for Outcome<Fleet> {
         let title = format!("Loads and pseudo-damage, slope {}", self.slope);
         let table = ConsoleTable::new(title, head.get(..shown).unwrap_or(&head), rows);
         Console::new(table, Some("fleet.csv"))
+            .next("run the same command with further records: it reads only those that are new")
     }
 }
 

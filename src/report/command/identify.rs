@@ -7,7 +7,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page, percent};
 use crate::report::vehicle::{
     Curve, Curves, identify_page, restoring_curves, restoring_unit, write_chassis_forces,
     write_parameters, write_restoring_force, write_wheel_forces,
@@ -69,6 +69,38 @@ impl Report for Outcome<Identified> {
             &self.forces,
         );
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let asked = || self.parameters.iter().filter(|p| !p.known);
+        let found = asked().filter(|p| p.identifiable).count();
+        let mut numbers = vec![KeyNumber::new(
+            format!("{found} of {}", asked().count()),
+            "parameters identified",
+        )];
+        let worst = self
+            .fit
+            .iter()
+            .max_by(|a, b| a.relative_rms.total_cmp(&b.relative_rms));
+        numbers.extend(worst.map(|f| {
+            let floor = f.floor.map_or_else(String::new, |v| {
+                format!(", expected from noise {}", percent(v))
+            });
+            KeyNumber::new(
+                percent(f.relative_rms),
+                format!("largest residual: {} ({}){floor}", f.channel, f.on),
+            )
+        }));
+        numbers.extend(
+            self.mass_closure
+                .map(|r| KeyNumber::new(number(r), "identified over weighed mass")),
+        );
+        let [low, high] = self.band_hz;
+        numbers.push(KeyNumber::new(
+            format!("{} to {} Hz", number(low), number(high)),
+            "band of the equations",
+        ));
+        numbers
     }
 
     fn console(&self) -> Console {

@@ -5,7 +5,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{Block, Page, Section};
+use crate::report::page::{Block, KeyNumber, Page, Section};
 use crate::workflow::init::{NotProposed, Proposal};
 
 /// Lines of a block: a notebook cuts longer ones.
@@ -47,6 +47,17 @@ impl Report for Outcome<Proposal> {
         };
         sections.push(Section::new("The job", vec![whole]));
         Some(Page::new(self.job, "", &self.findings, sections))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        vec![
+            KeyNumber::new(self.loads.len().to_string(), "loads proposed"),
+            KeyNumber::new(
+                self.left_out.len().to_string(),
+                "loads and subcases left out",
+            ),
+            KeyNumber::new(self.zones.len().to_string(), "zones of stiffness"),
+        ]
     }
 
     fn console(&self) -> Console {

@@ -36,8 +36,8 @@ pub use shown::{console_of, words};
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, Tables};
 use crate::host::output::Output;
-use crate::report::console::Console;
-use crate::report::page::Page;
+use crate::report::console::{Console, ConsoleTable};
+use crate::report::page::{KeyNumber, Page};
 use std::path::Path;
 
 /// An outcome that has files and words.
@@ -53,6 +53,19 @@ pub trait Report {
 
     /// Its report; `None` where it has none.
     fn page(&self) -> Option<Page>;
+
+    /// Numbers that answer the question of the command, for the first screen of its page.
+    fn key_numbers(&self) -> Vec<KeyNumber>;
+
+    /// Table of the result for the first screen of its page: the most detailed one of the terminal that is narrow enough.
+    fn result_table(&self) -> ConsoleTable {
+        /// Columns that have room next to a picture.
+        const COLUMNS: usize = 6;
+        let tables = self.console().tables;
+        let is_narrow = |t: &&ConsoleTable| t.rows.first().is_none_or(|r| r.len() <= COLUMNS);
+        let narrow = tables.iter().find(is_narrow);
+        narrow.or(tables.last()).cloned().unwrap_or_default()
+    }
 
     /// Content of a terminal: tables of the result, next step, main table of the folder.
     fn console(&self) -> Console;

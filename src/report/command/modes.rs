@@ -8,7 +8,7 @@ use crate::host::words::counted;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::mode_blocks::rows_of_mode_block;
-use crate::report::page::{Block, Page, Section, number};
+use crate::report::page::{Block, KeyNumber, Page, Section, number};
 use crate::report::scene::{scene_of_solution, scene_section};
 use crate::report::{planned_blocks, write_vtu};
 use crate::vehicle::term::{Quantity, UnitNames};
@@ -75,6 +75,23 @@ impl Report for Outcome<Modes> {
         Some(page(self))
     }
 
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let hz = |m: Option<&ModeRow>| m.map_or("-".to_owned(), |m| format!("{} Hz", number(m.hz)));
+        let errors = self.modes.iter().map(|m| m.frequency_error);
+        vec![
+            KeyNumber::new(hz(self.modes.first()), "first elastic mode"),
+            KeyNumber::new(
+                hz(self.modes.last()),
+                format!("last of {}", counted(self.modes.len(), "mode")),
+            ),
+            KeyNumber::new(self.rigid_motions.to_string(), "rigid motions left out"),
+            KeyNumber::new(
+                format!("{:.0e}", errors.fold(0.0, f64::max)),
+                "largest relative error of a frequency",
+            ),
+        ]
+    }
+
     fn console(&self) -> Console {
         let row = |m: &ModeRow| {
             vec![
@@ -91,7 +108,9 @@ impl Report for Outcome<Modes> {
             &["mode", "Hz", "relative error"],
             self.modes.iter().map(row).collect(),
         );
-        Console::new(table, Some("modes.csv"))
+        Console::new(table, Some("modes.csv")).next(
+            "open modes.vtu in ParaView; with [dynamic] in a job, `strainbridge recover` subtracts this vibration",
+        )
     }
 }
 
@@ -164,7 +183,10 @@ fn page(modes: &Outcome<Modes>) -> Page {
         modes.support, modes.rigid_motions
     );
     let cases = modes.cases();
-    let scene = scene_of_solution(&modes.model, &cases, &modes.solution.strain);
+    let mut scene = scene_of_solution(&modes.model, &cases, &modes.solution.strain);
+    for (field, m) in scene.fields.iter_mut().zip(&modes.modes) {
+        field.name = format!("mode {}, {} Hz", m.mode, number(m.hz));
+    }
     let sections = vec![
         Section::new(
             "Elastic modes",

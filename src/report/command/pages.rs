@@ -5,6 +5,8 @@ use crate::host::fault::Faults;
 use crate::host::outcome::{Answer, Outcome};
 use crate::host::output::Output;
 use crate::job::Job;
+use crate::report::console::ConsoleTable;
+use crate::report::page::{FirstScreen, Table};
 use crate::report::spreadsheet::{About, Sheet, UnitOf, spreadsheet};
 use crate::units::Quantity;
 
@@ -19,13 +21,35 @@ where
     let Some(page) = outcome.page() else {
         return Ok(());
     };
-    let page = page.with_summary(outcome.summary()).beside(out.folder());
+    let page = page
+        .with_summary(outcome.summary())
+        .with_first(first_screen(outcome))
+        .beside(out.folder());
     out.write_bytes("report.html", page.to_html().as_bytes())?;
     #[cfg(feature = "pdf")]
     if page.paper != crate::report::page::Paper::None {
         write_paper(out, outcome, &page)?;
     }
     Ok(())
+}
+
+fn first_screen<A: Answer>(outcome: &Outcome<A>) -> FirstScreen
+where
+    Outcome<A>: Report,
+{
+    let ConsoleTable { title, head, rows } = outcome.result_table();
+    let table = Table {
+        head,
+        rows,
+        links: Vec::new(),
+    };
+    FirstScreen {
+        command: A::COMMAND,
+        numbers: outcome.key_numbers(),
+        title,
+        table,
+        file: outcome.console().file,
+    }
 }
 
 #[cfg(feature = "pdf")]

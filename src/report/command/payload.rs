@@ -5,13 +5,14 @@ use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
+use crate::model::{Model, Vec3};
 use crate::payload::{WeighedRun, Weighing};
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
-use crate::report::page::{Page, Paper, Section, figure_section, table_section};
-use crate::report::scene::{scene_of_job, scene_section};
-use crate::units::{MICROSTRAIN, number};
+use crate::report::page::{KeyNumber, Page, Paper, Section, figure_section, table_section};
+use crate::report::scene::{Arrow, ArrowSet, Twist, scene_of_job, scene_section};
+use crate::units::{MICROSTRAIN, factor, number, plus_minus};
 use crate::workflow::payload::{Weighed, WeighedPayload};
 
 /// Columns of payload.csv with their quantity.
@@ -88,12 +89,44 @@ impl Report for Outcome<Weighed> {
         Some(page(self).on_paper(Paper::Signed))
     }
 
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let units = &self.job.report_units;
+        let weighed = || self.payload.iter().filter(|p| p.refused.is_none());
+        let heaviest = weighed().max_by(|a, b| plain(a.force).total_cmp(&plain(b.force)));
+        let mut numbers = Vec::new();
+        if let Some(p) = heaviest {
+            let run = &p.run;
+            let weight = format!("{} {}", p.weight(), units.force.name);
+            numbers.push(KeyNumber::new(
+                weight,
+                format!("weight of the heaviest payload, run {run}"),
+            ));
+            let half = NORMAL_95 * plain(p.mass_sigma);
+            let mass = format!("{} {}", plus_minus(plain(p.mass), half), units.mass.name);
+            numbers.push(KeyNumber::new(mass, format!("its mass, run {run}")));
+        }
+        let of = self.payload.len();
+        numbers.push(KeyNumber::new(
+            format!("{} of {of}", weighed().count()),
+            "runs weighed",
+        ));
+        let gauges = &self.weighing.gauges;
+        if !gauges.is_empty() {
+            let used = gauges.iter().filter(|g| g.used).count();
+            numbers.push(KeyNumber::new(
+                format!("{used} of {}", gauges.len()),
+                "gauges used",
+            ));
+        }
+        numbers
+    }
+
     fn console(&self) -> Console {
         let units = &self.job.report_units;
         let row = |p: &WeighedPayload| {
             let place = match &p.refused {
                 Some(why) => format!("refused: {why}"),
-                None => p.position.map(|x| number(plain(x))).join(", "),
+                None => place_in_plan(p.position.map(plain)),
             };
             vec![
                 p.run.clone(),
@@ -113,7 +146,71 @@ impl Report for Outcome<Weighed> {
             &head.each_ref().map(String::as_str),
             self.payload.iter().map(row).collect(),
         );
-        Console::new(table, Some("payload.csv"))
+        Console::new(table, Some("payload.csv")).next(format!(
+            "if a payload was weighed too, name its mass in the runs file and run `strainbridge reconcile {}`",
+            self.job.file
+        ))
+    }
+}
+
+/// The payload of each run as an arrow at its place, the heaviest run first; none where no run gives a place.
+fn payload_arrows(found: &Outcome<Weighed>, model: &Model) -> Vec<ArrowSet> {
+    let job = &found.job;
+    let length = factor(job.units, job.report_units.length);
+    let own = job.payload.as_ref().and_then(|p| p.grid);
+    let grid = model.grids.iter().find(|g| Some(g.id) == own);
+    let top = || model.grids.iter().map(|g| g.x.z).fold(f64::NAN, f64::max);
+    let height = grid.map_or_else(top, |g| g.x.z);
+    let arrow = |p: &WeighedPayload| {
+        let [x, y] = p.position.map(plain);
+        let value = plain(p.force);
+        let known = x.is_finite() && y.is_finite() && value.is_finite();
+        let place = place_in_plan([x, y]);
+        known.then(|| Arrow {
+            at: Vec3::new(x / length, y / length, height),
+            along: Vec3::new(0.0, 0.0, -1.0),
+            twist: Twist::Force,
+            value,
+            label: format!(
+                "payload of run {}: {} {} at {place} {}",
+                p.run,
+                p.weight(),
+                p.unit,
+                job.report_units.length.name
+            ),
+        })
+    };
+    let weighed = found.payload.iter().filter(|p| p.refused.is_none());
+    let arrows: Vec<(String, Arrow)> = weighed
+        .filter_map(|p| Some((format!("payload of run {}", p.run), arrow(p)?)))
+        .collect();
+    let all = ArrowSet {
+        name: "payload of every run".to_owned(),
+        arrows: arrows.iter().map(|a| a.1.clone()).collect(),
+    };
+    let each = arrows.into_iter().map(|(name, arrow)| ArrowSet {
+        name,
+        arrows: vec![arrow],
+    });
+    let mut sets: Vec<ArrowSet> = each.collect();
+    if !sets.is_empty() {
+        sets.insert(0, all);
+    }
+    sets
+}
+
+/// Both coordinates to one decimal place, four digits of the larger.
+fn place_in_plan(place: [f64; 2]) -> String {
+    let size = place.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+    match size.is_finite() && size > 0.0 {
+        true => {
+            let digits = (3 - size.log10().floor() as i32).clamp(0, 6) as usize;
+            // Zero has no sign.
+            let unit = 10f64.powi(digits as i32);
+            let cell = |v: f64| format!("{:.digits$}", (v * unit).round() / unit + 0.0);
+            place.map(cell).join(", ")
+        }
+        false => place.map(number).join(", "),
     }
 }
 
@@ -164,7 +261,11 @@ fn page(found: &Outcome<Weighed>) -> Page {
         sections.extend(gauge_sections(&found.weighing, units.force.name));
     }
     let prepared = found.prepared.as_ref();
-    if let Some(scene) = prepared.and_then(|p| scene_of_job(&found.job, p)) {
+    if let Some(mut scene) = prepared.and_then(|p| scene_of_job(&found.job, p)) {
+        let places = payload_arrows(found, scene.model);
+        if !places.is_empty() {
+            scene.arrows = places;
+        }
         sections.push(scene_section("Model and gauges", &scene));
     }
     Page::new(&found.job.title, "Payload", &found.findings, sections)

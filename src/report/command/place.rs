@@ -8,11 +8,12 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::figure::CountPoint;
-use crate::report::page::{Page, Paper};
-use crate::report::scene::{Places, Pointing, placed_mark, scene_of};
+use crate::report::page::{KeyNumber, Page, Paper, percent};
+use crate::report::scene::{Places, Pointing, Scene, placed_mark, scene_of};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
-    HowMany, gauges_csv, gauges_vtu, gluing_sheet_csv, gluing_sheet_md, place_page, sensitivity_csv,
+    HowMany, gauges_csv, gauges_vtu, gluing_page, gluing_sheet_csv, gluing_sheet_md, place_page,
+    sensitivity_csv,
 };
 use crate::strain_chain::LoadSigma;
 use crate::units::{half_width, number};
@@ -26,6 +27,7 @@ impl Report for Outcome<Placed> {
         "sensitivity.csv",
         "gluing_sheet.csv",
         "gluing_sheet.md",
+        "gluing_sheet.html",
         "gauges.vtu",
     ];
 
@@ -51,6 +53,8 @@ impl Report for Outcome<Placed> {
         })?;
         let sheet = gluing_sheet_md(&job.title, &self.gauges, model, length);
         out.write_bytes("gluing_sheet.md", sheet.as_bytes())?;
+        let page = gluing_page(&job.title, &self.gauges, &scene(self));
+        out.write_bytes("gluing_sheet.html", page.to_html().as_bytes())?;
         out.write("gauges.vtu", |w| gauges_vtu(w, &self.gauges))?;
         write_page(out, self)?;
         let sheets = gauge_sheets(&self.gauges, model, s, &self.load_sigma, &self.worst_loss);
@@ -59,8 +63,7 @@ impl Report for Outcome<Placed> {
 
     fn page(&self) -> Option<Page> {
         let (s, job) = (&self.sensitivity, &self.job);
-        let marks = self.gauges.iter().map(placed_mark).collect();
-        let mut scene = scene_of(job, &self.fields, marks);
+        let mut scene = scene(self);
         scene.pointing = Pointing::Places(Places::of(&job.candidates));
         let page = place_page(
             &job.title,
@@ -73,6 +76,48 @@ impl Report for Outcome<Placed> {
             &how_many(self),
         );
         Some(page.on_paper(Paper::Signed))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let share = match self.proved {
+            true => "100 %".to_owned(),
+            // Rounded down: it is a lower bound.
+            false => format!("≥ {:.1} %", (1000.0 * self.efficiency_bound).floor() / 10.0),
+        };
+        let of = |l: &LoadSigma| Some((self.share_of_expected(l)?, l.clone()));
+        let shares = self.load_sigma.iter().filter_map(of);
+        let widest = shares.max_by(|a, b| a.0.total_cmp(&b.0));
+        let mut numbers = vec![
+            KeyNumber::new(
+                self.gauges.len().to_string(),
+                format!(
+                    "gauges for {} loads, of {} candidates",
+                    self.load_sigma.len(),
+                    self.candidates.rows
+                ),
+            ),
+            KeyNumber::new(share, "of the best possible layout, certified"),
+        ];
+        numbers.extend(widest.map(|(share, l)| {
+            let half = half_width(NORMAL_95 * l.sigma());
+            KeyNumber::new(
+                format!("{half} {}", l.unit),
+                format!(
+                    "least certain: {}, {} of its expected size",
+                    l.name,
+                    percent(share)
+                ),
+            )
+        }));
+        let worst = &self.worst_loss;
+        numbers.push(KeyNumber::new(
+            format!("{:.0} %", 100.0 * worst.efficiency_left),
+            format!(
+                "of the information is left without {}, the most important gauge",
+                worst.gauge
+            ),
+        ));
+        numbers
     }
 
     fn console(&self) -> Console {
@@ -106,9 +151,15 @@ impl Report for Outcome<Placed> {
         Console::new(table, Some("gauges.csv"))
             .or(compact)
             .next(format!(
-                "glue by gluing_sheet.md, {readings}, then run `strainbridge recover {job}`"
+                "glue by gluing_sheet.html, {readings}, then run `strainbridge recover {job}`"
             ))
     }
+}
+
+/// The model with the gauges.
+fn scene(placed: &Placed) -> Scene<'_> {
+    let marks = placed.gauges.iter().map(placed_mark).collect();
+    scene_of(&placed.job, &placed.fields, marks)
 }
 
 /// Columns of gauges.csv; `L` stands for the job's length.

@@ -10,7 +10,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::reconcile::{CauseOutcome, CauseSet};
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{Page, Paper, number, table_section};
+use crate::report::page::{KeyNumber, Page, Paper, number, percent, table_section};
 use crate::vehicle::term::UnitNames;
 use crate::workflow::reconcile::{GapFound, Reconciled, effect_in_words};
 
@@ -32,6 +32,43 @@ impl Report for Outcome<Reconciled> {
         let strain = || Some(strain_page(self, self.strain.as_ref()?));
         let page = causes.or_else(motion).or_else(strain)?;
         Some(page.on_paper(Paper::Report))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let gap = &self.gap;
+        let mut numbers = Vec::new();
+        if gap.before.is_finite() {
+            numbers.push(KeyNumber::new(
+                percent(gap.before),
+                "gap between model and measurement, as given",
+            ));
+            let floor = gap.floor.filter(|f| f.is_finite());
+            let floor =
+                floor.map_or_else(String::new, |f| format!(" (noise floor {})", percent(f)));
+            let which = match self.named.is_empty() {
+                true => "gap with the best attempt",
+                false => "gap with the identified cause",
+            };
+            numbers.push(KeyNumber::new(
+                percent(gap.after),
+                format!("{which}{floor}"),
+            ));
+        }
+        let runs = self.strain.as_ref().filter(|_| !self.named.is_empty());
+        numbers.extend(runs.map(|s| {
+            KeyNumber::new(
+                format!("{} of 100", s.wins_of_100),
+                "resampled run sets agree",
+            )
+        }));
+        let next = self.rivals.iter().find(|r| !r.indistinguishable);
+        numbers.extend(next.map(|r| {
+            KeyNumber::new(
+                number(r.evidence_difference),
+                format!("log units to the next explanation, {}", r.id),
+            )
+        }));
+        numbers
     }
 
     fn console(&self) -> Console {

@@ -10,7 +10,7 @@ use crate::model::{Model, Vec3};
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{GaugePoints, agreement};
-use crate::report::page::{Page, Section, figure_section, number, table_section};
+use crate::report::page::{KeyNumber, Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Field, FieldValues, Mark, scene_of, scene_section};
 use crate::report::write_cells_vtu;
 use crate::respond::{Place, ResponseRow, von_mises_history};
@@ -92,6 +92,41 @@ impl Report for Outcome<Responded> {
             page.sections.insert(at, fatigue_section(&self.fatigue));
         }
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let unit = self.stress_unit;
+        let mut numbers = Vec::new();
+        if let Some(e) = self.elements.first() {
+            let value = format!("{} {unit}", plus_minus(e.max_von_mises, e.half_width()));
+            let at =
+                e.at.as_ref()
+                    .map_or_else(String::new, |at| format!(", {at}"));
+            numbers.push(KeyNumber::new(
+                value,
+                format!(
+                    "largest von Mises stress, element {} {}{at}",
+                    e.element, e.surface
+                ),
+            ));
+        }
+        numbers.push(KeyNumber::new(
+            self.hot_spots.len().to_string(),
+            "hot spots: hotter than all neighbours",
+        ));
+        numbers.push(KeyNumber::new(self.states.to_string(), "load states"));
+        let worst = self
+            .fatigue
+            .iter()
+            .max_by(|a, b| a.damage.total_cmp(&b.damage));
+        numbers.extend(worst.map(|f| {
+            let range = format!("{} to {}", number(f.damage_low), number(f.damage_high));
+            KeyNumber::new(
+                number(f.damage),
+                format!("largest damage, element {} ({range})", f.element),
+            )
+        }));
+        numbers
     }
 
     fn console(&self) -> Console {

@@ -6,7 +6,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::job::Job;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page};
 use crate::report::scene::scene_of_job;
 use crate::report::strain::{sensitivity_csv, sensitivity_page};
 use crate::sensitivity::Sensitivity;
@@ -29,6 +29,39 @@ impl Report for Outcome<Sensed> {
         let scene = scene_of_job(&self.job, &self.prepared);
         let page = sensitivity_page(&self.job.title, s, scene.as_ref(), &self.findings);
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let c = &self.conditioning;
+        let scaled = c.condition_number_scaled.map_or("∞".to_owned(), number);
+        vec![
+            KeyNumber::new(self.gauges.to_string(), "gauges or candidates"),
+            KeyNumber::new(self.loads.len().to_string(), "loads"),
+            KeyNumber::new(format!("{} of {}", c.rank, self.loads.len()), "rank"),
+            KeyNumber::new(
+                scaled,
+                "scaled condition number; below 50 the loads separate well",
+            ),
+        ]
+    }
+
+    fn result_table(&self) -> ConsoleTable {
+        let s = &self.prepared.sensitivity;
+        let of_job = |l: usize| self.report_units_of_loads.get(l).map_or("", String::as_str);
+        let row = |(l, name): (usize, &String)| {
+            let column = (0..s.gauges.len()).map(|g| 1e6 * s.values[(g, l)]);
+            let (gauge, most) = column.enumerate().fold((0, 0.0_f64), |best, (g, v)| {
+                match v.abs() > best.1.abs() {
+                    true => (g, v),
+                    false => best,
+                }
+            });
+            let at = s.gauges.get(gauge).cloned().unwrap_or_default();
+            vec![name.clone(), number(most), at, of_job(l).to_owned()]
+        };
+        let rows = self.loads.iter().enumerate().map(row).collect();
+        let head = ["load", "µε per job unit", "at gauge", "report unit"];
+        ConsoleTable::new("Largest sensitivity by load", &head, rows)
     }
 
     fn console(&self) -> Console {

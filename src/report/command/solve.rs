@@ -8,7 +8,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::model::Model;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page};
 use crate::report::scene::scene_of_solution;
 use crate::report::strain::solution_page;
 use crate::report::{PlannedBlock, planned_blocks, rows_of_block, write_vtu};
@@ -43,6 +43,38 @@ impl Report for Outcome<SolvedCases> {
             &self.findings,
         );
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let mut numbers = vec![
+            KeyNumber::new(self.cases.len().to_string(), "load cases solved"),
+            KeyNumber::new(
+                self.dofs.to_string(),
+                format!("unknowns, {} grids", self.grids),
+            ),
+        ];
+        let units = self.model_units.list();
+        let unit = units
+            .iter()
+            .find(|u| u.0 == "mass")
+            .map_or("", |u| u.1.as_str());
+        numbers
+            .extend(self.mass.map(|m| {
+                KeyNumber::new(format!("{} {unit}", number(m.mass)), "mass of the model")
+            }));
+        let first = self.elastic_modes_hz.first();
+        numbers.extend(
+            first.map(|hz| KeyNumber::new(format!("{} Hz", number(*hz)), "first elastic mode")),
+        );
+        let balance = self.balance.iter().map(|b| b.residual);
+        let residual = balance.fold(f64::NAN, f64::max);
+        if residual.is_finite() {
+            numbers.push(KeyNumber::new(
+                format!("{residual:.0e}"),
+                "largest unbalanced share of a load",
+            ));
+        }
+        numbers
     }
 
     fn console(&self) -> Console {

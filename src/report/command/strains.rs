@@ -6,7 +6,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::Page;
+use crate::report::page::{KeyNumber, Page};
 use crate::report::strain::strains_page;
 use crate::report::{strains_columns, write_strains};
 use crate::workflow::strains::Strains;
@@ -26,6 +26,14 @@ impl Report for Outcome<Strains> {
         let title = format!("Strain of {}", self.given);
         let page = strains_page(&title, &self.model, &self.solution, &self.findings);
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        vec![
+            KeyNumber::new(self.rows.to_string(), "rows of strains.csv"),
+            KeyNumber::new(self.subcases.to_string(), "static subcases"),
+            KeyNumber::new(self.model.shells.len().to_string(), "shells of the model"),
+        ]
     }
 
     fn console(&self) -> Console {

@@ -8,7 +8,8 @@ use crate::host::output::Output;
 use crate::host::words::counted;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::page::{Page, table_section};
+use crate::report::figure::{IntervalRow, intervals};
+use crate::report::page::{KeyNumber, Page, Section, figure_section, percent, table_section};
 use crate::units::{half_width, number, plus_minus};
 use crate::workflow::study::{Studied, StudiedLayout, StudiedLoad};
 
@@ -37,6 +38,29 @@ impl Report for Outcome<Studied> {
 
     fn page(&self) -> Option<Page> {
         Some(page(self))
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        let rows = || {
+            let all = self.study.iter();
+            all.filter_map(|r| Some((r.mean_relative_rms?, r)))
+        };
+        let best = rows().min_by(|a, b| a.0.total_cmp(&b.0));
+        let worst = rows().max_by(|a, b| a.0.total_cmp(&b.0));
+        let words = |(error, r): (f64, &StudiedLayout), which: &str| {
+            let meaning = format!("{which} mean error: {} {}, {}", r.layout, r.gauges, r.error);
+            KeyNumber::new(percent(error), meaning)
+        };
+        let mut numbers = Vec::new();
+        numbers.extend(best.map(|b| words(b, "smallest")));
+        numbers.extend(worst.map(|w| words(w, "largest")));
+        numbers.push(KeyNumber::new(
+            self.study.len().to_string(),
+            "layouts and errors compared",
+        ));
+        let trials = self.job.study.as_ref().map_or(0, |s| s.trials);
+        numbers.push(KeyNumber::new(trials.to_string(), "trials each"));
+        numbers
     }
 
     fn console(&self) -> Console {
@@ -171,7 +195,36 @@ fn page(found: &Outcome<Studied>) -> Page {
         title,
         "What errors do to recovered loads",
         &found.findings,
-        vec![section],
+        vec![errors_by_layout(found), section],
+    )
+}
+
+/// Root mean square error of each load in percent of its true size, by layout, and the mean over the loads.
+fn errors_by_layout(found: &Studied) -> Section {
+    let name = |r: &StudiedLayout| format!("{} {}, {}", r.layout, r.gauges, r.error);
+    let of_load = |load: &StudiedLoad| -> (String, Vec<IntervalRow>) {
+        let row = |r: &StudiedLayout| {
+            let of = r.loads.iter().find(|l| l.name == load.name)?;
+            let error = 100.0 * of.relative_rms?;
+            Some((name(r), [0.0, error, error]))
+        };
+        let rows = found.study.iter().filter_map(row).collect();
+        (load.name.clone(), rows)
+    };
+    let mean = |r: &StudiedLayout| {
+        let error = 100.0 * r.mean_relative_rms?;
+        Some((name(r), [0.0, error, error]))
+    };
+    let mut groups = vec![(
+        "mean of all loads".to_owned(),
+        found.study.iter().filter_map(mean).collect(),
+    )];
+    let first = found.study.first().map_or(&[][..], |row| &row.loads);
+    groups.extend(first.iter().filter(|l| l.wanted).map(of_load));
+    figure_section(
+        "Error by layout",
+        intervals(&groups, "rms error of the load, % of its size"),
+        "A shorter line is better: the root mean square error over all trials.",
     )
 }
 

@@ -5,7 +5,7 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{Block, Page, Section};
+use crate::report::page::{Block, KeyNumber, Page, Section};
 use crate::workflow::verify::{Difference, Verified};
 
 impl Report for Outcome<Verified> {
@@ -36,6 +36,13 @@ impl Report for Outcome<Verified> {
         Some(page)
     }
 
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        vec![
+            KeyNumber::new(self.same.len().to_string(), "files that are the same"),
+            KeyNumber::new(self.differs.len().to_string(), "differences"),
+        ]
+    }
+
     fn console(&self) -> Console {
         let row = |d: &Difference| {
             let cells = [&d.file, &d.at, &d.was, &d.now];
@@ -46,6 +53,9 @@ impl Report for Outcome<Verified> {
             &["file", "where", "in the folder", "now"],
             self.differs.iter().map(row).collect(),
         );
-        Console::new(table, None)
+        Console::new(table, None).next(match self.differs.is_empty() {
+            true => "keep the folder with its inputs: both belong together",
+            false => "restore the inputs that differ, or run the command of the folder again",
+        })
     }
 }

@@ -232,7 +232,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
 fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Taken) {
     const SIZE: f64 = 6.0;
     let text = shortened(name, 16);
-    let (wide, tall) = (1.15 * text.chars().count() as f64, 2.2);
+    let (wide, tall) = (1.35 * text.chars().count() as f64, 2.8);
     for far in [1.6, 3.0, 5.0, 8.0, 11.0] {
         for turn in 0..12 {
             let angle = f64::from(turn) * std::f64::consts::PI / 6.0;

@@ -19,16 +19,13 @@ pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
         "marker": { "symbol": "line-ew-open", "size": 16, "color": "#1c2530" },
         "hovertemplate": format!("%{{x}}: floor %{{y:.4}} {unit}<extra></extra>"),
     });
+    let mut traces = vec![bar("before", 0, "#d68910"), bar("after", 1, "#1f618d")];
+    if channels.iter().any(|c| c.1[2].is_finite()) {
+        traces.push(floor);
+    }
     Figure {
         label: "gap before and after".into(),
-        choices: vec![(
-            String::new(),
-            vec![
-                bar("before", 0, "#d68910"),
-                bar("after", 1, "#1f618d"),
-                floor,
-            ],
-        )],
+        choices: vec![(String::new(), traces)],
         layout: json!({
             "xaxis": { "type": "category" },
             "yaxis": { "title": { "text": format!("{unit} rms") }, "rangemode": "tozero" },

@@ -1,5 +1,6 @@
 //! What a page is made of. Plain text throughout: each rendering escapes it in its own way.
 
+use super::key_number::KeyNumber;
 use crate::finding::Finding;
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::pictures;
@@ -19,6 +20,8 @@ pub struct Page {
     pub lead: String,
     /// In any order: the worst are shown first.
     pub findings: Vec<Finding>,
+    /// What the first screen shows.
+    pub first: FirstScreen,
     /// Parts.
     pub sections: Vec<Section>,
     /// Whether it is also written as `report.pdf`.
@@ -44,6 +47,7 @@ impl Page {
             summary: String::new(),
             lead: lead.to_owned(),
             findings: findings.to_vec(),
+            first: FirstScreen::default(),
             sections,
             paper: Paper::None,
         }
@@ -57,6 +61,11 @@ impl Page {
     /// Adds the sentence that states the result.
     pub fn with_summary(self, summary: String) -> Self {
         Self { summary, ..self }
+    }
+
+    /// Adds the first screen.
+    pub fn with_first(self, first: FirstScreen) -> Self {
+        Self { first, ..self }
     }
 
     /// The page as it lies in `folder`: paths of linked files lead from there.
@@ -83,6 +92,21 @@ impl Page {
         sorted.sort_by_key(|f| std::cmp::Reverse(f.severity));
         sorted
     }
+}
+
+/// Content of the first screen in addition to summary, errors and picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FirstScreen {
+    /// Command that computed the result; empty for a page without a first screen.
+    pub command: &'static str,
+    /// Key numbers.
+    pub numbers: Vec<KeyNumber>,
+    /// Line over the table.
+    pub title: String,
+    /// Table of the result.
+    pub table: Table,
+    /// File of the folder with all rows.
+    pub file: Option<&'static str>,
 }
 
 /// A titled part of a page.
@@ -176,6 +200,24 @@ pub struct Card {
 }
 
 impl Card {
+    /// A card with nothing but a picture.
+    pub(in crate::report) fn of_picture(picture: Picture) -> Self {
+        Self {
+            title: String::new(),
+            text: String::new(),
+            numbers: Vec::new(),
+            links: Vec::new(),
+            is_bad: false,
+            picture: Some(picture),
+        }
+    }
+
+    /// The same card with the first picture of a figure.
+    pub fn with_figure(self, figure: &Figure) -> Self {
+        let picture = pictures(figure).into_iter().next().or(self.picture);
+        Self { picture, ..self }
+    }
+
     /// A card with the first picture of a report: of the model, or where it is `of_numbers` of its first figure.
     pub fn of_page(title: impl Into<String>, page: Option<&Page>, of_numbers: bool) -> Self {
         let blocks = || {

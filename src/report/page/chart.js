@@ -295,7 +295,15 @@ function chart(figure, data) {
   }
 
   draw();
-  if (choice) choice.addEventListener("change", () => { zoom = null; draw(); });
+  if (choice) matching(figure, choice);
+  if (choice) choice.addEventListener("change", () => { zoom = null; draw(); matching(figure, choice); });
   let known = canvas.clientWidth;
   new ResizeObserver(() => { if (canvas.clientWidth !== known) { known = canvas.clientWidth; draw(); } }).observe(canvas);
+}
+
+// In a table next to a figure, the rows of what the figure shows.
+function matching(figure, choice) {
+  const name = choice.selectedOptions[0].textContent;
+  const rows = [...figure.parentElement.querySelectorAll(":scope > .scroll tbody tr")], of = (row) => row.cells[0].textContent === name;
+  if (rows.some(of)) for (const row of rows) row.hidden = !of(row);
 }

@@ -1,11 +1,12 @@
-//! A page as one HTML file: no script from elsewhere, findings first.
+//! A page as one HTML file: no script from elsewhere, the first screen with summary, errors, picture and table first.
 
-use super::block::{Block, Card, Page, Table};
-use crate::finding::{Finding, Severity};
+use super::block::{Block, Card, Page};
+use super::findings::{Sorted, judged};
+use super::first::{first_screen, notes_and_tests};
+use super::table::{list_of_links, table};
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{pictures, to_svg};
 use crate::report::figure::scripts;
-use crate::units::number;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("page.css");
@@ -13,10 +14,10 @@ const STYLE: &str = include_str!("page.css");
 impl Page {
     /// `report.html`: works from the file, without a network.
     pub fn to_html(&self) -> String {
-        let findings = self.worst_first();
+        let findings = Sorted::of(self);
         let sections = html! {
-            @for s in &self.sections {
-                section { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }
+            @for (i, s) in self.sections.iter().enumerate() {
+                section.pair[is_pair(&s.blocks)] id=(format!("s{}", i + 1)) { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }
             }
         };
         let scripts = scripts(&sections.0);
@@ -31,14 +32,18 @@ impl Page {
                     noscript { style { ".controls,.pick,.bar,.tools,.canvas{display:none}" } }
                 }
                 body {
-                    h1 { (self.title) }
-                    @if !self.summary.is_empty() { p.summary { b { (self.summary) } } }
-                    p.muted { (self.lead) }
-                    @if !(findings.is_empty() && self.is_of_cards()) {
-                        h2 { "Findings" }
-                        (judged(&findings))
+                    main {
+                        @if self.is_of_cards() {
+                            h1 { (self.title) }
+                            p.summary { b { (self.summary) } }
+                            p.muted { (self.lead) }
+                            @if !self.findings.is_empty() { (judged(&self.worst_first())) }
+                        } @else {
+                            (first_screen(self, &findings))
+                        }
+                        (sections)
+                        (notes_and_tests(self, &findings))
                     }
-                    (sections)
                     (PreEscaped(scripts))
                 }
             }
@@ -47,9 +52,11 @@ impl Page {
     }
 }
 
-/// Whether the answer can be relied on, and why.
-pub(in crate::report) fn judged(findings: &[&Finding]) -> Markup {
-    html! { (verdict(findings)) (listed(findings)) }
+/// Whether figures and a table of the same numbers have room next to each other.
+fn is_pair(blocks: &[Block]) -> bool {
+    let figures = blocks.iter().any(|b| matches!(b, Block::Figure(_)));
+    let tables = blocks.iter().filter(|b| matches!(b, Block::Table(_)));
+    figures && tables.count() == 1
 }
 
 /// A block as a page has it.
@@ -58,14 +65,14 @@ pub(in crate::report) fn block(b: &Block) -> Markup {
         Block::Text(t) => html! { p { (t) } },
         Block::Stressed(lead, rest) => html! { p { b { (lead) } " " (rest) } },
         Block::Note(t) => html! { p.muted { (t) } },
-        Block::Table(t) => table(t),
+        Block::Table(t) => table(t, ""),
         Block::Figure(f) => html! {
             (f)
             noscript { @for p in pictures(f) { (still(&p, &f.label)) } }
         },
         Block::Scene(s) => html! {
             (s.markup)
-            noscript { (still(&s.still, "the model with its gauges and loads")) }
+            noscript { p.muted { "Without scripts the model is shown as a still picture at the top of the page." } }
         },
         Block::Lines(t) => html! { pre { (t) } },
         Block::Cards(cards) => html! { div.cards { @for c in cards { (card(c)) } } },
@@ -73,15 +80,6 @@ pub(in crate::report) fn block(b: &Block) -> Markup {
         Block::Folded { summary, blocks } => html! {
             details { summary { (summary) } @for b in blocks { (block(b)) } }
         },
-    }
-}
-
-fn list_of_links(links: &[(String, String)]) -> Markup {
-    html! {
-        @for (i, (words, path)) in links.iter().enumerate() {
-            @if i > 0 { " · " }
-            a href=(path) { (words) }
-        }
     }
 }
 
@@ -105,119 +103,6 @@ fn card(c: &Card) -> Markup {
             p { (c.text) }
             p.numbers { @for (value, what) in &c.numbers { span { b { (value) } " " (what) } } }
             @if !c.links.is_empty() { p { (list_of_links(&c.links)) } }
-        }
-    }
-}
-
-/// A table that scrolls sideways on narrow screens.
-fn table(t: &Table) -> Markup {
-    html! {
-        div.scroll {
-            table {
-                @if !t.head.is_empty() { tr { @for h in &t.head { th { (h) } } } }
-                @for (r, row) in t.rows.iter().enumerate() {
-                    tr { @for (c, cell) in row.iter().enumerate() { td { (linked(t, r, c, cell)) } } }
-                }
-            }
-        }
-    }
-}
-
-/// A cell, as a link where it leads to a file.
-fn linked(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
-    // Links stand in the order of their rows.
-    let first = t.links.partition_point(|l| l.row < row);
-    let mut of_row = t.links.iter().skip(first).take_while(|l| l.row == row);
-    match of_row.find(|l| l.column == column) {
-        Some(l) => html! { a href=(reference(&l.path)) title=(l.title) { (cell) } },
-        None => html! { (cell) },
-    }
-}
-
-/// A path as a reference of a page: what has a meaning there by its number.
-fn reference(path: &str) -> String {
-    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-_.~/".contains(&b);
-    let mut out = String::new();
-    for b in path.replace('\\', "/").bytes() {
-        match plain(b) {
-            true => out.push(char::from(b)),
-            false => out.push_str(&format!("%{b:02X}")),
-        }
-    }
-    out
-}
-
-/// Whether the answer can be relied on, and how much there is to say of it.
-fn verdict(findings: &[&Finding]) -> Markup {
-    let count = |severity, one: &str, many: &str| {
-        let n = findings.iter().filter(|f| f.severity == severity).count();
-        match n {
-            0 => None,
-            1 => Some(format!("1 {one}")),
-            n => Some(format!("{n} {many}")),
-        }
-    };
-    let errors = count(Severity::Error, "error", "errors");
-    let warnings = count(Severity::Warning, "warning", "warnings");
-    let lead = match (&errors, &warnings) {
-        (Some(_), _) => "This answer can't be relied on: ",
-        (None, Some(_)) => "Look before you trust this answer: ",
-        (None, None) => "Nothing speaks against this answer: ",
-    };
-    let counts = [errors, warnings, count(Severity::Info, "note", "notes")];
-    let said: Vec<String> = counts.into_iter().flatten().collect();
-    html! {
-        @if said.is_empty() { p { "None." } } @else { p { b { (lead) } (said.join(", ")) "." } }
-    }
-}
-
-/// The findings by code: of those that are alike the first, the others folded; notes folded altogether.
-fn listed(findings: &[&Finding]) -> Markup {
-    let mut groups: Vec<Vec<&Finding>> = Vec::new();
-    for &f in findings {
-        let alike = |g: &&mut Vec<&Finding>| {
-            g.iter()
-                .any(|o| (o.severity, o.code) == (f.severity, f.code))
-        };
-        match groups.iter_mut().find(alike) {
-            Some(group) => group.push(f),
-            None => groups.push(vec![f]),
-        }
-    }
-    let is_note = |g: &Vec<&Finding>| g.iter().all(|f| f.severity == Severity::Info);
-    let (notes, serious): (Vec<_>, Vec<_>) = groups.into_iter().partition(is_note);
-    html! {
-        @for g in &serious { (group(g)) }
-        @if !notes.is_empty() {
-            details { summary { "Notes" } @for g in &notes { (group(g)) } }
-        }
-    }
-}
-
-/// Findings of one code.
-fn group(findings: &[&Finding]) -> Markup {
-    let more = findings.len().saturating_sub(1);
-    html! {
-        @for f in findings.iter().take(1) { (finding(f)) }
-        @if more > 0 {
-            details { summary { (more) " more like it" } @for f in findings.iter().skip(1) { (finding(f)) } }
-        }
-    }
-}
-
-fn finding(f: &Finding) -> Markup {
-    let (class, word) = match f.severity {
-        Severity::Error => ("f error", "error"),
-        Severity::Warning => ("f warning", "warning"),
-        Severity::Info => ("f info", "note"),
-    };
-    html! {
-        div class=(class) {
-            b { (word) } " · " (f.subject) ": " (f.message.trim_end_matches('.')) "."
-            @if let Some((m, limit)) = f.shown_numbers() {
-                small { " Measured " (number(m)) @if let Some(l) = limit { ", limit " (number(l)) } "." }
-            }
-            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy.trim_end_matches('.')) "." } } }
         }
     }
 }

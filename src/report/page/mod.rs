@@ -1,10 +1,16 @@
 //! A report page: what it says as plain blocks, drawn as HTML here and as PDF by `report::pdf`.
 
 mod block;
+mod findings;
+mod first;
 mod html;
+mod key_number;
+mod table;
 
 pub use crate::units::number;
 pub use block::{
-    Block, Card, CellLink, Page, Paper, Section, Table, figure_section, table_section,
+    Block, Card, CellLink, FirstScreen, Page, Paper, Section, Table, figure_section, table_section,
 };
-pub(in crate::report) use html::{block as block_html, judged};
+pub(in crate::report) use findings::judged;
+pub(in crate::report) use html::block as block_html;
+pub use key_number::{KeyNumber, percent};

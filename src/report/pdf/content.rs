@@ -4,9 +4,10 @@ use super::columns::{Fitted, LONGEST_WORD, fitted, is_numeric};
 use super::glyphs::{breakable, printable, short_printable};
 use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
+use crate::host::words::{capital, numbers_in_words};
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{STROKES, pictures, views};
-use crate::report::page::{Block, Card, Page, Paper, Section, Table, number};
+use crate::report::page::{Block, Card, Page, Paper, Section, Table};
 use serde_json::{Value, json};
 
 /// Where a report comes from.
@@ -63,11 +64,8 @@ fn finding(f: &Finding) -> Value {
         Severity::Warning => ("Warning", "#d68910"),
         Severity::Info => ("Note", "#5d7f9e"),
     };
-    let numbers = match f.shown_numbers() {
-        Some((m, Some(l))) => format!("Measured {}, limit {}.", number(m), number(l)),
-        Some((m, None)) => format!("Measured {}.", number(m)),
-        None => String::new(),
-    };
+    let numbers = numbers_in_words(f);
+    let numbers = numbers.map_or_else(String::new, |words| format!("{}.", capital(&words)));
     json!({
         "word": word,
         "colour": colour,

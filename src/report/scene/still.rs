@@ -40,7 +40,7 @@ struct Face {
 }
 
 /// The picture: faces from the farthest to the nearest, the first field as colour, the first loads as arrows, all gauges.
-pub(super) fn still(scene: &Scene) -> Picture {
+pub(in crate::report) fn still(scene: &Scene) -> Picture {
     let eye = Vec3::from(EYE).normalize();
     let right = Vec3::new(-eye.y, eye.x, 0.0).normalize();
     let up = eye.cross(&right);
@@ -111,7 +111,8 @@ pub(super) fn still(scene: &Scene) -> Picture {
         },
     );
     if let Some(field) = field.filter(|_| most > 0.0) {
-        legend(&mut picture, field, most);
+        let all = colours.iter().flatten().copied().filter(|v| v.is_finite());
+        legend(&mut picture, field, [most, all.fold(most, f64::max)]);
     }
     picture
 }
@@ -205,7 +206,7 @@ fn arrow(
 }
 
 /// The colours with their ends, at the lower left.
-fn legend(picture: &mut Picture, field: &Field, most: f64) {
+fn legend(picture: &mut Picture, field: &Field, most: [f64; 2]) {
     const CELL: f64 = 5.0;
     let y = picture.size[1] - 4.0;
     let steps = VALUES as usize;
@@ -216,17 +217,17 @@ fn legend(picture: &mut Picture, field: &Field, most: f64) {
             .shapes
             .push(Shape::Area(area, format!("#{r:02x}{g:02x}{b:02x}")));
     }
-    let words = format!(
-        "0 to {} {}: {}",
-        number(most * field.scale),
-        field.unit,
-        field.name
-    );
+    let [covered, largest] = most.map(|v| number(v * field.scale));
+    let words = match covered == largest {
+        true => format!("0 to {covered} {}", field.unit),
+        false => format!("0 to ≥ {covered}, largest {largest} {}", field.unit),
+    };
     picture.word(
         [CELL * (steps + 1) as f64 + 2.0, y + 1.25],
         [0.0, 0.5],
         &words,
     );
+    picture.word([0.0, y - 1.2], [0.0, 1.0], &field.name);
 }
 
 /// Where the flat picture lies on the paper.

@@ -2,16 +2,18 @@
 
 use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
-use crate::report::page::{Block, Page, Section, number, table_section};
+use crate::report::figure::{IntervalRow, intervals};
+use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::units::Quantity;
 use crate::workflow::calibrate::{
-    Calibrated, CalibratedGauge, CheckLoad, GlueSummary, LackOfFitSummary, LoadResidual,
-    NextRunSummary,
+    Calibrated, CalibratedGauge, CheckLoad, GlueSummary, LackOfFitSummary, LeftOutLoad,
+    LeftOutSummary, LoadResidual, NextRunSummary,
 };
 
 /// The page of `calibrate`: what was learnt, left-out runs against what is known, each gauge's model and calibrated row.
 pub fn calibrate_page(title: &str, answer: &Calibrated, findings: &[Finding]) -> Page {
     let mut sections = vec![summary(answer)];
+    sections.extend(errors_of_left_out(answer));
     sections.extend(checks(answer));
     sections.extend([residuals(answer), lack_of_fit(answer), left_out(answer)]);
     sections.extend(as_glued(answer));
@@ -57,6 +59,32 @@ fn summary(answer: &Calibrated) -> Section {
         pairs.push(("Next run worth making".to_owned(), gain));
     }
     Section::new("What was learnt", vec![Block::pairs(&pairs)])
+}
+
+/// Errors of the loads of left-out runs with their 95 % intervals, by load; `None` without known loads.
+fn errors_of_left_out(answer: &Calibrated) -> Option<Section> {
+    let left_out = &answer.calibration.left_out;
+    let first = left_out.first()?;
+    let of_load = |(l, load): (usize, &LeftOutLoad)| -> (String, Vec<IntervalRow>) {
+        let row = |r: &LeftOutSummary| {
+            let load = r.loads.get(l)?;
+            let known = load.known?;
+            let ends = [load.low, load.value, load.high].map(|v| v - known);
+            Some((r.run.clone(), ends))
+        };
+        let rows = left_out.iter().filter_map(row).collect();
+        (format!("{}, {}", load.name, load.unit), rows)
+    };
+    let mut groups: Vec<_> = first.loads.iter().enumerate().map(of_load).collect();
+    groups.retain(|g| !g.1.is_empty());
+    if groups.is_empty() {
+        return None;
+    }
+    Some(figure_section(
+        "Errors of left-out runs",
+        intervals(&groups, "recovered less known load"),
+        "Each run is recovered with S from the other runs. An interval that contains 0 contains the known load.",
+    ))
 }
 
 /// Check loads, with the load that is worth applying next; `None` without check runs.

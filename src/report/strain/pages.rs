@@ -159,6 +159,10 @@ pub struct Recovered<'a> {
     pub by_gauge: &'a [(String, f64, f64)],
     /// First table.
     pub numbers: &'a [(String, String)],
+    /// Loads of static runs, a row a run and load: run, load, low, value, high, share of the typical size.
+    pub table: Vec<Vec<String>>,
+    /// Whether the table lacks runs.
+    pub is_cut: bool,
 }
 
 /// Runs whose loads are drawn; all are in `loads.csv`.
@@ -174,9 +178,13 @@ pub fn recover_page(
     let mut sections = vec![Section::new("Result", vec![Block::pairs(found.numbers)])];
     sections.extend(model_section(scene));
     let mut loads = bars(found.runs);
-    if found.runs.len() > MOST_RUNS {
+    if !found.table.is_empty() {
+        let head = ["run", "load", "low", "value", "high", "± of typical size"];
+        loads.push(Block::table(&head, found.table.clone()));
+    }
+    if found.is_cut || found.runs.len() > MOST_RUNS {
         loads.push(Block::Note(format!(
-            "The first {MOST_RUNS} of {} runs; all are in loads.csv.",
+            "The first of {} runs; all are in loads.csv.",
             found.runs.len()
         )));
     }

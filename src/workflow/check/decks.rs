@@ -242,7 +242,12 @@ impl DeckEntry {
         }
     }
 
-    /// For people.
+    /// Number of grids and of elements.
+    pub fn counts(&self) -> [usize; 2] {
+        [self.grids, self.elements]
+    }
+
+    /// Returns its content in words.
     pub fn text(&self) -> String {
         let cards: Vec<String> = self.cards.iter().map(|(k, n)| format!("{k} {n}")).collect();
         let solution = self

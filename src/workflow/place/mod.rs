@@ -189,6 +189,7 @@ impl LayoutOf {
     fn with(self, fields: Fields, job: &Job) -> Placed {
         Placed {
             gauges: self.gauges,
+            files: outcome::FILES,
             candidates: self.candidates,
             criterion: job.placement.criterion.name(),
             log_det: self.chosen.log_det,

@@ -17,6 +17,8 @@ use serde::Serialize;
 pub struct Placed {
     /// The gauges chosen.
     pub gauges: Vec<PlacedGauge>,
+    /// Files for the workshop: the table of gauges and the gluing sheets.
+    pub files: [&'static str; 4],
     /// What they were chosen from.
     pub candidates: Candidates,
     /// What was optimised, as a job names it.
@@ -66,6 +68,14 @@ pub struct Placed {
     #[serde(skip)]
     pub job: Job,
 }
+
+/// Files for the workshop.
+pub(super) const FILES: [&str; 4] = [
+    "gauges.csv",
+    "gluing_sheet.html",
+    "gluing_sheet.csv",
+    "gluing_sheet.md",
+];
 
 impl Answer for Placed {
     const COMMAND: &'static str = "place";

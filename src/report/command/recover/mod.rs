@@ -5,6 +5,7 @@
 mod columns;
 mod compared;
 mod console;
+mod first;
 mod folder;
 mod nastran;
 #[cfg(feature = "parquet")]
@@ -21,8 +22,8 @@ use super::Report;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::report::console::Console;
-use crate::report::page::Page;
+use crate::report::console::{Console, ConsoleTable};
+use crate::report::page::{KeyNumber, Page};
 use crate::workflow::recover::{Recovered, States};
 
 impl Report for Outcome<Recovered> {
@@ -43,6 +44,14 @@ impl Report for Outcome<Recovered> {
         };
         compared::add_sections(&mut page, self);
         Some(page)
+    }
+
+    fn key_numbers(&self) -> Vec<KeyNumber> {
+        first::key_numbers(self)
+    }
+
+    fn result_table(&self) -> ConsoleTable {
+        first::result_table(self)
     }
 
     fn console(&self) -> Console {

@@ -161,6 +161,8 @@ pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Pa
         traces: &traces(record),
         by_gauge: &by_gauge(&record.gauges),
         numbers: &numbers,
+        table: Vec::new(),
+        is_cut: false,
     };
     recover_page(&job.title, scene.as_ref(), &found, &outcome.findings)
 }

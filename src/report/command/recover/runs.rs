@@ -1,6 +1,7 @@
 //! Static states: `loads.csv`, `loads.xlsx`, the page, `loads.bdf`, `loads.vtu`.
 
 use super::columns::{by_gauge, columns, columns_with_units};
+use super::first::by_run;
 use super::{nastran, vtu};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
@@ -107,6 +108,7 @@ pub(super) fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns) -> Page {
         scene.pointing = Pointing::Gauges;
         scene
     });
+    let (table, is_cut) = by_run(outcome, runs);
     let found = OnPage {
         sensitivity: s,
         runs: &shown,
@@ -114,6 +116,8 @@ pub(super) fn page(outcome: &Outcome<Recovered>, runs: &RecoveredRuns) -> Page {
         traces: &[],
         by_gauge: &by_gauge(&runs.gauges),
         numbers: &numbers,
+        table,
+        is_cut,
     };
     recover_page(&job.title, scene.as_ref(), &found, &outcome.findings)
 }

@@ -1,0 +1,40 @@
+//! Numbers of a first screen.
+
+/// A number that answers the question of a command.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct KeyNumber {
+    /// Value with its unit.
+    pub value: String,
+    /// Meaning of the value.
+    pub meaning: String,
+}
+
+impl KeyNumber {
+    /// Returns a key number with its meaning.
+    pub fn new(value: impl Into<String>, meaning: impl Into<String>) -> Self {
+        /// Characters of a value that stay on one line.
+        const ONE_LINE: usize = 18;
+        let value: String = value.into();
+        let value = match value.chars().count() <= ONE_LINE {
+            true => value.replace(' ', "\u{a0}"),
+            false => value,
+        };
+        Self {
+            value,
+            meaning: meaning.into(),
+        }
+    }
+}
+
+/// Returns a share in percent with three digits.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if !percent.is_finite() {
+        return "-".to_owned();
+    }
+    let digits = match percent.abs() {
+        v if v >= 100.0 || v == 0.0 => 0,
+        v => (2 - v.log10().floor() as i32).clamp(0, 4) as usize,
+    };
+    format!("{percent:.digits$} %")
+}

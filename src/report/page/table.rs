@@ -1,0 +1,58 @@
+//! Tables and links of a page.
+
+use super::block::Table;
+use maud::{Markup, html};
+
+/// A table that scrolls sideways on narrow screens; its first column names the rows.
+pub(super) fn table(t: &Table, caption: &str) -> Markup {
+    html! {
+        div.scroll tabindex="0" {
+            table.fields[t.head.is_empty()] {
+                @if !caption.is_empty() { caption { (caption) } }
+                @if !t.head.is_empty() {
+                    thead { tr { @for h in &t.head { th scope="col" { (h) } } } }
+                }
+                tbody { @for (r, row) in t.rows.iter().enumerate() {
+                    tr { @for (c, cell) in row.iter().enumerate() {
+                        @if c == 0 { th scope="row" { (linked(t, r, c, cell)) } }
+                        @else { td { (linked(t, r, c, cell)) } }
+                    } }
+                } }
+            }
+        }
+    }
+}
+
+/// A cell, as a link where it leads to a file.
+fn linked(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
+    // Links stand in the order of their rows.
+    let first = t.links.partition_point(|l| l.row < row);
+    let mut of_row = t.links.iter().skip(first).take_while(|l| l.row == row);
+    match of_row.find(|l| l.column == column) {
+        Some(l) => html! { a href=(reference(&l.path)) title=(l.title) { (cell) } },
+        None => html! { (cell) },
+    }
+}
+
+/// A path as a reference of a page: what has a meaning there by its number.
+fn reference(path: &str) -> String {
+    let plain = |b: u8| b.is_ascii_alphanumeric() || b"-_.~/".contains(&b);
+    let mut out = String::new();
+    for b in path.replace('\\', "/").bytes() {
+        match plain(b) {
+            true => out.push(char::from(b)),
+            false => out.push_str(&format!("%{b:02X}")),
+        }
+    }
+    out
+}
+
+/// Links in one line.
+pub(super) fn list_of_links(links: &[(String, String)]) -> Markup {
+    html! {
+        @for (i, (words, path)) in links.iter().enumerate() {
+            @if i > 0 { " · " }
+            a href=(path) { (words) }
+        }
+    }
+}
