@@ -4,7 +4,8 @@ use super::types::{CalibratedRange, Task};
 use super::unknown::known_of;
 
 impl CalibratedRange {
-    /// Range of the runs with these numbers, strain less the zero of each gauge. A run in which a load is not known says nothing of the range of this load.
+    /// Range of the runs with these numbers, strain less the zero of each gauge. A run in which a load is not known says nothing of the range of
+    /// this load.
     pub(super) fn of(task: &Task, used: &[usize], zero: &[f64]) -> Self {
         let over = |value: &dyn Fn(usize) -> Option<f64>| {
             let values = used.iter().filter_map(|r| value(*r));

@@ -16,7 +16,8 @@ pub(super) struct Asked {
 }
 
 impl Asked {
-    /// Reads which runs `[calibration]` and the column `check` of the table select, whose runs are in column `key`; runs of the strain file are `strain`.
+    /// Reads which runs `[calibration]` and the column `check` of the table select, whose runs are in column `key`; runs of the strain file are
+    /// `strain`.
     pub fn of(
         (job, headers): (&Job, &[Column]),
         (table, key): (&Table, usize),
