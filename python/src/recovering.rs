@@ -183,6 +183,7 @@ fn in_unit(
         loads: (0..k).map(|l| Load::named(format!("column {l}"))).collect(),
         values: Matrix::from_fn(n, k, |g, l| rows[g * k + l] * unit),
         uncertainty: None,
+        noise: None,
     };
     let mut findings = check_separability(&s);
     separable(&s, &findings)?;
@@ -196,6 +197,7 @@ fn in_unit(
     } else {
         recover(&s, &readings(samples, n, unit), errors)
     };
+    let s = judged.s(&s);
     let all: Vec<usize> = (0..n).collect();
     let whole = Gain::new(&s, &all, errors, 1.0, &judged.typical)
         .filter(|gain| (0..k).all(|l| gain.is_seen(l)))

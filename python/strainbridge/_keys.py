@@ -254,8 +254,12 @@ class MeasuredKeys(Section):
     """Runs, or a second file, that no fit uses; default: none."""
     model_uncertainty_rel: _Key[Any]
     """Error of the predicted strain, one standard deviation, a fraction; default: 0."""
+    noise_correlation: _Key[Any]
+    """Correlation of the noise of any two gauges, 0 to less than 1: what they have in common, such as hum or a common supply; default: 0, or
+    what a zero record or the residuals of many runs show."""
     noise_microstrain: _Key[Any]
-    """Noise of a reading, one standard deviation [microstrain]; default: 1."""
+    """Noise of a reading, one standard deviation: one number, or one for each gauge such as { G1 = 0.5, G2 = 1.2 } [microstrain]; default:
+    1."""
     reference: _Key[Any]
     """none: loads are changes. gravity, or a subcase (of the results; without results, of the deck): its strain is added, and loads are totals;
     default: none."""

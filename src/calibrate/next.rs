@@ -180,6 +180,7 @@ fn sigma(s: &Sensitivity, noise: f64, sizes: &[f64], l: usize, covariance: &[f64
         gauges: s.gauges.clone(),
         loads: s.loads.clone(),
         values: s.values.clone(),
+        noise: None,
         uncertainty: Some(Uncertainty {
             covariance: Vec::new(),
             scatter: covariance.iter().map(|c| c / q2).collect(),

@@ -56,11 +56,8 @@ fn with_noise(task: &Task, run: &KnownRun, phi: Vec<f64>) -> Equation {
         .collect();
     let m = gauges.len();
     let noise = (task.noise * task.noise * run.noise_factor).max(f64::MIN_POSITIVE);
-    let mut covariance = vec![0.0; m * m];
-    covariance
-        .iter_mut()
-        .step_by(m + 1)
-        .for_each(|v| *v = noise);
+    let between = |i: usize| noise * task.noise_between(gauges[i / m], gauges[i % m]);
+    let covariance = (0..m * m).map(between).collect();
     Equation {
         y: gauges.iter().map(|&g| run.strain[g]).collect(),
         gauges,

@@ -181,6 +181,7 @@ pub(super) fn sensitivity_of(
     Sensitivity {
         gauges: task.gauges.clone(),
         loads: task.loads[..k].to_vec(),
+        noise: task.gauge_noise.clone(),
         uncertainty: Some(Uncertainty {
             covariance: covariance.collect(),
             scatter: scatter.covariance.clone(),
@@ -302,9 +303,9 @@ fn equation(
     let mut own = vec![0.0; m * m];
     for (i, g) in gauges.iter().enumerate() {
         for (j, h) in gauges.iter().enumerate() {
-            own[i * m + j] = times.unwrap_or(0.0) * scatter.covariance[g * n + h];
+            own[i * m + j] = times.unwrap_or(0.0) * scatter.covariance[g * n + h]
+                + noise * task.noise_between(*g, *h);
         }
-        own[i * m + i] += noise;
     }
     let y: Vec<f64> = gauges.iter().map(|&g| run.strain[g]).collect();
     let s: Vec<Vec<f64>> = gauges.iter().map(|&g| mean[g].clone()).collect();
@@ -336,7 +337,9 @@ pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f6
             .map(|(y, p)| y - p)
             .collect(),
         q2: of_loads.iter().map(|p| p * p).sum::<f64>() / n.max(1) as f64,
-        explained: vec![noise.max(f64::MIN_POSITIVE); n],
+        explained: (0..n)
+            .map(|g| (noise * task.noise_between(g, g)).max(f64::MIN_POSITIVE))
+            .collect(),
         group: run.group,
     }
 }

@@ -3,7 +3,7 @@
 use crate::estimate::LoadEstimate;
 use crate::finding::Finding;
 use crate::linalg::Matrix;
-use crate::sensitivity::{Load, Sensitivity};
+use crate::sensitivity::{GaugeNoise, Load, Sensitivity};
 
 /// What is known of the loads of one run: Gaussian, job units.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,6 +115,8 @@ pub struct Task {
     pub loads: Vec<Load>,
     /// Noise of a reading, strain, 1 sd.
     pub noise: f64,
+    /// Noise of the gauges in units of it; `None` where each has that noise, independent of the others.
+    pub gauge_noise: Option<GaugeNoise>,
     /// The model, where there is one.
     pub model: Option<ModelPrior>,
     /// Runs of known load.
@@ -125,6 +127,16 @@ pub struct Task {
     pub common_zero: CommonZero,
     /// Relative error, 1 sd, that the known loads of all runs share.
     pub scale_sd: f64,
+}
+
+impl Task {
+    /// Returns the covariance of the noise of gauges `g` and `h` in units of the square of [`Self::noise`].
+    pub(super) fn noise_between(&self, g: usize, h: usize) -> f64 {
+        match &self.gauge_noise {
+            Some(noise) => noise.between(g, h),
+            None => f64::from(u8::from(g == h)),
+        }
+    }
 }
 
 /// Smallest and largest value of the calibration runs by column; not a number where no run has one.

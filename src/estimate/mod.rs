@@ -19,5 +19,5 @@ pub use deviations::Deviations;
 pub use intervals::{NORMAL_95, student, student_95};
 pub use linear::{LinearEstimate, LinearGaussian, ReadingErrors};
 pub use loads::LoadEstimate;
-pub use statistics::{median, rms, weighted_median};
+pub use statistics::{effective_rows, independent_share, median, rms, weighted_median};
 pub use tails::{COVERAGE, TOO_FEW, chance_of_so_few, chi_square_tail, f_tail, student_tail};

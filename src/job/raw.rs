@@ -1,6 +1,6 @@
 //! The job as written: every key of every section, each value with its place in the text, nothing required here.
 
-use super::shapes::{Counts, Ids, NumberOrWord, PropertyIds, Texts};
+use super::shapes::{Counts, Ids, NumberOrNumbers, NumberOrWord, PropertyIds, Texts};
 use super::spanned::Spanned;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -196,7 +196,8 @@ pub(super) struct RawMeasured {
     pub zero: S<String>,
     pub zero_runs: S<Vec<Spanned<String>>>,
     pub reference: S<NumberOrWord>,
-    pub noise_microstrain: S<f64>,
+    pub noise_microstrain: S<NumberOrNumbers>,
+    pub noise_correlation: S<f64>,
     pub model_uncertainty_rel: S<f64>,
     pub hold_out: S<Texts>,
     pub time_unit: S<String>,

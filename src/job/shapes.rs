@@ -1,8 +1,9 @@
 //! Values that may be written in more than one way.
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::fmt;
 
 /// Ids: a number, a list, or text such as `"1 THRU 5000"` or `"1, 7, 20 THRU 30"`.
@@ -198,6 +199,41 @@ impl<'de> Deserialize<'de> for NumberOrWord {
     }
 }
 
+/// One number, or numbers by name.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NumberOrNumbers {
+    /// One for all.
+    One(f64),
+    /// By name, in alphabetical order.
+    ByName(BTreeMap<String, f64>),
+}
+
+impl<'de> Deserialize<'de> for NumberOrNumbers {
+    fn deserialize<D: Deserializer<'de>>(d: D) -> Result<Self, D::Error> {
+        struct V;
+        impl<'de> Visitor<'de> for V {
+            type Value = NumberOrNumbers;
+            fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+                f.write_str("a number, or numbers by name such as { G1 = 0.5, G2 = 1.0 }")
+            }
+            fn visit_i64<E: Error>(self, v: i64) -> Result<NumberOrNumbers, E> {
+                Ok(NumberOrNumbers::One(v as f64))
+            }
+            fn visit_f64<E: Error>(self, v: f64) -> Result<NumberOrNumbers, E> {
+                Ok(NumberOrNumbers::One(v))
+            }
+            fn visit_map<A: MapAccess<'de>>(self, mut m: A) -> Result<NumberOrNumbers, A::Error> {
+                let mut out = BTreeMap::new();
+                while let Some((name, value)) = m.next_entry()? {
+                    out.insert(name, value);
+                }
+                Ok(NumberOrNumbers::ByName(out))
+            }
+        }
+        d.deserialize_any(V)
+    }
+}
+
 /// One whole number, or a list of them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counts(pub Vec<u32>);
@@ -258,6 +294,10 @@ schema!(PropertyIds, {
 });
 schema!(Texts, { "type": ["string", "array"], "items": { "type": "string" } });
 schema!(NumberOrWord, { "type": ["number", "string"] });
+schema!(NumberOrNumbers, {
+    "type": ["number", "object"],
+    "additionalProperties": { "type": "number" }
+});
 schema!(Counts, {
     "type": ["integer", "array"],
     "items": { "type": "integer", "minimum": 0 },

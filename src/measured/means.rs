@@ -29,7 +29,12 @@ pub struct StrainMeans {
     pub gauges: Vec<String>,
     /// Readings of each, microstrain, channels put right.
     pub readings: Vec<Series>,
+    /// Readings of its first samples, microstrain, a row a sample.
+    pub first: Vec<f64>,
 }
+
+/// Samples of a long record from which the covariance of its noise is estimated.
+const FIRST: usize = 4096;
 
 impl StrainFile {
     /// Gauge names.
@@ -37,6 +42,14 @@ impl StrainFile {
         match self {
             Self::Table(t) => &t.gauges,
             Self::Means(m) => &m.gauges,
+        }
+    }
+
+    /// Returns its rows, of a long record the first, microstrain by column.
+    pub fn rows(&self) -> Box<dyn Iterator<Item = &[f64]> + '_> {
+        match self {
+            Self::Means(m) => Box::new(m.first.chunks_exact(m.gauges.len().max(1))),
+            Self::Table(t) => Box::new((0..t.n_rows()).map(|i| t.row(i))),
         }
     }
 
@@ -77,6 +90,7 @@ pub fn read_strain_file(
         let record = Record::open(job, (&named.given, None), bytes, wanted)?.with_all_strain(job);
         Ok(StrainFile::Means(StrainMeans {
             readings: record.sums()?,
+            first: record.first_microstrain(FIRST)?,
             gauges: record.names_read(),
         }))
     };

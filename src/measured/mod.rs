@@ -9,6 +9,7 @@ pub(crate) mod common_zero;
 pub(crate) mod faults;
 pub mod gauge_columns;
 pub mod means;
+pub mod noise;
 mod open;
 pub(crate) mod record;
 pub(crate) mod recorded_loads;

@@ -100,6 +100,19 @@ impl Record {
         Ok(sums)
     }
 
+    /// Returns the first samples of the columns, microstrain, row by row; `most` of them or all of the first piece.
+    ///
+    /// # Errors
+    /// A piece that can't be read.
+    pub fn first_microstrain(&self, most: usize) -> Result<Vec<f64>, Fault> {
+        let mut out = Vec::new();
+        if self.n_pieces() > 0 {
+            self.each_microstrain(0, |_, values| out.extend_from_slice(values))?;
+        }
+        out.truncate(most * self.columns.len());
+        Ok(out)
+    }
+
     /// Returns the record with blank readings in these spans: number of the column, and samples.
     pub fn without(self, blank: Vec<(usize, Range<usize>)>) -> Self {
         Self { blank, ..self }

@@ -56,6 +56,7 @@ pub(super) fn found(
             .map(|k| Load::named(["F", "F dx", "F dy"][*k]))
             .collect(),
         uncertainty: None,
+        noise: model.noise.clone(),
     };
     let reads = |(g, e): (usize, &f64)| if used(g) { *e } else { f64::NAN };
     let readings = Readings {
@@ -63,8 +64,10 @@ pub(super) fn found(
         strain: run.strain.iter().enumerate().map(reads).collect(),
         noise_factor: 1.0,
     };
-    // A run's gauges have one noise; where a zero or a gap makes it differ, the largest.
-    let noise = run.sigma.iter().copied().filter(|v| v.is_finite());
+    // A run's gauges have one noise, or noise in the ratio of their own; where a zero or a gap makes it differ, the largest.
+    let own = |g: usize| model.noise.as_ref().map_or(1.0, |n| n.variance(g).sqrt());
+    let noise = run.sigma.iter().enumerate().map(|(g, v)| v / own(g));
+    let noise = noise.filter(|v| v.is_finite());
     let errors = ErrorModel {
         noise: noise.fold(0.0, f64::max),
         model_rel: 0.0,

@@ -1,7 +1,7 @@
 //! What is known of a payload before it is weighed: how gauges and wheels answer to it, and what they read.
 
 use crate::linalg::Matrix;
-use crate::sensitivity::Uncertainty;
+use crate::sensitivity::{GaugeNoise, Uncertainty};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// How gauges and wheels answer, by unit of weight (model units) and weight times shift from the nominal place.
@@ -22,6 +22,8 @@ pub struct PayloadModel {
     pub arms: Option<Vec<[f64; 2]>>,
     /// What runs of known payload leave uncertain of `payload`, its three columns being the loads; `None` where a model or a table gives them.
     pub calibrated: Option<Uncertainty>,
+    /// Noise of the gauges, of which a run's errors have the correlation; `None` where they are independent of each other.
+    pub noise: Option<GaugeNoise>,
 }
 
 /// Readings of one run.

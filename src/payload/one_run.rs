@@ -89,7 +89,35 @@ pub(super) fn solve_run(
         .iter()
         .map(|r| r.variance / r.gauge.map_or(1.0, |g| weights[g]))
         .collect();
-    let solved = least_squares(&rows, &variances, u.width)?;
+    let solved = match &model.noise {
+        Some(noise) if noise.is_correlated() => {
+            // Beyond its own noise a gauge errs by the model, which is its own.
+            let n = rows.len();
+            let mut covariance = vec![0.0; n * n];
+            for (i, a) in rows.iter().enumerate() {
+                covariance[i * n + i] = variances[i];
+                for (j, b) in rows.iter().enumerate().filter(|(j, _)| *j != i) {
+                    let (Some(g), Some(h)) = (a.gauge, b.gauge) else {
+                        continue;
+                    };
+                    let size = run.sigma[g] * run.sigma[h] / (weights[g] * weights[h]).sqrt();
+                    covariance[i * n + j] = noise.correlation(g, h) * size;
+                }
+            }
+            least_squares(
+                &rows,
+                ReadingErrors::Covariance(&covariance),
+                &variances,
+                u.width,
+            )?
+        }
+        _ => least_squares(
+            &rows,
+            ReadingErrors::Variances(&variances),
+            &variances,
+            u.width,
+        )?,
+    };
     let mut gauges = Vec::new();
     let mut wheels = 0.0;
     for (i, row) in rows.iter().enumerate() {
@@ -358,7 +386,12 @@ fn within_region(u: &Unknowns, spec: &WeighSpec, old: &Located) -> Vec<Row> {
 }
 
 /// Least squares over the rows, columns scaled to unit length.
-fn least_squares(rows: &[Row], variances: &[f64], width: usize) -> Option<LinearEstimate> {
+fn least_squares(
+    rows: &[Row],
+    errors: ReadingErrors<'_>,
+    variances: &[f64],
+    width: usize,
+) -> Option<LinearEstimate> {
     let a = Matrix::from_fn(rows.len(), width, |i, l| rows[i].a[l]);
     let y: Vec<f64> = rows.iter().map(|r| r.y).collect();
     let scales: Vec<f64> = (0..width)
@@ -372,7 +405,7 @@ fn least_squares(rows: &[Row], variances: &[f64], width: usize) -> Option<Linear
         .collect();
     let model = LinearGaussian {
         rows: &a,
-        errors: ReadingErrors::Variances(variances),
+        errors,
         prior_sd: &vec![None; width],
         scales: &scales,
     };

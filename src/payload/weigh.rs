@@ -11,6 +11,7 @@ use super::robust::{
 use crate::estimate::NORMAL_95;
 use crate::estimate::weighted_median;
 use crate::finding::Finding;
+use crate::sensitivity::GaugeNoise;
 
 /// The answer for all runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,7 +46,9 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     let n = model.gauges.len();
     let has_strain = runs.iter().any(|r| r.strain.iter().any(|v| v.is_finite()));
     let has_wheels = runs.iter().any(|r| !r.reactions.is_empty());
-    if has_strain && !has_wheels && spec.place == Place::Known {
+    // Single gauges whose noise is correlated are no independent witnesses.
+    let is_correlated = model.noise.as_ref().is_some_and(GaugeNoise::is_correlated);
+    if has_strain && !has_wheels && spec.place == Place::Known && !is_correlated {
         return calibrated(model, runs, spec, by_strain(model, runs, spec));
     }
     let told: Vec<bool> = runs.iter().map(|r| tells(model, r, spec)).collect();

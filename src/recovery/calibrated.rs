@@ -6,7 +6,7 @@ use super::errors::ErrorModel;
 use super::types::{Readings, RunEstimate};
 use crate::estimate::{LinearEstimate, LinearGaussian, LoadEstimate, ReadingErrors, student_95};
 use crate::linalg::{Matrix, spd};
-use crate::sensitivity::{Sensitivity, Uncertainty};
+use crate::sensitivity::{GaugeNoise, Sensitivity, Uncertainty};
 
 /// Rounds between loads and the covariance that depends on them; they settle in three.
 const ROUNDS: usize = 5;
@@ -73,11 +73,12 @@ pub(super) fn estimate_with(
         rank: 0,
     };
     let noise = (errors.noise * errors.noise * r.noise_factor).max(f64::MIN_POSITIVE);
+    let of_gauges = s.noise.as_ref().map(|n| n.of_gauges(&used));
     let known_of_used = known.of_gauges(&used);
     let solved = solve(
         &a,
         &y,
-        (noise, excess),
+        (noise, of_gauges.as_ref(), excess),
         &priors,
         &s.scales(),
         &known_of_used,
@@ -122,7 +123,7 @@ struct Solved {
 fn solve(
     a: &Matrix,
     y: &[f64],
-    (noise, excess): (f64, Excess),
+    (noise, of_gauges, excess): (f64, Option<&GaugeNoise>, Excess),
     priors: &[Option<f64>],
     scales: &[f64],
     known: &Uncertainty,
@@ -142,8 +143,15 @@ fn solve(
     for _ in 0..ROUNDS {
         let mut covariance = known.strain_covariance(n, &f);
         covariance.iter_mut().for_each(|v| *v *= 1.0 + excess.all);
-        for v in covariance.iter_mut().step_by(n + 1) {
-            *v = (*v + noise * (1.0 + excess.all)) * (1.0 + excess.each);
+        let noise = noise * (1.0 + excess.all);
+        for (i, v) in covariance.iter_mut().enumerate() {
+            let (g, h) = (i / n, i % n);
+            if let Some(of_gauges) = of_gauges.filter(|_| g != h) {
+                *v += noise * of_gauges.between(g, h);
+            } else if g == h {
+                let own = of_gauges.map_or(1.0, |o| o.variance(g));
+                *v = (*v + noise * own) * (1.0 + excess.each);
+            }
         }
         let fit = estimate(ReadingErrors::Covariance(&covariance))?;
         f.clone_from(&fit.value);

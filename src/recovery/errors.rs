@@ -1,6 +1,7 @@
 //! How wrong readings and model are, as stated by the user.
 
 use crate::linalg::Matrix;
+use crate::sensitivity::Sensitivity;
 
 /// Stated errors.
 ///
@@ -19,6 +20,23 @@ impl ErrorModel {
     /// Variance of the noise of a reading; `noise_factor` is 1 for a single reading less a long zero.
     pub fn noise_variance(&self, noise_factor: f64) -> f64 {
         (self.noise * self.noise * noise_factor).max(f64::MIN_POSITIVE)
+    }
+
+    /// Variance of the noise of gauge `g` of S.
+    pub fn noise_of(&self, s: &Sensitivity, g: usize, noise_factor: f64) -> f64 {
+        let own = s.noise.as_ref().map_or(1.0, |n| n.variance(g));
+        self.noise_variance(noise_factor) * own
+    }
+
+    /// Covariance of the noise of the gauges `used`, by number; `None` where all have the stated noise, independent of each other.
+    pub fn noise_covariance(
+        &self,
+        s: &Sensitivity,
+        used: &[usize],
+        noise_factor: f64,
+    ) -> Option<Matrix> {
+        let noise = s.noise.as_ref()?.of_gauges(used);
+        Some(noise.covariance() * self.noise_variance(noise_factor))
     }
 
     /// Covariance of what the model's error puts into one gauge at loads `f` and at loads `g`; `row` is the gauge's row of S:

@@ -50,10 +50,21 @@ impl Gain {
         let variances = errors.variances(&rows, typical, noise_factor);
         let priors = s.priors();
         let known = s.uncertainty.as_ref().map(|u| u.of_gauges(used));
-        let correlated = known.as_ref().map(|known| {
-            let mut covariance = known.strain_covariance(n, typical);
+        let noise = errors.noise_covariance(s, used, noise_factor);
+        let correlated = (known.is_some() || noise.is_some()).then(|| {
+            let mut covariance = match &known {
+                Some(known) => known.strain_covariance(n, typical),
+                None => vec![0.0; n * n],
+            };
             for (g, v) in variances.iter().enumerate() {
                 covariance[g * n + g] += v;
+            }
+            if let Some(noise) = &noise {
+                let as_stated = errors.noise_variance(noise_factor);
+                for (i, v) in covariance.iter_mut().enumerate() {
+                    let stated = if i / n == i % n { as_stated } else { 0.0 };
+                    *v += noise[(i / n, i % n)] - stated;
+                }
             }
             covariance
         });
@@ -73,7 +84,10 @@ impl Gain {
             rank,
             ..
         } = model.estimate(&vec![0.0; n])?;
-        let mut base = (&gain * gain.transpose()) * errors.noise_variance(noise_factor);
+        let mut base = match &noise {
+            None => (&gain * gain.transpose()) * errors.noise_variance(noise_factor),
+            Some(noise) => &gain * noise * gain.transpose(),
+        };
         let passed = &gain * &rows;
         for (m, prior) in priors.iter().enumerate() {
             let Some(sd) = prior else { continue };

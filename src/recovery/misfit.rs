@@ -66,6 +66,7 @@ fn with_rows(s: &Sensitivity, values: Matrix) -> Sensitivity {
         loads: s.loads.clone(),
         values,
         uncertainty: None,
+        noise: s.noise.clone(),
     }
 }
 

@@ -4,8 +4,8 @@
 //! records of any length ([`history`], judged by [`samples`]), so that both have the same intervals. [`residuals`] weighs what no load can
 //! make, across the runs; [`verdict`] judges it, [`outlier`] and the search for wrong inputs ([`misfit`]) name gauges that look wrong,
 //! [`determined`] and [`plausible`] say whether readings and loads can be what they are taken for, [`stuck`] where a gauge is dead.
-//! [`calibrated`] is the same for a calibrated S, [`unlike`] and [`taught`] its judges. [`dynamic`] turns readings of a structure that vibrates
-//! into those at rest.
+//! [`noise`] is the noise by gauge that residuals show. [`calibrated`] is the same for a calibrated S, [`unlike`] and [`taught`] its judges.
+//! [`dynamic`] turns readings of a structure that vibrates into those at rest.
 
 pub mod by_calibration;
 pub mod calibrated;
@@ -19,6 +19,7 @@ mod kernel;
 mod misfit;
 mod missing;
 pub mod net;
+mod noise;
 mod outlier;
 pub mod outside_calibration;
 pub mod plausible;
@@ -39,6 +40,7 @@ pub use errors::ErrorModel;
 pub use gain::Gain;
 pub use misfit::Alternatives;
 pub use missing::Missing;
+pub use noise::{NOISE_ASSUMED, noise_without_load};
 pub use outlier::ALARM;
 pub use runs::{recover, recover_with_alternatives};
 pub use samples::{check_gaps, recover_samples, recover_samples_with_alternatives};

@@ -78,7 +78,7 @@ pub(super) fn check(
         ShiftKind::Offset => None,
     };
     let [size, half] = match by_others {
-        Some([size, sigma]) => [size, wider * sigma],
+        Some([size, sigma]) => [size, wider * sigma / judged.projection.share().sqrt()],
         None => [test.size, wider * (test.size / test.t).abs()],
     };
     // An interval that contains zero refutes no gauge, however rare its residuals are.
@@ -160,8 +160,22 @@ fn by_others(
     }
     let share = |i: usize| (0..k).map(|l| own[l] * gain.gain[(l, i)]).sum::<f64>();
     let shares: Vec<f64> = (0..others.len()).map(share).collect();
-    let noise = errors.noise_variance(pattern.noise_factor);
-    let of_others = noise * shares.iter().map(|a| a * a).sum::<f64>();
+    let noise = errors.noise_of(s, gauge, pattern.noise_factor);
+    let (of_others, common) = match &s.noise {
+        None => (noise * shares.iter().map(|a| a * a).sum::<f64>(), 0.0),
+        Some(of_gauges) => {
+            let unit = errors.noise_variance(pattern.noise_factor);
+            let with = |g: usize| {
+                let parts = others.iter().zip(&shares);
+                parts
+                    .map(move |(h, a)| a * of_gauges.between(g, *h))
+                    .sum::<f64>()
+            };
+            let each = others.iter().zip(&shares);
+            let own: f64 = each.map(|(h, a)| a * with(*h)).sum();
+            (unit * own, unit * with(gauge))
+        }
+    };
     let (mut runs, mut with, mut squares) = (0.0, 0.0, 0.0);
     let mut by_load = vec![0.0; k];
     for r in pattern.runs.iter().filter_map(|i| readings.get(*i)) {
@@ -179,7 +193,7 @@ fn by_others(
     if !(expected > OF_NOISE * squares) {
         return None;
     }
-    let factor = with / expected;
+    let factor = (with - runs * common) / expected;
     // Runs in which another set of gauges reads may be all that name it.
     if !factor.is_finite() {
         return None;
@@ -190,7 +204,7 @@ fn by_others(
         (by_load[l] / expected).powi(2) * (own[l] * own[l] + others.sum::<f64>())
     };
     let model = errors.model_rel.powi(2) * (0..k).map(of_load).sum::<f64>();
-    let by_noise = (noise + factor * factor * of_others) / expected;
+    let by_noise = (noise + factor * (factor * of_others - 2.0 * common)) / expected;
     Some([factor - 1.0, (by_noise + factor * factor * model).sqrt()])
 }
 

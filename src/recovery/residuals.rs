@@ -77,6 +77,8 @@ pub(super) struct Projection {
     sd: Vec<f64>,
     s: Matrix,
     errors: ErrorModel,
+    /// Share of independent runs in the runs; 1 but for samples of a record.
+    share: f64,
 }
 
 /// Which loads a projection takes out.
@@ -100,10 +102,13 @@ impl Projection {
         let (n, k) = (pattern.used.len(), s.loads.len());
         let rows = Matrix::from_fn(n, k, |i, l| s.values[(pattern.used[i], l)]);
         let noise = errors.noise_variance(pattern.noise_factor);
+        let of_gauges = errors.noise_covariance(s, &pattern.used, pattern.noise_factor);
+        let differs = |i: usize| of_gauges.as_ref().map_or(0.0, |c| c[(i, i)] - noise);
         let sd: Vec<f64> = errors
             .variances(&rows, typical, pattern.noise_factor)
             .iter()
-            .map(|v| v.sqrt())
+            .enumerate()
+            .map(|(i, v)| (v + differs(i)).sqrt())
             .collect();
         let priors = s.priors();
         let weighted = Matrix::from_fn(n, k, |i, l| {
@@ -116,7 +121,10 @@ impl Projection {
         let basis = complement(&dense::unit_columns(&weighted))?;
         let m = basis.ncols();
         let t = Matrix::from_fn(m, n, |a, i| basis[(i, a)] / sd[i]);
-        let mut covariance = (&t * t.transpose()) * noise;
+        let mut covariance = match &of_gauges {
+            None => (&t * t.transpose()) * noise,
+            Some(of_gauges) => &t * of_gauges * t.transpose(),
+        };
         if out == Out::Unstated {
             for (l, prior) in priors.iter().enumerate() {
                 let Some(p) = prior else { continue };
@@ -133,7 +141,18 @@ impl Projection {
             sd,
             s: rows,
             errors,
+            share: 1.0,
         })
+    }
+
+    /// The same for samples of a record of which only a `share` is independent: squares and degrees of freedom count that share.
+    pub fn with_share(self, share: f64) -> Self {
+        Self { share, ..self }
+    }
+
+    /// Share of independent runs in the runs.
+    pub fn share(&self) -> f64 {
+        self.share
     }
 
     /// The same with a covariance of the readings beyond noise, by gauge of S; `None` where it is none.
@@ -223,7 +242,8 @@ impl Projection {
     pub fn judge(&self, pattern: &Pattern, strain: &[&[f64]], loads: &[Vec<f64>]) -> Option<Joint> {
         let m = self.m();
         let together = self.together(pattern, strain, loads)?;
-        let dof = m * strain.len();
+        let runs = (strain.len() as f64 * self.share).round().max(1.0);
+        let dof = m * runs as usize;
         let share = self.share_of_model(loads);
         let turned: usize = together.turned.iter().map(|b| b.over_runs.len()).sum();
         let independent = (turned * m).clamp(m.min(dof), dof.max(1));
@@ -263,7 +283,7 @@ impl Projection {
             chi2 += block.chi2 - block.chi2_of_noise;
         }
         Some(Together {
-            chi2,
+            chi2: chi2 * self.share,
             white,
             turned,
         })
@@ -312,7 +332,7 @@ impl Projection {
         (information > 0.0 && information.is_finite()).then(|| GaugeTest {
             gauge: pattern.used[i],
             kind,
-            t: score / information.sqrt(),
+            t: score / information.sqrt() * self.share.sqrt(),
             size: score / information,
         })
     }
@@ -437,7 +457,7 @@ impl Block {
 }
 
 /// Orthonormal columns that no column of `a` has a part in, `n x (n - rank)`; `None` where there is none or numbers are not finite.
-fn complement(a: &Matrix) -> Option<Matrix> {
+pub(super) fn complement(a: &Matrix) -> Option<Matrix> {
     let n = a.nrows();
     let d = dense::svd(a)?;
     let largest = d.s.first().copied().unwrap_or(0.0);

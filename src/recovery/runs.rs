@@ -3,6 +3,7 @@
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
 use super::misfit::Alternatives;
+use super::noise::{ShownNoise, share_of_samples, shown_noise};
 use super::solved::{Solved, root_mean_squares, solve_beyond};
 use super::types::{GAUGE_SUSPECT, Readings, Recovery, RunEstimate, Widening};
 use super::{by_calibration, determined, misfit, plausible, verdict};
@@ -29,7 +30,17 @@ pub fn recover_with_alternatives(
     errors: ErrorModel,
     alternatives: &mut Alternatives,
 ) -> Recovery {
-    recover_beyond(s, readings, errors, &[], (Handling::LeftOut, alternatives))
+    let faults = (Handling::LeftOut, alternatives);
+    recover_beyond(s, readings, errors, (&[], Order::Runs), faults)
+}
+
+/// What readings follow each other as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// Runs, independent of each other.
+    Runs,
+    /// Samples of a record, in order of time.
+    Samples,
 }
 
 /// The same where readings have errors beyond noise, by run, which the judge of the residuals then knows of; none where `beyond` is empty.
@@ -38,22 +49,43 @@ pub(super) fn recover_beyond(
     s: &Sensitivity,
     readings: &[Readings],
     errors: ErrorModel,
-    beyond: &[Beyond],
+    (beyond, order): (&[Beyond], Order),
     (handling, alternatives): (Handling, &mut Alternatives),
 ) -> Recovery {
     let (readings, mut findings) = plausible::check(&s.gauges, readings, errors);
+    // Errors beyond noise are correlated too.
+    let shown = match beyond.is_empty() {
+        true => shown_noise(s, &readings, errors),
+        false => ShownNoise::default(),
+    };
+    let with_noise = shown.noise.as_ref().map(|noise| Sensitivity {
+        noise: Some(noise.clone()),
+        ..s.clone()
+    });
+    let s = with_noise.as_ref().unwrap_or(s);
     if let Some(known) = &s.uncertainty {
+        findings.extend(shown.finding);
         let faults = (handling, alternatives);
-        return recover_calibrated(s, &readings, errors, (known, faults), findings);
+        return Recovery {
+            noise: shown.noise,
+            ..recover_calibrated(s, &readings, errors, (known, faults), findings)
+        };
     }
     let solved = solve_beyond(s, &readings, errors, beyond);
-    let verdict = verdict::check(s, &readings, &solved, errors, beyond);
+    let share = match order {
+        Order::Samples if beyond.is_empty() => share_of_samples(s, &readings, errors),
+        _ => 1.0,
+    };
+    let verdict = verdict::check(s, &readings, &solved, errors, (beyond, share));
     // Faults are named by how well they explain what noise doesn't: with errors beyond it that names none.
     let named = match verdict.misfit && beyond.is_empty() {
         true => misfit::faults_by_stated_errors(s, &readings, errors, alternatives),
         false => Vec::new(),
     };
     findings.extend(unlike(verdict.findings, named));
+    // A misfit is stated already, and has its own remedy.
+    let is_stated = verdict.misfit && shown.noise.is_none();
+    findings.extend(shown.finding.filter(|_| !is_stated));
     let Solved {
         mut runs,
         patterns,
@@ -84,6 +116,7 @@ pub(super) fn recover_beyond(
         findings,
         widening: verdict.widening,
         typical,
+        noise: shown.noise,
     }
 }
 
@@ -115,6 +148,7 @@ fn recover_calibrated(
         },
         typical,
         runs,
+        noise: None,
     }
 }
 

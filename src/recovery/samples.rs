@@ -6,7 +6,7 @@ use super::gain::Gain;
 use super::misfit::Alternatives;
 use super::missing::Missing;
 use super::plausible;
-use super::runs::recover_beyond;
+use super::runs::{Order, recover_beyond};
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
 use crate::finding::{Finding, Severity, few};
@@ -39,7 +39,7 @@ pub fn recover_samples_with_alternatives(
         s,
         &samples,
         errors,
-        &beyond,
+        (&beyond, Order::Samples),
         (Handling::AsMeasured, alternatives),
     );
     if recovery.findings.iter().any(|f| f.code == NOT_SOLVABLE) && all_tell(s, errors, &recovery) {

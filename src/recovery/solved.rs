@@ -180,9 +180,9 @@ fn estimate_of(
     for (g, row) in s.values.row_iter().enumerate() {
         out.predicted[g] = row.iter().zip(f).map(|(s, f)| s * f).sum();
     }
-    let noise = errors.noise_variance(r.noise_factor);
     for (&g, leverage) in pattern.used.iter().zip(&gain.leverage) {
         out.residual[g] = r.strain[g] - out.predicted[g];
+        let noise = errors.noise_of(s, g, r.noise_factor);
         out.sd[g] = (noise + errors.shared(s.values.row(g).iter().copied(), f, f)).sqrt();
         out.leverage[g] = *leverage;
     }

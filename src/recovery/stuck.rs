@@ -181,7 +181,7 @@ impl<'a> Others<'a> {
             s,
             used,
             errors,
-            noise: errors.noise_variance(noise_factor),
+            noise: errors.noise_of(s, g, noise_factor),
             of_noise: gain.covariance(&none, &Widening::none()),
             own,
             gain,

@@ -3,6 +3,7 @@
 use crate::estimate::LoadEstimate;
 use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
+use crate::sensitivity::{GaugeNoise, Sensitivity};
 
 /// Code of a finding on a gauge whose error stands out.
 pub const GAUGE_SUSPECT: &str = "gauge-suspect";
@@ -86,6 +87,19 @@ pub struct Recovery {
     /// Root mean square of each load over the runs that tell it, 0 where none does: the weights of a stated model error are those at these
     /// loads.
     pub typical: Vec<f64>,
+    /// Noise that the residuals show where they contradict equal and independent noise, by gauge of S.
+    pub noise: Option<GaugeNoise>,
+}
+
+impl Recovery {
+    /// Returns S with the noise that the residuals show.
+    pub fn s(&self, s: &Sensitivity) -> Sensitivity {
+        let noise = self.noise.as_ref().or(s.noise.as_ref());
+        Sensitivity {
+            noise: noise.cloned(),
+            ..s.clone()
+        }
+    }
 }
 
 /// How much wider than stated errors make them the intervals are.

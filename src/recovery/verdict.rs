@@ -20,7 +20,7 @@ pub const NOT_SOLVABLE: &str = "run-not-solvable";
 /// Chance under which a sum of squares counts as larger than stated errors or scatter make it.
 pub(super) const SIGNIFICANT: f64 = 1e-3;
 /// Chance from which it is beyond doubt.
-const BEYOND_DOUBT: f64 = 1e-6;
+pub(super) const BEYOND_DOUBT: f64 = 1e-6;
 /// Residual over readings (root mean squares): a right model with the wrong mesh stays under this, a missing load does not.
 const EXPLAINED_LIMIT: f64 = 0.05;
 /// `sqrt(chi2 / dof)` under which a misfit is small next to stated errors whatever its share.
@@ -59,13 +59,14 @@ struct Evidence {
     effective: f64,
 }
 
-/// Findings on rank, redundancy and the size of the residuals; `beyond` are errors of the readings beyond noise, by run, empty for none.
+/// Findings on rank, redundancy and the size of the residuals; `beyond` are errors of the readings beyond noise, by run, empty for none, and
+/// `share` is the share of independent runs in the runs.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
     solved: &Solved,
     errors: ErrorModel,
-    beyond: &[Beyond],
+    (beyond, share): (&[Beyond], f64),
 ) -> Verdict {
     let runs = &solved.runs;
     let mut verdict = Verdict {
@@ -84,7 +85,7 @@ pub(super) fn check(
         ));
         return verdict;
     }
-    let judged = judged(s, readings, (solved, beyond), errors);
+    let judged = judged(s, readings, (solved, beyond, share), errors);
     let joints: Vec<&Joint> = judged.iter().map(|j| &j.joint).collect();
     let mut evidence = weigh(s, runs, &joints);
     if !beyond.is_empty() {
@@ -166,13 +167,16 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
 fn judged<'a>(
     s: &Sensitivity,
     readings: &'a [Readings],
-    (solved, beyond): (&'a Solved, &[Beyond]),
+    (solved, beyond, share): (&'a Solved, &[Beyond], f64),
     errors: ErrorModel,
 ) -> Vec<Judged<'a>> {
     let most = solved.patterns.iter().take(PATTERNS);
     most.filter_map(|(pattern, gain)| {
         let gain = gain.as_ref()?;
-        let mut projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
+        let projection = Projection::new(s, pattern, errors, &solved.typical, Out::All)?;
+        // A whole number of independent runs, so that squares and their degrees of freedom count the same.
+        let runs = pattern.runs.len() as f64;
+        let mut projection = projection.with_share((share * runs).round().max(1.0) / runs);
         if let Some(of_readings) = together(pattern, beyond) {
             projection = projection.beyond(pattern, &of_readings)?;
         }

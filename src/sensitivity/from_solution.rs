@@ -119,6 +119,7 @@ pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity,
         loads: loads.iter().map(|l| l.load.clone()).collect(),
         values,
         uncertainty: None,
+        noise: None,
     })
 }
 

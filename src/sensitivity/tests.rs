@@ -8,6 +8,7 @@ fn s(rows: usize, values: &[f64], names: &[&str]) -> Sensitivity {
         loads: names.iter().map(|n| Load::named(*n)).collect(),
         values: Matrix::from_row_slice(rows, names.len(), values),
         uncertainty: None,
+        noise: None,
     }
 }
 
@@ -130,5 +131,40 @@ fn a_common_scale_adds_its_share_of_the_strain() {
     for i in 0..4 {
         let added = (0.03 / 1.5_f64).powi(2) * strain[i / 2] * strain[i % 2];
         assert!((after[i] - before[i] - added).abs() < 1e-12);
+    }
+}
+
+/// Loads in other units, and a load that is a sum of them, have the same covariance of strain on either side of the center. It is no smaller where
+/// loads with a center are left out, or where the sum is not along the center.
+#[test]
+fn other_units_and_sums_of_loads_are_no_less_uncertain() {
+    let (known, _) = uncertain();
+    let diagonal = |u: &Uncertainty, f: &[f64]| {
+        let c = u.strain_covariance(2, f);
+        [c[0], c[3]]
+    };
+    let is_no_less =
+        |wide: [f64; 2], own: [f64; 2]| wide.iter().zip(own).all(|(w, o)| *w >= o - 1e-12);
+    for t in [-3.0, -1.0, 0.0, 0.5, 2.0, 10.0] {
+        let f = [0.7 * t, 1.3 * t];
+        let turned = known.of_loads(&[(1, 10.0), (0, 0.1)]);
+        let (a, b) = (
+            diagonal(&turned, &[0.13 * t, 7.0 * t]),
+            diagonal(&known, &f),
+        );
+        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
+        let along = known.along(&[0.7, 1.3]);
+        assert!(
+            is_no_less(diagonal(&along, &[t]), diagonal(&known, &f)),
+            "{t}"
+        );
+        let one = known.of_loads(&[(0, 1.0)]);
+        assert!(
+            is_no_less(diagonal(&one, &[t]), diagonal(&known, &[t, 0.0])),
+            "{t}"
+        );
+        let centered = known.along(&[2.0, -1.0]);
+        let (a, b) = (diagonal(&centered, &[t]), diagonal(&known, &[2.0 * t, -t]));
+        assert!((a[0] - b[0]).abs() < 1e-9 && (a[1] - b[1]).abs() < 1e-9);
     }
 }

@@ -1,6 +1,6 @@
 //! The matrix with its names and scales.
 
-use super::Uncertainty;
+use super::{GaugeNoise, Uncertainty};
 use crate::estimate::student_95;
 use crate::linalg::{Matrix, dense};
 use crate::units::Quantity;
@@ -46,6 +46,8 @@ pub struct Sensitivity {
     pub values: Matrix,
     /// How far a calibrated S may be off; `None` where only the stated error of a model is known.
     pub uncertainty: Option<Uncertainty>,
+    /// Noise of the gauges; `None` where each has the stated noise, independent of the others.
+    pub noise: Option<GaugeNoise>,
 }
 
 impl Sensitivity {
@@ -106,6 +108,7 @@ impl Sensitivity {
             loads: free.iter().map(|&l| self.loads[l].clone()).collect(),
             values: self.values.select_columns(&free),
             uncertainty: None,
+            noise: self.noise.clone(),
         }
     }
 
@@ -116,6 +119,7 @@ impl Sensitivity {
             loads: self.loads.clone(),
             values: self.values.select_rows(gauges),
             uncertainty: self.uncertainty.as_ref().map(|u| u.of_gauges(gauges)),
+            noise: self.noise.as_ref().map(|n| n.of_gauges(gauges)),
         }
     }
 

@@ -118,17 +118,24 @@ impl Uncertainty {
         out
     }
 
-    /// Returns the uncertainty without a center. The additive part then contains the errors of S at the center, and is larger than before at
-    /// loads beyond half of it.
-    fn without_center(&self) -> Self {
-        if self.center.is_empty() {
-            return self.clone();
-        }
+    /// Returns the uncertainty of loads with the center `kept`, where the part `rest` of the center stays as it is at all loads. The errors of S at
+    /// both parts together are no larger than twice those at each: `(a + b)' C (a + b) <= 2 a' C a + 2 b' C b`.
+    fn around(&self, kept: Vec<f64>, rest: &[f64]) -> Self {
+        let is_exact = rest.iter().all(|v| *v == 0.0);
+        let times = if is_exact { 1.0 } else { 2.0 };
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
-        let none = vec![0.0; self.center.len()];
+        let mut additive = self.additive.clone();
+        if !is_exact {
+            additive.resize(n * n, 0.0);
+            let none = vec![0.0; rest.len()];
+            let of_rest = self.change_covariance(n, (&none, rest));
+            let both = additive.iter_mut().zip(of_rest);
+            both.for_each(|(a, c)| *a += times * c);
+        }
         Self {
-            additive: self.strain_covariance(n, &none),
-            center: Vec::new(),
+            covariance: self.covariance.iter().map(|c| times * c).collect(),
+            additive,
+            center: kept,
             ..self.clone()
         }
     }
@@ -222,7 +229,18 @@ impl Uncertainty {
     /// Returns the uncertainty for some of the loads in other units: `loads` contains their numbers, and the old units in a new one.
     pub fn of_loads(&self, loads: &[(usize, f64)]) -> Self {
         if !self.center.is_empty() {
-            return self.without_center().of_loads(loads);
+            let of_load = |(l, unit): &(usize, f64)| match *unit == 0.0 {
+                true => 0.0,
+                false => self.center.get(*l).copied().unwrap_or(0.0) / unit,
+            };
+            let stays = |l: usize| loads.iter().any(|(m, unit)| *m == l && *unit != 0.0);
+            let rest = self.center.iter().enumerate();
+            let rest: Vec<f64> = rest.map(|(l, c)| if stays(l) { 0.0 } else { *c }).collect();
+            let around = self.around(Vec::new(), &rest);
+            return Self {
+                center: loads.iter().map(of_load).collect(),
+                ..around.of_loads(loads)
+            };
         }
         let k = (self.mean_square.len() as f64).sqrt().round() as usize;
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
@@ -245,7 +263,23 @@ impl Uncertainty {
     /// Returns the uncertainty of the combined column `S f` for the load combination `f`.
     pub fn along(&self, f: &[f64]) -> Self {
         if !self.center.is_empty() {
-            return self.without_center().along(f);
+            // The part of the center along `f`, and the rest.
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let part = dot(&self.center, f) / dot(f, f).max(f64::MIN_POSITIVE);
+            let rest: Vec<f64> = (self.center.iter().zip(f))
+                .map(|(c, f)| c - part * f)
+                .collect();
+            let largest = self.center.iter().fold(0.0_f64, |a, c| a.max(c.abs()));
+            let is_rounding = rest.iter().all(|v| v.abs() <= 1e-12 * largest);
+            let rest = if is_rounding {
+                vec![0.0; rest.len()]
+            } else {
+                rest
+            };
+            return Self {
+                center: vec![part],
+                ..self.around(Vec::new(), &rest).along(f)
+            };
         }
         let n = (self.scatter.len() as f64).sqrt().round() as usize;
         let of_entries = Self {

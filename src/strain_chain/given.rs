@@ -125,19 +125,18 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
     }
     Faults::check(faults)?;
     let gauges: Vec<String> = order.into_iter().map(|o| o.0).collect();
-    let uncertainty = match &given.covariance {
-        None => None,
-        Some(named) => {
-            let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
-            let names: Vec<String> = loads.iter().map(|l: &Load| l.name.clone()).collect();
-            Some(read_covariance(&named.given, &bytes, &gauges, &names)?)
-        }
-    };
+    let mut uncertainty = None;
+    if let Some(named) = &given.covariance {
+        let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
+        let names: Vec<String> = loads.iter().map(|l: &Load| l.name.clone()).collect();
+        uncertainty = Some(read_covariance(&named.given, &bytes, &gauges, &names)?);
+    }
     Ok(Sensitivity {
         gauges,
         loads,
         values,
         uncertainty,
+        noise: None,
     })
 }
 

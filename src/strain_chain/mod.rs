@@ -15,6 +15,7 @@ pub(crate) mod named_results;
 pub(crate) mod not_solved;
 pub(crate) mod solved;
 mod specs;
+mod stated_noise;
 mod stated_points;
 mod unit_loads;
 mod units;
@@ -29,6 +30,7 @@ pub use mesh::{
     mesh_errors, refined_mesh,
 };
 pub use specs::corrected_spec_of;
+pub use stated_noise::stated_noise;
 pub use stated_points::point_findings;
 pub use unit_loads::unit_loads;
 pub use units::{LoadSigma, LoadUnits, load_units};
@@ -89,7 +91,7 @@ pub fn prepare_beside(
     beside: Option<Beside<'_>>,
 ) -> Result<Prepared, Faults> {
     work.findings.extend(noted(job));
-    let prepared = if job.sensitivity.is_some() {
+    let mut prepared = if job.sensitivity.is_some() {
         let sensitivity = given_as_asked(work, job)?;
         // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
         let (fields, gauges) = match &job.model {
@@ -134,6 +136,7 @@ pub fn prepare_beside(
             mesh_error,
         }
     };
+    prepared.sensitivity.noise = stated_noise(job, &prepared.sensitivity.gauges)?;
     Ok(prepared)
 }
 

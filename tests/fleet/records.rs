@@ -94,3 +94,23 @@ fn vehicle_and_day_may_be_folders() {
     assert_eq!(result["files"][1]["day"], "2");
     assert_eq!(csv(&dir, "hive"), csv(&dir, "plain"));
 }
+
+#[test]
+fn loads_beyond_the_calibration_are_an_error() {
+    let (dir, files) = folder("beyond_calibration");
+    let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
+    let range = "per = { force = \"kN\" }\nrange = { \"A.FZ\" = [0.0, 0.001] }";
+    let job = job.replace("per = { force = \"kN\" }", range);
+    std::fs::write(dir.join("job.toml"), job).unwrap();
+    let (code, result) = program::fleet(&dir, "all", &files[..2], &[]);
+    assert_eq!(code, 1, "{result}");
+    let list = result["findings"].as_array().unwrap();
+    let found = list
+        .iter()
+        .find(|f| f["code"] == "loads-outside-calibration");
+    let found = found.unwrap_or_else(|| panic!("{result}"));
+    assert_eq!(
+        (found["severity"].as_str(), found["subject"].as_str()),
+        (Some("error"), Some("T0 A.FZ"))
+    );
+}

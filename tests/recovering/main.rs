@@ -11,6 +11,7 @@ mod files;
 mod kinds;
 mod misled;
 mod mistakes;
+mod noise;
 mod payload;
 mod readings;
 mod supported;

@@ -77,6 +77,7 @@ fn calibrated(lot: &mut Lot, loads: usize) -> Sensitivity {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     };
     calibrate(&task).unwrap().sensitivity
 }
@@ -94,6 +95,7 @@ fn model(s: &Sensitivity) -> PayloadModel {
         floor: Some(Matrix::zeros(0, 3)),
         arms: None,
         calibrated: Some(known.of_loads(&[column(0), column(1), column(2)])),
+        noise: None,
     }
 }
 

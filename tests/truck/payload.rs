@@ -71,6 +71,7 @@ fn model(gauges: &[Gauge]) -> PayloadModel {
         }),
         floor: Some(floor(truck)),
         calibrated: None,
+        noise: None,
         arms: Some(
             truck
                 .standing

@@ -126,6 +126,7 @@ fn trial(model: &Matrix, fine: &Matrix, m: usize, seed: u64) -> Trial {
             sums: Vec::new(),
             common_zero: CommonZero::None,
             scale_sd: 0.0,
+            gauge_noise: None,
         };
         calibrate(&task).unwrap().sensitivity
     };
@@ -150,6 +151,7 @@ fn trial(model: &Matrix, fine: &Matrix, m: usize, seed: u64) -> Trial {
         loads: loads.clone(),
         values: model.clone(),
         uncertainty: None,
+        noise: None,
     };
     let off = apart(&both);
     let within = |l: &usize| off[*l].abs() <= e.coverage_factor * e.sigma(*l);

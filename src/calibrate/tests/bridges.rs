@@ -110,6 +110,7 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
         sums: vec![vec![1.0; k]],
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

@@ -75,6 +75,7 @@ fn task(wrong: usize, offset: [f64; 3], gain: f64, seed: u64) -> Task {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

@@ -157,6 +157,7 @@ fn trial(seed: u64) -> Trial {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     };
     let tolerance = GlueTolerance {
         position: POSITION,
@@ -182,6 +183,7 @@ fn trial(seed: u64) -> Trial {
         loads,
         values: drawn,
         uncertainty: None,
+        noise: None,
     };
     let mut out = Trial {
         held: 0,

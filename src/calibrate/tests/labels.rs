@@ -51,6 +51,7 @@ fn lanes(times: usize, scatter: f64, seed: u64) -> Task {
         sums: vec![vec![1.0; 3]],
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

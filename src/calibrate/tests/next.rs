@@ -43,6 +43,7 @@ fn calibrated() -> Calibration {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     };
     calibrate(&task).unwrap()
 }
@@ -159,6 +160,7 @@ fn repeated() -> Task {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

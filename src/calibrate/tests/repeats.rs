@@ -30,6 +30,7 @@ pub(super) fn task(k: usize, runs: Vec<KnownRun>, model: Option<ModelPrior>) -> 
         sums: vec![vec![1.0; k]],
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

@@ -66,6 +66,7 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     };
     let f = draw(&mut random);
     let readings = Readings {
@@ -91,6 +92,7 @@ fn trial(n: usize, k: usize, m: usize, seed: u64) -> Trial {
         loads: loads.clone(),
         values: model.clone(),
         uncertainty: None,
+        noise: None,
     };
     Trial {
         model: apart(&plain),

@@ -38,6 +38,7 @@ fn task(more: &[[f64; 2]]) -> Task {
         sums: Vec::new(),
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

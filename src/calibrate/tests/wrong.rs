@@ -70,6 +70,7 @@ fn task(times: usize, seed: u64) -> Task {
         sums: vec![vec![1.0; 3]],
         common_zero: CommonZero::None,
         scale_sd: 0.0,
+        gauge_noise: None,
     }
 }
 

@@ -4,7 +4,7 @@ use super::super::faults::Collector;
 use super::super::raw::{
     RawBallast, RawFleet, RawMeasured, RawPayload, RawRecover, RawRespond, RawRuns, S,
 };
-use super::super::shapes::{NumberOrWord, Texts};
+use super::super::shapes::{NumberOrNumbers, NumberOrWord, Texts};
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
@@ -87,14 +87,22 @@ pub(super) fn measured(
         let names = list.value().iter();
         names.map(|w| w.value().clone()).collect()
     });
+    let (noise_microstrain, noise_by_gauge) = noise(c, &raw.noise_microstrain);
     Some(Measured {
         strain,
         zero_runs,
         zero,
         reference,
-        noise_microstrain: c
-            .positive(&raw.noise_microstrain, "measured.noise_microstrain")
-            .unwrap_or(DEFAULT_NOISE_MICROSTRAIN),
+        noise_microstrain,
+        noise_by_gauge,
+        noise_correlation: c
+            .number(
+                &raw.noise_correlation,
+                "measured.noise_correlation",
+                "a number from 0 to less than 1",
+                |x| (0.0..1.0).contains(&x),
+            )
+            .unwrap_or(0.0),
         states_noise: raw.noise_microstrain.is_some(),
         model_uncertainty_rel: c
             .fraction(&raw.model_uncertainty_rel, "measured.model_uncertainty_rel")
@@ -103,6 +111,31 @@ pub(super) fn measured(
         time_unit_s: time_unit(c, &raw.time_unit, "measured.time_unit"),
         line: c.line(section),
     })
+}
+
+/// Noise in the root mean square over the gauges, and of each gauge where the job states it by gauge.
+fn noise(c: &mut Collector, raw: &S<NumberOrNumbers>) -> (f64, Vec<(String, f64)>) {
+    let mut by_gauge = Vec::new();
+    let Some(raw) = raw else {
+        return (DEFAULT_NOISE_MICROSTRAIN, by_gauge);
+    };
+    let mut check = |x: f64| {
+        let one = Some(Spanned::new(raw.span(), x));
+        c.positive(&one, "measured.noise_microstrain")
+    };
+    match raw.value() {
+        NumberOrNumbers::One(x) => (check(*x).unwrap_or(DEFAULT_NOISE_MICROSTRAIN), by_gauge),
+        NumberOrNumbers::ByName(all) => {
+            for (name, x) in all {
+                by_gauge.extend(check(*x).map(|x| (name.clone(), x)));
+            }
+            let squares: f64 = by_gauge.iter().map(|(_, x)| x * x).sum();
+            match by_gauge.len() {
+                0 => (DEFAULT_NOISE_MICROSTRAIN, by_gauge),
+                n => ((squares / n as f64).sqrt(), by_gauge),
+            }
+        }
+    }
 }
 
 /// Seconds in one of the unit of time that a key states.

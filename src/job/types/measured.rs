@@ -35,8 +35,12 @@ pub struct Measured {
     pub zero_runs: Vec<String>,
     /// Changes or totals.
     pub reference: Reference,
-    /// Noise, microstrain, 1 sd; default 1.
+    /// Noise, microstrain, 1 sd; default 1. Where it is stated by gauge, the root mean square over the gauges.
     pub noise_microstrain: f64,
+    /// Noise of each gauge, microstrain, 1 sd; empty where all gauges have the same.
+    pub noise_by_gauge: Vec<(String, f64)>,
+    /// Correlation of the noise of any two gauges; default 0.
+    pub noise_correlation: f64,
     /// Whether the job states it.
     pub states_noise: bool,
     /// Model uncertainty of the predicted strain, 1 sd; default 0.

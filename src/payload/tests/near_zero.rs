@@ -29,6 +29,7 @@ fn plate() -> PayloadModel {
         }),
         floor: Some(Matrix::zeros(0, 3)),
         calibrated: None,
+        noise: None,
         arms: None,
     }
 }

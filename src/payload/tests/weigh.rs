@@ -50,6 +50,7 @@ fn truck(lot: &mut Lot, gauges: usize) -> PayloadModel {
         payload,
         floor: Some(floor()),
         calibrated: None,
+        noise: None,
         arms: Some(ARMS.to_vec()),
     }
 }

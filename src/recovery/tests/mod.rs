@@ -54,6 +54,7 @@ fn frame(loads: usize) -> Option<Frame> {
     let s = Sensitivity {
         values: Matrix::from_fn(gauges.len(), loads, |g, l| m[g][l] * 1e-6 / KN),
         uncertainty: None,
+        noise: None,
         gauges,
         loads: names.iter().take(loads).map(Load::named).collect(),
     };
@@ -267,6 +268,7 @@ fn a_nuisance_load_with_a_stated_size_lets_fewer_gauges_do() {
         loads,
         values: Matrix::from_row_slice(2, 3, &[1e-3, 0.0, 1e-5, 0.0, 1e-3, 1e-5]),
         uncertainty: None,
+        noise: None,
     };
     let r = Readings {
         run: "R".into(),

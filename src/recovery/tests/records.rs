@@ -29,6 +29,7 @@ pub(super) fn many_nuisances() -> Sensitivity {
         loads,
         values: Matrix::from_fn(14, 16, |_, _| 10e-6 * gaussian(&mut rng)),
         uncertainty: None,
+        noise: None,
     }
 }
 
@@ -121,6 +122,7 @@ fn a_nuisance_load_with_a_stated_size_widens_the_interval_of_a_sample_as_that_of
         loads,
         values: Matrix::from_row_slice(2, 3, &[1e-3, 0.0, 1e-5, 0.0, 1e-3, 1e-5]),
         uncertainty: None,
+        noise: None,
     };
     let sigma = filter(&s, NOISE, &[0.0; 3]).sigma(&[0.0; 3]);
     assert!(
@@ -136,6 +138,7 @@ fn whole_blocks_give_what_single_samples_give_and_a_gap_spoils_its_sample_alone(
         loads: ["A", "B"].map(Load::named).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 2e-4, -3e-4, 1e-3, 5e-4, 7e-4]),
         uncertainty: None,
+        noise: None,
     };
     let filter = Filter::new(
         &s,
@@ -186,6 +189,7 @@ fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
         loads: ["A", "B"].map(Load::named).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
         uncertainty: None,
+        noise: None,
     };
     let filter = filter(&s, NOISE, &[0.0; 2]);
     let samples = [1e-3, 1e-3, 2e-3, 1e-3, 1e-3, f64::NAN, 1e-3, 1e-3, 1e308];
@@ -229,8 +233,10 @@ fn the_typical_size_of_a_load_is_that_in_the_samples_that_tell_it() {
         loads: ["A", "B"].map(Load::named).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
         uncertainty: None,
+        noise: None,
     };
     let calibrated = Sensitivity {
+        noise: None,
         uncertainty: Some(Uncertainty::of_model(
             &plain.values,
             0.02,
@@ -263,6 +269,7 @@ fn samples_whose_gauges_never_tell_a_load_leave_that_to_the_record_unless_no_gau
         loads: ["A", "B"].map(Load::named).to_vec(),
         values: Matrix::from_row_slice(3, 2, &[1e-3, 0.0, 1e-3, 0.0, 0.0, 1e-3]),
         uncertainty: None,
+        noise: None,
     };
     let said = |s: &Sensitivity| {
         let samples = half_without_b(s).into_iter().skip(1).step_by(2).collect();
@@ -293,6 +300,7 @@ fn by_a_calibrated_s_a_record_has_the_intervals_of_a_run_with_and_without_sums()
     let s = Sensitivity {
         gauges: ["1", "2", "3", "4"].map(String::from).to_vec(),
         loads: ["A", "B"].map(Load::named).to_vec(),
+        noise: None,
         uncertainty: Some(Uncertainty {
             covariance: alike(2e-7, 1e-7, 8),
             scatter: alike(0.03, 0.02, 4),

@@ -16,6 +16,7 @@ fn job(seed: u64) -> (Sensitivity, ChaCha8Rng) {
         loads: (0..6).map(|l| Load::named(format!("L{l}"))).collect(),
         values: Matrix::from_fn(20, 6, |_, _| 10e-6 * gaussian(&mut rng)),
         uncertainty: None,
+        noise: None,
     };
     (s, rng)
 }

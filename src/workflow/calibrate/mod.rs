@@ -28,7 +28,7 @@ use crate::measured::zero::{Zeroed, judged_to_learn, read_zeroed, reads_strain, 
 use crate::recovery::Readings;
 use crate::sensitivity::{Load, Sensitivity};
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::{Prepared, given_as_asked, prepare};
+use crate::strain_chain::{Prepared, given_as_asked, prepare, stated_noise};
 use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::text_of;
 use crate::workflow::recover::listed;
@@ -62,6 +62,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
         gauges: prepared.sensitivity.gauges.clone(),
         loads: prepared.sensitivity.loads.clone(),
         noise: measured.noise_microstrain * MICROSTRAIN,
+        gauge_noise: stated_noise(job, &prepared.sensitivity.gauges)?,
         model: prior,
         runs: known.runs.iter().map(as_run).collect(),
         sums: sums(job, &prepared.sensitivity.loads),
@@ -302,6 +303,7 @@ fn stated_alone(job: &Job, table: &StrainTable) -> Sensitivity {
         gauges,
         loads,
         uncertainty: None,
+        noise: None,
     }
 }
 

@@ -135,6 +135,7 @@ fn measured(
         loads: Vec::new(),
         values: Matrix::zeros(gauges.len(), 0),
         uncertainty: None,
+        noise: None,
     });
     // Where not even the names can be had, that is a fault already.
     let mut faults = match gauges.is_empty() {

@@ -142,6 +142,7 @@ mod tests {
             loads: ["A", "B"].map(Load::named).to_vec(),
             values: Matrix::from_fn(s.len(), 2, |g, l| s[g][l]),
             uncertainty: None,
+            noise: None,
         };
         let found = exchanged(&s, samples.iter().map(Vec::as_slice), 0.1);
         found.map(|e| e.gauges)

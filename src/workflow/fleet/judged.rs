@@ -100,6 +100,23 @@ impl Judged {
         }
     }
 
+    /// The smallest and the largest value of each load, as they were given; not a number where a load has none.
+    pub fn ends(&self) -> Vec<[f64; 2]> {
+        let value = |e: &Extreme| {
+            if e.strain.is_empty() {
+                f64::NAN
+            } else {
+                e.value
+            }
+        };
+        let pairs = self.extremes.chunks_exact(2);
+        let ends = pairs.map(|pair| match pair {
+            [high, low] => [-value(low), value(high)],
+            _ => [f64::NAN; 2],
+        });
+        ends.collect()
+    }
+
     /// The samples spread over the record, strain less zero.
     pub fn spread(&self) -> Vec<Vec<f64>> {
         self.spread.values().cloned().collect()

@@ -21,7 +21,7 @@ use crate::recovery::clock;
 use crate::recovery::history::{Filter, SampleLoads};
 use crate::recovery::stuck::is_told_dead;
 use crate::recovery::{Missing, Sums, UNEXPLAINED, Widening, check_gaps};
-use crate::sensitivity::Sensitivity;
+use crate::sensitivity::{GaugeNoise, Sensitivity};
 use crate::series::SeriesError;
 use crate::series::rainflow::{Counter, Law, Marks};
 use crate::series::record::Record;
@@ -59,6 +59,8 @@ pub struct Kernel {
     pub errors: ErrorModel,
     /// Noise variance of a reading less zero, in units of that of a reading.
     pub noise_factor: f64,
+    /// Range of each load of S in its calibration, job units; `None` where the job states none.
+    pub ranges: Vec<Option<[f64; 2]>>,
     /// What is counted: the loads of S, then sums of them, with their units.
     pub listed: Listed,
     /// Harm of a cycle.
@@ -99,8 +101,19 @@ impl Kernel {
         let gaps = check_gaps("samples", &r.sensitivity, &pass.missing);
         findings.extend(gaps);
         let judged = std::mem::take(&mut pass.judged);
-        let widened = self.judge(&r, judged, |i| record.clock.time_s(i), &mut findings);
+        let mut ends = judged.ends();
+        let time_s = |i| record.clock.time_s(i);
+        let (mut widened, noise) = self.judge(&r, judged, time_s, &mut findings);
+        if noise.is_some()
+            && let Some(filter) = widened.take()
+        {
+            // Once more, with the weights of the noise that the record shows.
+            r.filter = filter;
+            pass = self.pass(record, &r)?;
+            ends = pass.judged.ends();
+        }
         let filter = widened.as_ref().unwrap_or(&r.filter);
+        findings.extend(self.beyond_calibration(filter, &ends, record.clock.samples));
         let scales = scales(&r, filter, pass.missing.whole, &pass.by_gauges);
         let loads = pass.counters.into_iter().zip(&self.listed.names);
         let loads = loads
@@ -183,10 +196,13 @@ impl Kernel {
         judged: Judged,
         time_s: impl Fn(usize) -> f64,
         findings: &mut Vec<Finding>,
-    ) -> Option<Filter> {
+    ) -> (Option<Filter>, Option<GaugeNoise>) {
         let samples = judged.spread();
         let judgements = judged.recovered(&r.sensitivity, self.errors, self.noise_factor, time_s);
-        let widening = judgements.first()?.widening.clone();
+        let Some(first) = judgements.first() else {
+            return (None, None);
+        };
+        let (widening, noise) = (first.widening.clone(), first.noise.clone());
         let found = findings_of(judgements);
         let explained = found.iter().all(|f| f.code != UNEXPLAINED);
         let named = |f: &Finding| f.code == "inputs-exchanged";
@@ -196,19 +212,26 @@ impl Kernel {
             findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges)));
         }
         findings.extend(found);
-        if !explained || widening == Widening::none() {
-            return None;
+        if !explained || (widening == Widening::none() && noise.is_none()) {
+            return (None, None);
         }
-        let mut filter = Filter::new(
-            &r.sensitivity,
+        let s = Sensitivity {
+            noise: noise.clone().or(r.sensitivity.noise.clone()),
+            ..r.sensitivity.clone()
+        };
+        let filter = Filter::new(
+            &s,
             r.zero.clone(),
             self.errors,
             self.noise_factor,
             &r.typical,
             widening,
-        )?;
-        filter.combine(&self.listed.sums);
-        Some(filter)
+        );
+        let filter = filter.map(|mut filter| {
+            filter.combine(&self.listed.sums);
+            filter
+        });
+        (filter, noise)
     }
 
     /// The columns that a record is read for.
@@ -341,6 +364,7 @@ impl Kernel {
             loads: all.loads.clone(),
             values: Matrix::from_fn(used.len(), k, |i, l| all.values[(used[i], l)]),
             uncertainty: all.uncertainty.as_ref().map(|u| u.of_gauges(&used)),
+            noise: all.noise.as_ref().map(|n| n.of_gauges(&used)),
         };
         let zero: Vec<f64> = used
             .iter()

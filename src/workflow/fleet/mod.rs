@@ -5,6 +5,7 @@
 //! vehicle exactly.
 
 mod asked;
+mod calibrated;
 mod compared;
 pub mod day;
 mod days;

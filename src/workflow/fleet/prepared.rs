@@ -5,14 +5,16 @@ use super::recovering::UnderWay;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::Job;
+use crate::job::calibrated_range::calibrated_range;
 use crate::job::correct::channel_of;
+use crate::measured::noise::prepare_with_noise;
 use crate::measured::reference::reference_strain;
 use crate::measured::zero::no_zero_runs;
 use crate::measured::zero::zero_of;
 use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::{prepare, stated_errors};
+use crate::strain_chain::stated_errors;
 use crate::workflow::recover::listed;
 
 /// Classes up to the expected size of a load.
@@ -35,7 +37,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         let remedy = "take [dynamic] out, and low-pass the strain below a third of the first mode; or `recover` the records one by one";
         return Err(Fault::at(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
     }
-    let prepared = prepare(work, job)?;
+    let prepared = prepare_with_noise(work, job)?;
     let s = &prepared.sensitivity;
     work.findings.extend(check_separability(s));
     let (mut zero, effective) = zero_of(work, job, measured, &s.gauges)?;
@@ -75,7 +77,10 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
         .map(|(e, u)| e.map_or(1.0, |e| round(e * u.factor / CLASSES)))
         .collect();
     let errors = stated_errors(measured, s, prepared.fields.as_ref());
+    let loads = prepared.sensitivity.loads.iter();
+    let ranges = loads.map(|l| calibrated_range(job, &l.name)).collect();
     Ok(Kernel {
+        ranges,
         sensitivity: prepared.sensitivity,
         zero,
         errors,

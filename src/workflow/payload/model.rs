@@ -12,13 +12,14 @@ use crate::job::payload_signature::{COLUMNS, note_unread};
 use crate::job::table::read_table;
 use crate::job::{GivenSensitivity, Job, LoadActs, NamedFile};
 use crate::linalg::Matrix;
+use crate::measured::noise::prepare_with_noise;
 use crate::measured::wheels::{basic_dof, floor_fault, wheels_of};
 use crate::model::{GridIx, Model, Vec3};
 use crate::payload::PayloadModel;
 use crate::sensitivity::{Sensitivity, Uncertainty, check_separability};
 use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
-use crate::strain_chain::{Fields, Prepared, has_covariance, prepare};
+use crate::strain_chain::{Fields, Prepared, has_covariance};
 use crate::units::MICROSTRAIN;
 
 /// The model of the payload with what the report draws.
@@ -44,7 +45,7 @@ pub(super) fn model_of(
         return given(work, task, use_strain);
     }
     let prepared = if use_strain {
-        Some(prepare(work, task.job)?)
+        Some(prepare_with_noise(work, task.job)?)
     } else {
         None
     };
@@ -256,6 +257,7 @@ fn held(
     let all_own = own.iter().all(Option::is_some);
     Ok(PayloadModel {
         calibrated: calibrated(task, &prepared.sensitivity, calibrated_columns).filter(|_| all_own),
+        noise: prepared.sensitivity.noise.clone(),
         gauges: prepared.sensitivity.gauges.clone(),
         wheels: Matrix::zeros(columns.nrows(), 0),
         payload: in_report_units(task, &columns),
@@ -342,6 +344,7 @@ fn standing(
         floor: Some(floor),
         arms: Some(arms),
         calibrated: None,
+        noise: prepared.and_then(|p| p.sensitivity.noise.clone()),
     })
 }
 
@@ -357,7 +360,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
         )
         .into());
     };
-    let prepared = prepare(work, job)?;
+    let prepared = prepare_with_noise(work, job)?;
     let s = &prepared.sensitivity;
     let vertical: Vec<usize> = (0..s.loads.len())
         .filter(|l| {
@@ -411,6 +414,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
         floor: (!on_wheels).then(|| Matrix::zeros(0, 3)),
         arms: None,
         calibrated: known,
+        noise: s.noise.clone().filter(|_| use_strain),
     };
     Ok(Parts {
         model,

@@ -312,15 +312,15 @@ fn strain(
         read_strain_file(&mut s.inputs, task.job, &measured.strain, &wanted)
     })?;
     note_columns(work, task.job, &measured.strain, (file.gauges(), &wanted));
-    let noise = measured.noise_microstrain * MICROSTRAIN;
+    let noise = noise_of_gauges(measured, model);
     let zero: Vec<Option<Net>> = match &measured.zero {
         Some(named) => {
             let zero = read_strain_file(&mut work.inputs, task.job, named, &wanted)?;
-            means(&zero, model, noise).into_iter().map(Some).collect()
+            means(&zero, model, &noise).into_iter().map(Some).collect()
         }
         None => vec![None; model.gauges.len()],
     };
-    let all = means(&file, model, noise);
+    let all = means(&file, model, &noise);
     if all.iter().all(|v| !v.value.is_finite()) {
         return Err(no_gauge_column(
             task.job,
@@ -361,7 +361,7 @@ fn of_runs(
     (table, names): (&StrainTable, &[String]),
     zero: Vec<Option<Net>>,
 ) -> Result<(Vec<(String, Vec<Net>)>, bool), Faults> {
-    let noise = measured.noise_microstrain * MICROSTRAIN;
+    let noise = noise_of_gauges(measured, model);
     let readings = by_gauge(table, model);
     // Without a zero file an unloaded run of the same table is the zero.
     let own = task
@@ -372,23 +372,22 @@ fn of_runs(
         .filter(|_| measured.zero.is_none());
     let from_unloaded = own.is_some();
     let zero: Vec<Option<Net>> = match own {
-        Some(i) => readings
-            .iter()
-            .map(|v| Some(mean_of(&v[i..=i], noise)))
+        Some(i) => (readings.iter().zip(&noise))
+            .map(|(v, noise)| Some(mean_of(&v[i..=i], *noise)))
             .collect(),
         None => zero,
     };
     let followed = zeros_by_row(work, task.job, measured, table)?;
     let of_run = |i: usize| -> Vec<Net> {
-        let means = readings.iter().map(|v| mean_of(&v[i..=i], noise));
+        let each = readings.iter().zip(&noise);
+        let means = each.map(|(v, noise)| mean_of(&v[i..=i], *noise));
         let Some(z) = &followed else {
             return nets(means, &zero);
         };
         let column = |g: &String| table.gauges.iter().position(|h| h == g);
-        let sigma = noise * (z.noise_factor[i] - 1.0).sqrt();
-        let zeros = model.gauges.iter().map(|g| Net {
+        let zeros = model.gauges.iter().zip(&noise).map(|(g, noise)| Net {
             value: column(g).map_or(f64::NAN, |c| z.zero[i][c] * MICROSTRAIN),
-            sigma,
+            sigma: noise * (z.noise_factor[i] - 1.0).sqrt(),
         });
         means.zip(zeros).map(|(m, z)| net(m, Some(z))).collect()
     };
@@ -399,9 +398,9 @@ fn of_runs(
 }
 
 /// Means over all rows of a strain file by gauge of the model, strain; NaN where the file has no column.
-fn means(file: &StrainFile, model: &PayloadModel, noise: f64) -> Vec<Net> {
+fn means(file: &StrainFile, model: &PayloadModel, noise: &[f64]) -> Vec<Net> {
     let readings = file.readings();
-    let of = |gauge: &String| {
+    let of = |(gauge, noise): (&String, &f64)| {
         let column = file.gauges().iter().position(|h| h == gauge);
         let series = column.and_then(|c| readings.get(c)).copied();
         let net = series.unwrap_or_default().net(noise / MICROSTRAIN);
@@ -410,7 +409,16 @@ fn means(file: &StrainFile, model: &PayloadModel, noise: f64) -> Vec<Net> {
             sigma: net.sigma * MICROSTRAIN,
         }
     };
-    model.gauges.iter().map(of).collect()
+    model.gauges.iter().zip(noise).map(of).collect()
+}
+
+/// Noise of a reading of each gauge of the model, strain.
+fn noise_of_gauges(measured: &Measured, model: &PayloadModel) -> Vec<f64> {
+    let noise = measured.noise_microstrain * MICROSTRAIN;
+    match &model.noise {
+        Some(of_gauges) => of_gauges.sd().iter().map(|sd| noise * sd).collect(),
+        None => vec![noise; model.gauges.len()],
+    }
 }
 
 fn nets(means: impl Iterator<Item = Net>, zero: &[Option<Net>]) -> Vec<Net> {

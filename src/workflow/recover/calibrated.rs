@@ -13,7 +13,7 @@ use crate::strain_chain::LoadUnits;
 use crate::units::MICROSTRAIN;
 
 /// Loads of S with a stated range, by number.
-fn with_range<'a>(
+pub(super) fn with_range<'a>(
     job: &Job,
     s: &'a Sensitivity,
     units: &'a [LoadUnits],
@@ -68,17 +68,14 @@ pub(super) fn of_runs(
     out
 }
 
-/// Returns the findings on a record, of so many samples, whose smallest or largest loads are beyond the calibration; `halves` are half widths
-/// of the 95 % intervals of a sample.
-pub(super) fn of_record(
-    job: &Job,
-    s: &Sensitivity,
-    units: &[LoadUnits],
+/// Returns the findings on a record, of so many samples, whose smallest or largest loads, job units, are beyond the calibration; `loads` are those of
+/// S with a stated range, by number, and `halves` are half widths of the 95 % intervals of a sample.
+pub(crate) fn record_beyond_calibration(
+    loads: &[(usize, CalibratedLoad)],
     (file, samples): (&str, u64),
     (min, max, halves): (&[f64], &[f64], &[f64]),
 ) -> Vec<Finding> {
     let rules = RangeRules::default();
-    let loads = with_range(job, s, units);
     let values = loads.len() * usize::try_from(samples).unwrap_or(usize::MAX / 64);
     let of_load = |(l, load): &(usize, CalibratedLoad)| {
         let at = |value: f64| Reached {

@@ -29,6 +29,8 @@ mod task;
 mod trace;
 mod validation;
 
+pub(crate) use calibrated::record_beyond_calibration;
+
 pub use answer::{
     Content, GaugeResidual, RecordLoad, Recovered, RecoveredLoad, RecoveredRecord, RecoveredRuns,
     RunFit, States,
@@ -56,11 +58,12 @@ use crate::host::fault::Faults;
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
+use crate::measured::noise::prepare_with_noise;
 use crate::measured::{self, MeasuredStrain};
 use crate::recovery::{Readings, Recovery};
 use crate::sensitivity::check_separability;
 use crate::strain_chain::named_results::check_tables;
-use crate::strain_chain::{Conditioning, Prepared, prepare};
+use crate::strain_chain::{Conditioning, Prepared};
 
 /// Recovers the loads of the runs or the record of a job with their intervals. Every sample of a record stays in memory
 /// ([`RecoveredRecord::history`]); [`recover_into`] writes the samples to a sink instead.
@@ -89,7 +92,7 @@ pub fn recover_into(
     let measured = task::measured_of(job)?;
     job.estimating()?;
     check_tables(&work, job)?;
-    let mut prepared = prepare(&mut work, job)?;
+    let mut prepared = prepare_with_noise(&mut work, job)?;
     let (states, beside) = recovered(&mut work, (job, measured), &prepared, sink)?;
     prepared.retain(&task::validation_rows(job, &prepared.sensitivity).1);
     let answer = Recovered {

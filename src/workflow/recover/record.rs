@@ -171,10 +171,8 @@ fn beyond_calibration(
     let sigma = head.filter.sigma(&ends);
     let factor = head.filter.coverage_factor();
     let halves: Vec<f64> = sigma.iter().map(|s| factor * s).collect();
-    calibrated::of_record(
-        task.job,
-        sensitivity,
-        &head.units,
+    calibrated::record_beyond_calibration(
+        &calibrated::with_range(task.job, sensitivity, &head.units),
         (&head.file, sums.missing.samples()),
         (&sums.min, &sums.max, &halves),
     )
@@ -252,6 +250,7 @@ fn filter(
     combinations: &[Vec<(usize, f64)>],
 ) -> Result<Filter, Faults> {
     work.findings.extend(judged.findings.iter().cloned());
+    let s = &judged.s(s);
     let filter = Filter::new(
         s,
         zero,

@@ -142,7 +142,7 @@ pub(super) struct Solved {
 
 /// Reads the strain of the runs and recovers their loads.
 pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result<Solved, Faults> {
-    let s = task.prepared.sensitivity.of_gauges(&task.estimating);
+    let mut s = task.prepared.sensitivity.of_gauges(&task.estimating);
     let (all, known) = read(work, task, table)?;
     let readings: Vec<Readings> = all.iter().map(|r| r.of_gauges(&task.estimating)).collect();
     let mut recovery = work.stage("recover", |work| {
@@ -151,6 +151,7 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
         recover_with_alternatives(&s, &readings, task.errors, &mut others)
     });
     work.findings.extend(identical(&s, &readings));
+    s = recovery.s(&s);
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
     work.findings.extend(validation::contradicted(&validation));
     let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;

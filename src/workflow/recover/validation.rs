@@ -113,6 +113,8 @@ impl<'a> Predicted<'a> {
     fn variance(&self, gain: &Gain, f: &[f64], noise_factor: f64) -> f64 {
         let own = self.uncertainty.as_ref();
         let of_row: f64 = own.map_or(0.0, |u| u.strain_covariance(1, f).iter().sum());
+        let noise = self.task.prepared.sensitivity.noise.as_ref();
+        let noise_factor = noise_factor * noise.map_or(1.0, |n| n.variance(self.row));
         of_row + prediction_variance((gain, &self.s), self.task.errors, f, noise_factor)
     }
 }

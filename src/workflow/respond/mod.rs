@@ -64,6 +64,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
                 loads: Vec::new(),
                 values: crate::linalg::Matrix::zeros(0, job.loads.len()),
                 uncertainty: None,
+                noise: None,
             },
             fields: Some(read_fields(work, job, WantedAt::Anywhere)?),
             gauges: Vec::new(),

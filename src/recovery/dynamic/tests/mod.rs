@@ -23,6 +23,7 @@ fn sensitivity(values: Matrix) -> Sensitivity {
         loads: loads.collect(),
         values,
         uncertainty: None,
+        noise: None,
     }
 }
 

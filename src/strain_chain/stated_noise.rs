@@ -1,0 +1,40 @@
+//! Noise of gauges as the job states it.
+
+use crate::host::fault::{Fault, FaultList, Faults};
+use crate::job::Job;
+use crate::sensitivity::GaugeNoise;
+
+/// Returns the noise of these gauges in units of the root mean square that the job states; `None` where all have the same, independent of each
+/// other.
+///
+/// # Errors
+/// Gauges whose noise is not stated where that of others is.
+pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, Faults> {
+    let Some(measured) = &job.measured else {
+        return Ok(None);
+    };
+    let correlation = measured.noise_correlation;
+    if measured.noise_by_gauge.is_empty() {
+        let alike = vec![1.0; gauges.len()];
+        return Ok((correlation > 0.0).then(|| GaugeNoise::with_correlation(&alike, correlation)));
+    }
+    let of = |name: &String| {
+        let mut stated = measured.noise_by_gauge.iter();
+        stated.find(|(n, _)| n == name).map(|(_, sd)| *sd)
+    };
+    let missing: FaultList = (gauges.iter().filter(|g| of(g).is_none()))
+        .map(|g| {
+            Fault::at(
+                &*job.file,
+                measured.line,
+                "measured.noise_microstrain",
+                format!("the noise of gauge `{g}` is not stated, and that of others is"),
+                "state the noise of every gauge, or one number for all",
+            )
+        })
+        .collect();
+    Faults::check(missing)?;
+    let unit = measured.noise_microstrain;
+    let sd: Vec<f64> = gauges.iter().filter_map(of).map(|sd| sd / unit).collect();
+    Ok(Some(GaugeNoise::with_correlation(&sd, correlation)))
+}
