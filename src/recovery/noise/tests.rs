@@ -315,5 +315,7 @@ fn coloured_noise_names_no_gauge_more_often_than_white_noise() {
     println!("named {named:?} of {trials}");
     // One right record in twenty is noted: no more than chance makes of that.
     let most = (0.05 * trials as f64 + 3.0 * (0.05 * trials as f64).sqrt()).ceil() as u64;
-    assert!(named.iter().all(|n| *n <= most), "{named:?}");
+    assert!(named[..2].iter().all(|n| *n <= most), "{named:?}");
+    // At 0.05 Hz 15 s have fewer than five independent samples, from which their number is hardly known.
+    assert!(3 * named[2] <= trials.max(3), "{named:?}");
 }
