@@ -239,7 +239,13 @@ fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Taken) {
             let (c, s) = (angle.cos(), -angle.sin());
             let near = [at[0] + far * c, at[1] + far * s];
             // The side of the words that looks at the gauge stands there.
-            let anchor = [(1.0 - c) / 2.0, (1.0 - s) / 2.0];
+            // Along the line, words begin, have their middle or end there.
+            let along = match (1.0 - c) / 2.0 {
+                a if a < 0.25 => 0.0,
+                a if a > 0.75 => 1.0,
+                _ => 0.5,
+            };
+            let anchor = [along, (1.0 - s) / 2.0];
             let x = near[0] - anchor[0] * wide;
             let y = near[1] - anchor[1] * tall;
             let area = [x, y, x + wide, y + tall];
