@@ -75,13 +75,15 @@ impl Fall {
     }
 }
 
-/// Returns the reason against a set of log evidence `level` where an alternative is ahead by more than `limit`: explanations with their log evidence.
+/// Returns the reason against a set of `n` effects and log evidence `level` where an alternative is ahead by more than `limit`, and by `decisive` for
+/// each effect that it has more: explanations with their log evidence.
 pub(super) fn ahead<'a>(
-    level: f64,
-    limit: f64,
+    (n, level): (usize, f64),
+    [limit, decisive]: [f64; 2],
     alternatives: impl Iterator<Item = (&'a [String], f64)>,
 ) -> Option<String> {
-    let far = alternatives.filter(|a| a.1 - level > limit);
+    let cost = |ids: &[String]| limit + decisive * ids.len().saturating_sub(n) as f64;
+    let far = alternatives.filter(|a| a.1 - level > cost(a.0));
     let best = far.max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(format!(
         "{} explains the fitted data better, by {:.1} of log evidence",
@@ -128,8 +130,11 @@ mod tests {
     #[test]
     fn an_alternative_is_ahead_only_beyond_the_limit() {
         let ids = ["a".to_owned()];
-        let one = |e: f64| [(&ids[..], e)].into_iter();
-        assert_eq!(ahead(10.0, 3.0, one(12.9)), None);
-        assert!(ahead(10.0, 3.0, one(13.1)).is_some_and(|w| w.contains('a')));
+        let one = |n: usize, e: f64| ahead((n, 10.0), [3.0, 5.0], [(&ids[..], e)].into_iter());
+        assert_eq!(one(1, 12.9), None);
+        assert!(one(1, 13.1).is_some_and(|w| w.contains('a')));
+        // One effect more than the set has none of.
+        assert_eq!(one(0, 17.9), None);
+        assert!(one(0, 18.1).is_some());
     }
 }

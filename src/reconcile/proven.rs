@@ -26,8 +26,8 @@ pub(super) struct Without<F> {
 /// Returns `set` without names by which the gap does not fall, and these names, in the order in which they go. A single name stays, and the
 /// checks of the set compare it with no effect at all.
 ///
-/// As long as the gap does not fall by one of them, the name goes that costs least log evidence among all by which it does not fall beyond its
-/// sampling error: of two effects that look alike, the fitted data choose.
+/// As long as the gap does not fall by one of them, the name goes by which it rises most beyond its sampling error. If it rises by none, the name
+/// goes that costs least log evidence among all by which it does not fall beyond that error: of two effects that look alike, the fitted data choose.
 ///
 /// `names` are those of a set. `compared` gives the gap of a set and, for each of these names, the set without it (`None` where it has no
 /// fit). It gives `None` where nothing can be compared, or work is to stop.
@@ -53,7 +53,13 @@ pub(super) fn without_useless<F>(
         if unseen.iter().all(|(_, f)| f.fall.by > 0.0) {
             break;
         }
-        unseen.sort_by(|a, b| b.1.fit.log_evidence.total_cmp(&a.1.fit.log_evidence));
+        // A name by which the gap rises beyond that error goes before all others, the worst first.
+        let rise = |f: &Without<F>| (f.fall.by < -f.fall.error).then_some(-f.fall.by);
+        unseen.sort_by(|(_, a), (_, b)| {
+            let [x, y] = [a, b].map(|f| rise(f).unwrap_or(0.0));
+            let evidence = b.fit.log_evidence.total_cmp(&a.fit.log_evidence);
+            y.total_cmp(&x).then(evidence)
+        });
         let Some((candidate, least)) = unseen.into_iter().next() else {
             break;
         };

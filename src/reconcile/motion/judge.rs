@@ -111,8 +111,8 @@ pub(super) fn judged(
             "the gap that judges does not fall by it from above the floor by more than its sampling error".into()
         }),
         Check::unless(ahead(
-            best.log_evidence,
-            rules.indistinguishable,
+            (best.set.len(), best.log_evidence),
+            [rules.indistinguishable, rules.decisive],
             (rivals.iter()).map(|r| (r.ids.as_slice(), best.log_evidence - r.evidence_difference)),
         )),
     ];

@@ -270,8 +270,8 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
             })
         }),
         Check::unless(ahead(
-            set.level,
-            rules.indistinguishable,
+            (set.attempt.len(), set.level),
+            [rules.indistinguishable, rules.decisive],
             set.rivals
                 .iter()
                 .map(|r| (r.0.as_slice(), r.1.log_evidence)),
