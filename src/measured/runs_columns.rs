@@ -6,11 +6,13 @@ use crate::job::same_name::{is_same_name, is_same_word};
 use crate::job::suggest;
 use crate::job::table::Table;
 use crate::job::unread::note_unread;
-use crate::job::{Job, Runs};
+use crate::job::{Job, NamedFile, Runs};
 use crate::series::number::DecimalMark;
 use crate::series::record::csv::is_units;
 use crate::series::record::{Clash, Column, name_and_unit, take_unit_below};
 use crate::units::{Quantity, Unit, find_unit, unit_names};
+use serde_json::Value;
+use std::path::Path;
 
 /// Name and unit of every column; a row of units below the names is taken out of the table. A unit beside the name goes before that row's.
 pub fn take_units(t: &mut Table) -> Vec<Column> {
@@ -26,6 +28,37 @@ pub fn take_units(t: &mut Table) -> Vec<Column> {
         }
     }
     columns
+}
+
+/// Gives columns without a unit the one that `result.json` beside the table states for them: tables of `recover` have names alone in their
+/// headers. Nothing where no `result.json` describes this table.
+pub fn take_units_beside(
+    inputs: &mut Inputs,
+    job: &Job,
+    named: &NamedFile,
+    columns: &mut [Column],
+) {
+    let given = Path::new(&named.given);
+    let beside = given.with_file_name("result.json");
+    let path = job.folder.join(&beside);
+    let Ok(bytes) = inputs.load(&path) else {
+        return;
+    };
+    let result: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+    let name = given
+        .file_name()
+        .and_then(|n| n.to_str())
+        .unwrap_or_default();
+    let units = result.get("tables").and_then(|tables| tables.get(name));
+    let Some(units) = units.and_then(Value::as_object) else {
+        return;
+    };
+    inputs.record(&beside.display().to_string(), path, &bytes);
+    for column in columns.iter_mut().filter(|c| c.unit.is_empty()) {
+        if let Some(unit) = units.get(&column.header.whole).and_then(Value::as_str) {
+            take_unit_below(column, unit);
+        }
+    }
 }
 
 /// The column whose header is `name`, or `name` and a unit; `None` where there is none.

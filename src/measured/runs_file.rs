@@ -2,6 +2,7 @@
 
 use super::runs_columns::{
     PAYLOAD, column_meant, known_column, note_unread_runs, run_column, take_units,
+    take_units_beside,
 };
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::Inputs;
@@ -41,7 +42,8 @@ pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunR
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
     let mut t = read_table(&runs.file.given, &text)?;
-    let headers = take_units(&mut t);
+    let mut headers = take_units(&mut t);
+    take_units_beside(inputs, job, &runs.file, &mut headers);
     t.check_rows()?;
     let mut faults = FaultList::new();
     let key = run_column(job, &t, &headers)?;

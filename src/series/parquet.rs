@@ -13,6 +13,9 @@ use std::sync::Arc;
 /// Samples a row group.
 const GROUP: usize = 131_072;
 
+/// Beginning of the key of a note on the unit of a column, before its name.
+pub const UNIT_OF: &str = "unit of ";
+
 fn broken(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
         wrong: format!("it can't be written as Parquet ({e})"),

@@ -333,6 +333,72 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
     );
 }
 
+/// Loads in kN, by the header, by the `result.json` of the command that wrote the table or by the notes of a Parquet file, give the stress of the
+/// same loads in N.
+#[test]
+fn loads_in_another_unit_than_the_report_give_the_same_stress() {
+    let loads = [1.0, -12.5, 40.0, 25.0, 0.0];
+    let table = |head: &str, scale: f64| {
+        let rows = loads.iter().enumerate();
+        let rows = rows.map(|(i, v)| {
+            let v = v * scale;
+            format!("{},{v},{},{}\n", i as f64 * 0.1, v - scale, v + scale)
+        });
+        format!("{head}\n{}", rows.collect::<String>()).into_bytes()
+    };
+    let result = r#"{"command": "recover", "tables": {"loads.csv": {"time": "s", "P": "kN", "P.low": "kN", "P.high": "kN"}}}"#;
+    let notes = [("unit of P".to_owned(), "kN".to_owned())];
+    let read = |from: usize, to: usize, out: &mut Vec<f64>| {
+        out.extend(loads[from..to].iter().map(|v| 1e-3 * v));
+    };
+    let parquet = strainbridge::series::parquet::parquet_bytes(
+        &["P".to_owned()],
+        &notes,
+        [0.0, 0.1],
+        5,
+        read,
+    );
+    let stress = |name: &str, bytes: Vec<u8>, beside: Option<&str>| {
+        let files = plate("name,element,surface,angle_deg\nA,7,bottom,45\n");
+        let job = format!(
+            "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n[[load]]\nname = \"P\"\ngrid = 2\ncomponent = \"FY\"\n\
+             [respond]\nloads = \"out/{name}\"\n"
+        );
+        let mut files = files
+            .with("job.toml", job)
+            .with(format!("out/{name}"), bytes);
+        if let Some(text) = beside {
+            files = files.with("out/result.json", text);
+        }
+        let job = Job::read("job.toml", &files).unwrap();
+        let found = respond(&job, &Context::new(&files)).unwrap();
+        found.elements[0].max_von_mises
+    };
+    let plain = "time,P,P.low,P.high";
+    let right = stress("loads.csv", table(plain, 1.0), None);
+    for (name, bytes, beside) in [
+        (
+            "loads.csv",
+            table("time,P [kN],P.low [kN],P.high [kN]", 1e-3),
+            None,
+        ),
+        ("loads.csv", table(plain, 1e-3), Some(result)),
+        // Beside the name goes before what another file states.
+        (
+            "loads.csv",
+            table("time,P [N],P.low [N],P.high [N]", 1.0),
+            Some(result),
+        ),
+        ("loads.parquet", parquet.unwrap(), None),
+    ] {
+        let found = stress(name, bytes, beside);
+        assert!(
+            (found / right - 1.0).abs() < 1e-6,
+            "{name} {beside:?}: {found} {right}"
+        );
+    }
+}
+
 /// Damage of twice the loads is `2^m` times the damage, with intervals of the loads it has one, and runs make no cycles.
 #[test]
 fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {

@@ -2,6 +2,7 @@
 
 use super::flat_buffer::Buffer;
 use super::typed::Meaning;
+use crate::series::parquet::UNIT_OF;
 use parquet::file::metadata::FileMetaData;
 use std::collections::HashMap;
 
@@ -38,6 +39,8 @@ pub(super) enum Stored {
 #[derive(Clone)]
 pub(super) struct Field {
     pub name: String,
+    /// Unit that the notes on the column state; empty where they state none.
+    pub unit: String,
     pub stored: Stored,
     /// Number of its buffers in a batch, without those of its children; of views the fixed ones.
     pub buffers: usize,
@@ -50,31 +53,64 @@ pub(super) struct Field {
     pub children: Vec<Field>,
 }
 
-/// Seconds in one unit of the durations of a Parquet file, by column; nothing of a schema that can't be read.
+/// What a Parquet file states of its columns beside their types, by name.
+#[derive(Default)]
+pub(super) struct Notes {
+    /// Seconds in one unit of the durations.
+    pub durations: HashMap<String, f64>,
+    /// Units.
+    pub units: HashMap<String, String>,
+}
+
+/// Returns what the notes of a Parquet file state of its columns; nothing of a schema that can't be read.
+///
+/// Units are in the notes of a column, key `unit` or `units`, or in those of the file, key `unit of` with the name, as `recover` writes them.
 ///
 /// # Reference
 /// Apache Arrow, Columnar format 1.5: Schema.fbs, Message.fbs.
-pub(super) fn durations(file: &FileMetaData) -> HashMap<String, f64> {
-    let list = file.key_value_metadata().into_iter().flatten();
-    let value = list
+pub(super) fn notes(file: &FileMetaData) -> Notes {
+    let list = || file.key_value_metadata().into_iter().flatten();
+    let value = list()
         .filter(|kv| kv.key == KEY)
         .find_map(|kv| kv.value.as_ref());
     let bytes = value.and_then(|text| from_base64(text));
-    bytes.and_then(|b| of_schema(&b)).unwrap_or_default()
+    let mut notes = bytes.and_then(|b| of_schema(&b)).unwrap_or_default();
+    notes.units.extend(list().filter_map(|kv| {
+        let column = kv.key.strip_prefix(UNIT_OF)?;
+        Some((column.to_owned(), kv.value.clone()?))
+    }));
+    notes
 }
 
-fn of_schema(bytes: &[u8]) -> Option<HashMap<String, f64>> {
+fn of_schema(bytes: &[u8]) -> Option<Notes> {
     let buffer = Buffer(bytes);
     let schema = buffer.child(message(buffer, 0)?, HEADER)?;
-    let fields = fields(buffer, schema)?.into_iter();
-    let duration = |f: Field| match f.stored {
-        Stored::Integer {
+    let mut notes = Notes::default();
+    for f in fields(buffer, schema)? {
+        if let Stored::Integer {
             meaning: Meaning::Duration(worth),
             ..
-        } => Some((f.name, worth)),
-        _ => None,
-    };
-    Some(fields.filter_map(duration).collect())
+        } = f.stored
+        {
+            notes.durations.insert(f.name.clone(), worth);
+        }
+        if !f.unit.is_empty() {
+            notes.units.insert(f.name, f.unit);
+        }
+    }
+    Some(notes)
+}
+
+/// Returns the unit in the notes on a field; `None` where they state none, or are damaged.
+fn unit_in_notes(buffer: Buffer<'_>, field: usize) -> Option<String> {
+    let notes = buffer.list(field, 6, 4)?.into_iter();
+    let notes = notes.filter_map(|at| {
+        let note = buffer.follow(at)?;
+        let [key, value] = [0, 1].map(|n| buffer.child(note, n).and_then(|t| buffer.text(t)));
+        Some((key?.to_lowercase(), value?.to_owned()))
+    });
+    let mut units = notes.filter(|(key, _)| matches!(key.as_str(), "unit" | "units"));
+    units.next().map(|(_, unit)| unit)
 }
 
 /// Returns the table of the message that begins at a place.
@@ -108,6 +144,7 @@ fn field(buffer: Buffer<'_>, at: usize, depth: usize) -> Option<Field> {
     let stored = stored(buffer, kind, details)?;
     let plain = Field {
         name: name.unwrap_or_default().to_owned(),
+        unit: unit_in_notes(buffer, at).unwrap_or_default(),
         stored,
         buffers: match kind {
             NULL | RUN_ENDS => 0,
@@ -255,7 +292,8 @@ mod tests {
         for (text, worth) in [(MILLISECONDS, 1e-3), (NANOSECONDS, 1e-9)] {
             let bytes = from_base64(text).unwrap();
             let read = of_schema(&bytes).unwrap();
-            assert_eq!(read, HashMap::from([("time".to_owned(), worth)]));
+            assert_eq!(read.durations, HashMap::from([("time".to_owned(), worth)]));
+            assert!(read.units.is_empty());
             for i in 0..bytes.len() {
                 let _ = of_schema(&bytes[..i]);
                 let mut other = bytes.clone();

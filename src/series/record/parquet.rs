@@ -1,6 +1,6 @@
 //! Parquet: a column a channel, a row a sample; read by parts of row groups, column by column, a page at a time.
 
-use super::arrow::durations;
+use super::arrow::notes;
 use super::column::{Column, is_time};
 use super::pages::Pages;
 use super::parquet_bytes::Whole;
@@ -75,16 +75,18 @@ impl Parquet {
             .parse_and_finish(&*whole)
             .map_err(broken)?;
         let schema = metadata.file_metadata().schema_descr();
-        let durations = durations(metadata.file_metadata());
+        let notes = notes(metadata.file_metadata());
         let columns = schema.columns().iter().enumerate();
         // The name of a nested leaf is its last word; groups other than the root are no tables of channels.
         let typed = Typed::of(columns.filter_map(|(leaf, c)| {
             let meaning = meaning(c).filter(|_| c.max_rep_level() == 0)?;
-            let meaning = match durations.get(c.name()) {
-                Some(worth) if c.path().parts().len() == 1 => Meaning::Duration(*worth),
+            let is_outermost = c.path().parts().len() == 1;
+            let meaning = match notes.durations.get(c.name()) {
+                Some(worth) if is_outermost => Meaning::Duration(*worth),
                 _ => meaning,
             };
-            Some((leaf, c.name(), meaning))
+            let unit = notes.units.get(c.name()).filter(|_| is_outermost);
+            Some((leaf, c.name(), meaning, unit.map_or("", String::as_str)))
         }));
         let (leaves, columns) = typed.channels.into_iter().unzip();
         let (mut pieces, mut units): (Vec<Part>, Vec<Unit>) = (Vec::new(), Vec::new());

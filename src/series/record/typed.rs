@@ -1,6 +1,6 @@
 //! Columns of files that state a type for each: numbers, points in time, durations. Parquet and Feather.
 
-use super::column::{Column, is_time, name_and_unit, seconds_in};
+use super::column::{Column, is_time, name_and_unit, seconds_in, take_unit_below};
 use super::reader::Times;
 use super::time_unit::single_rounding_s;
 use crate::series::error::SeriesError;
@@ -47,13 +47,15 @@ impl Meaning {
 }
 
 impl Typed {
-    /// Returns the channels and the column of time of columns that have a number in the file, a name and a meaning. A column of time (`time`, `t`,
-    /// `timestamp`) gives the times; else the first column of timestamps or durations, such as the index that pandas writes.
-    pub(super) fn of<'a>(list: impl Iterator<Item = (usize, &'a str, Meaning)>) -> Self {
+    /// Returns the channels and the column of time of columns that have a number in the file, a name, a meaning and a unit that the file states
+    /// apart from the name, or a blank. A column of time (`time`, `t`, `timestamp`) gives the times; else the first column of timestamps or
+    /// durations, such as the index that pandas writes.
+    pub(super) fn of<'a>(list: impl Iterator<Item = (usize, &'a str, Meaning, &'a str)>) -> Self {
         let mut time: Option<(TimeColumn, bool)> = None;
         let mut found = Vec::new();
-        for (at, name, meaning) in list {
-            let column = name_and_unit(name);
+        for (at, name, meaning, unit) in list {
+            let mut column = name_and_unit(name);
+            take_unit_below(&mut column, unit);
             let is_named = is_time(&column.name, at == 0);
             let is_typed = !matches!(meaning, Meaning::Number(_));
             let is_better = match &time {

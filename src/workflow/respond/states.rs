@@ -7,10 +7,11 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::table::{Table, each_part};
 use crate::job::unread::unread_columns;
-use crate::job::{Job, JobLoad, NamedFile};
+use crate::job::{Job, NamedFile, Runs};
+use crate::measured::runs_columns::{known_column, take_units, take_units_beside};
 use crate::recovery::beyond_expected;
 use crate::respond::{LoadState, Spread};
-use crate::series::record::{is_format, is_time, name_and_unit};
+use crate::series::record::{Column, is_format, is_time, name_and_unit};
 use crate::strain_chain::{LoadUnits, Prepared, load_units};
 use crate::units::Quantity;
 use crate::workflow::recover::recovered_runs;
@@ -89,8 +90,14 @@ pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Resul
     let mut keys = KeysRead::default();
     each_part(&named.given, &text, PART, &mut |part| {
         let columns = columns.get_or_insert_with(|| {
-            unread = unread_loads(&part, job, &names);
-            Columns::of(&part, job, &names, &mut faults)
+            let mut read = take_units(&mut Table {
+                file: part.file.clone(),
+                header: part.header.clone(),
+                rows: Vec::new(),
+            });
+            take_units_beside(&mut work.inputs, job, named, &mut read);
+            unread = unread_loads((&part, &read), job, &names);
+            Columns::of((&part, &read), job, named, &mut faults)
         });
         for row in 0..part.rows.len() {
             faults.extend(columns.wrong_key(&part, row, &mut keys));
@@ -161,7 +168,7 @@ fn finish(
 }
 
 /// Returns the warning of columns of a table of loads that nothing reads. Sums of loads, which `recover` writes too, are known.
-fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
+fn unread_loads((t, columns): (&Table, &[Column]), job: &Job, names: &[String]) -> Option<Finding> {
     let key = key_of(t).0;
     let sums = job.combinations.iter().map(|c| &c.name);
     let known: Vec<String> = names
@@ -169,8 +176,10 @@ fn unread_loads(t: &Table, job: &Job, names: &[String]) -> Option<Finding> {
         .chain(sums)
         .flat_map(|n| ["", ".low", ".high"].map(|end| format!("{n}{end}")))
         .collect();
-    let is_read = |c: usize| c == key || known.contains(&t.header[c]);
-    let lacking = known.iter().filter(|n| !t.header.contains(n));
+    let is_called = |c: &Column, n: &String| c.header.whole == *n || c.name == *n;
+    let is_read = |c: usize| c == key || known.iter().any(|n| is_called(&columns[c], n));
+    let lacking = known.iter();
+    let lacking = lacking.filter(|n| !columns.iter().any(|c| is_called(c, n)));
     let lacking: Vec<&str> = lacking.map(String::as_str).collect();
     unread_columns(t, is_read, &lacking)
 }
@@ -213,27 +222,54 @@ struct Columns {
     key: usize,
     kind: Key,
     /// Of each load its value and its interval.
-    loads: Vec<(usize, Option<(usize, usize)>)>,
-    /// Of each load what it measures, and SI units of one report unit.
-    sizes: Vec<(Option<Quantity>, f64)>,
+    loads: Vec<LoadColumns>,
     without_interval: Vec<String>,
 }
 
+/// Columns of a load: its value, and where the table has them the ends of its interval.
+struct LoadColumns {
+    value: Sized,
+    interval: Option<[Sized; 2]>,
+}
+
+/// A column with what it measures and the SI units of one of its numbers, and the number of report units in one of these.
+#[derive(Clone, Copy)]
+struct Sized {
+    at: usize,
+    size: (Option<Quantity>, f64),
+    in_report_units: f64,
+}
+
 impl Columns {
-    fn of(t: &Table, job: &Job, names: &[String], faults: &mut FaultList) -> Self {
-        let unit = |l: &JobLoad| l.report_unit(&job.report_units).map_or(1.0, |u| u.si);
-        let sizes = job.loads.iter().map(|l| (l.quantity(), unit(l)));
+    fn of(
+        (t, columns): (&Table, &[Column]),
+        job: &Job,
+        named: &NamedFile,
+        faults: &mut FaultList,
+    ) -> Self {
+        let runs = Runs::in_report_units(named.clone(), "respond", job.report_units);
         let (key, kind) = key_of(t);
         let mut out = Self {
             key,
             kind,
             loads: Vec::new(),
-            sizes: sizes.collect(),
             without_interval: Vec::new(),
         };
-        for name in names {
-            let of = |suffix: &str| t.column(&[&format!("{name}{suffix}")]);
-            let Some(c) = of("") else {
+        for load in &job.loads {
+            let (name, quantity) = (&load.name, load.quantity());
+            let report = load.report_unit(&job.report_units).map_or(1.0, |u| u.si);
+            let mut of = |name: &str| {
+                let found = known_column(job, &runs, t, columns, name, quantity, faults)?;
+                let si = found.unit.map_or(1.0, |u| u.si);
+                Some(Sized {
+                    at: found.at,
+                    size: (quantity, si),
+                    in_report_units: si / report,
+                })
+            };
+            let value = of(name);
+            let ends = [".low", ".high"].map(|end| of(&format!("{name}{end}")));
+            let Some(value) = value else {
                 faults.push(Fault::at(
                     &*t.file,
                     1,
@@ -243,11 +279,12 @@ impl Columns {
                 ));
                 continue;
             };
-            let interval = of(".low").zip(of(".high"));
+            let [low, high] = ends;
+            let interval = low.zip(high).map(|(low, high)| [low, high]);
             if interval.is_none() {
                 out.without_interval.push(name.clone());
             }
-            out.loads.push((c, interval));
+            out.loads.push(LoadColumns { value, interval });
         }
         out
     }
@@ -291,20 +328,21 @@ impl Columns {
         units: &[LoadUnits],
         faults: &mut FaultList,
     ) -> Option<LoadState> {
-        let mut number = |c: usize, size: (Option<Quantity>, f64)| {
-            t.size(row, c, size).unwrap_or_else(|f| {
+        let mut number = |c: Sized| {
+            let found = t.size(row, c.at, c.size).unwrap_or_else(|f| {
                 faults.push(f);
                 None
-            })
+            });
+            found.map(|x| x * c.in_report_units)
         };
         let (mut values, mut sigma) = (Vec::new(), Vec::new());
         let mut reversed = None;
-        for (((c, interval), u), size) in self.loads.iter().zip(units).zip(&self.sizes) {
-            values.push(number(*c, *size)? / u.factor);
+        for (LoadColumns { value, interval }, u) in self.loads.iter().zip(units) {
+            values.push(number(*value)? / u.factor);
             sigma.push(match interval {
-                Some((low, high)) => match (number(*low, *size), number(*high, *size)) {
+                Some([low, high]) => match (number(*low), number(*high)) {
                     (Some(l), Some(h)) => {
-                        reversed = reversed.or((l > h).then_some(*low));
+                        reversed = reversed.or((l > h).then_some(low.at));
                         (h - l) / (2.0 * NORMAL_95) / u.factor
                     }
                     _ => 0.0,
@@ -340,7 +378,6 @@ mod tests {
             key,
             kind,
             loads: Vec::new(),
-            sizes: Vec::new(),
             without_interval: Vec::new(),
         };
         let mut before = KeysRead::default();

@@ -4,7 +4,7 @@ use super::tables::LoadsFile;
 use crate::host::fault::Faults;
 use crate::host::output::Output;
 use crate::report::command::mistake;
-use crate::series::parquet::parquet_bytes;
+use crate::series::parquet::{UNIT_OF, parquet_bytes};
 use crate::workflow::recover::{RecordHead, Samples};
 
 const NAME: &str = "loads.parquet";
@@ -18,7 +18,7 @@ pub(super) fn write(out: &mut Output, head: &RecordHead, loads: &LoadsFile) -> R
     let mut notes = Vec::new();
     for ((name, unit), sigma) in head.names.iter().zip(&head.units).zip(sigma) {
         let half = head.filter.coverage_factor() * sigma * unit.factor;
-        notes.push((format!("unit of {name}"), unit.name.clone()));
+        notes.push((format!("{UNIT_OF}{name}"), unit.name.clone()));
         notes.push((format!("95 % half width of {name}"), half.to_string()));
     }
     let h = &loads.header;

@@ -94,6 +94,7 @@ pub(super) fn parts(file: &[u8]) -> Option<(Vec<Field>, Vec<Batch>, Vec<(usize, 
         };
         let field = Field {
             name: String::new(),
+            unit: String::new(),
             stored,
             buffers: 2 + usize::from(matches!(stored, Stored::Text { .. })),
             is_view: stored == Stored::TextView,

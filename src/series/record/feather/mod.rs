@@ -53,7 +53,8 @@ impl Feather {
         let (fields, batches, dictionaries) =
             parts(file).ok_or_else(|| broken("its list of columns or batches is damaged"))?;
         let numbers = fields.iter().enumerate();
-        let typed = Typed::of(numbers.filter_map(|(at, f)| Some((at, &*f.name, f.meaning()?))));
+        let typed =
+            Typed::of(numbers.filter_map(|(at, f)| Some((at, &*f.name, f.meaning()?, &*f.unit))));
         let (leaves, columns) = typed.channels.into_iter().unzip();
         let pieces = batches.iter().enumerate().flat_map(|(b, batch)| {
             // A compressed batch is decompressed whole.
