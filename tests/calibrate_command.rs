@@ -157,6 +157,45 @@ fn the_largest_known_load_is_stated_where_no_model_checks_its_unit() {
 }
 
 #[test]
+fn a_run_whose_name_differs_between_the_files_is_named() {
+    let folder = scratch("calibrate-names");
+    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/bridge");
+    let text = |file: &str| std::fs::read_to_string(from.join(file)).unwrap();
+    for (name, strain, expected) in [
+        ("same", text("strain.csv"), None),
+        (
+            "other",
+            text("strain.csv").replace("R02,", "R2,"),
+            Some("R02"),
+        ),
+        (
+            "case",
+            text("strain.csv")
+                .replace("R01,", "r01,")
+                .replace("R02,", "r02,"),
+            Some("R01, R02"),
+        ),
+    ] {
+        let job = folder.join(name);
+        std::fs::create_dir_all(&job).unwrap();
+        std::fs::write(job.join("strain.csv"), strain).unwrap();
+        for file in ["calibrate.toml", "runs.csv"] {
+            std::fs::write(job.join(file), text(file)).unwrap();
+        }
+        let (_, result, said) = run("calibrate", &job.join("calibrate.toml"), &job.join("out"));
+        let findings = result["findings"]
+            .as_array()
+            .unwrap_or_else(|| panic!("{said}"));
+        let found = findings.iter().find(|f| f["code"] == "run-without-record");
+        assert_eq!(
+            found.and_then(|f| f["subject"].as_str()),
+            expected,
+            "{name}"
+        );
+    }
+}
+
+#[test]
 fn a_payload_of_which_the_sum_alone_is_known_teaches_too() {
     let folder = scratch("calibrate-onboard");
     let (code, result, said) = run("calibrate", &example("onboard"), &folder.join("cal"));

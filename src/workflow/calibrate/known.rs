@@ -3,13 +3,15 @@
 use super::asked::Asked;
 use super::payloads::{Payloads, add_columns};
 use crate::calibrate::KnownLoads;
-use crate::finding::{Finding, Severity};
+use crate::finding::{Finding, Severity, few};
 use crate::host::fault::{Fault, FaultList, Faults};
+use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::job::table::{Table, read_table};
 use crate::job::{HoldOut, Job, Measured, Runs};
 use crate::measured::runs_columns::{
     asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
+    take_units_beside,
 };
 use crate::sensitivity::Load;
 use crate::series::record::Column;
@@ -77,6 +79,7 @@ pub(super) fn read_known(
         .map_err(Faults::from)?;
     let mut table = read_table(&runs.file.given, &text)?;
     let mut headers = take_units(&mut table);
+    take_units_beside(&mut work.inputs, job, &runs.file, &mut headers);
     table.check_rows()?;
     let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
     note_unread_runs(&mut work.inputs, job, (&table, &headers), &names);
@@ -175,10 +178,43 @@ pub(super) fn read_known(
     }
     Faults::check(faults)?;
     work.findings.extend(partly_known(&table.file, &partly));
+    // Rows of a second file of held-out runs are not in this one.
+    if !matches!(measured.hold_out, HoldOut::File(_)) {
+        let has_loads = |at: &usize| {
+            let mut cells = stated.iter().map(|s| cell(&table, *at, s));
+            cells.any(|c| matches!(c, Ok(Some(_))))
+        };
+        let rows = (0..table.rows.len()).filter(has_loads);
+        let lacking = rows
+            .map(name_of)
+            .filter(|run| !strain.iter().any(|s| s == run));
+        work.findings
+            .extend(without_strain(&table.file, &lacking.collect::<Vec<_>>()));
+    }
     Ok(KnownRuns {
         runs: out,
         checks: checked,
         column: depends.map(|(name, _)| (name, values)),
+    })
+}
+
+/// Returns the finding on runs with known loads that have no strain: names that differ between the two files, or runs of another day.
+fn without_strain(file: &str, runs: &[&str]) -> Option<Finding> {
+    (!runs.is_empty()).then(|| {
+        let wrong = format!(
+            "the strain file has no row for {} with known loads in `{file}`: {}",
+            counted(runs.len(), "run"),
+            few(runs)
+        );
+        let remedy = "give the runs the same names in both files, or remove these rows";
+        Finding::new(
+            Severity::Warning,
+            "run-without-record",
+            few(runs),
+            wrong,
+            remedy,
+        )
+        .with_numbers(runs.len() as f64, 0.0)
     })
 }
 
