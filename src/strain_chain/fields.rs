@@ -2,6 +2,7 @@
 
 use super::combined_subcases::{other_stations, read_combination};
 use super::deck_loads::check_deck_loads;
+use super::deck_supports::check_deck_supports;
 use super::load_cases::find_cases;
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::unit_loads;
@@ -276,7 +277,9 @@ fn read_results(
     }
     let of_load = find_cases(work, job, &mut solutions, &repeated_in)?;
     let cases = of_load.iter().map(|(s, c)| &solutions[*s].cases[*c]);
-    check_deck_loads(job, &deck, &units, cases)?;
+    check_deck_loads(job, &deck, &units, cases.clone())?;
+    let supports = check_deck_supports(job, &deck, cases);
+    work.findings.extend(supports);
     work.findings.push(super::source_finding(
         &solutions
             .iter()
