@@ -7,7 +7,7 @@ use super::load_cases::{check_labels, find_cases};
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::unit_loads;
 use crate::fe::from_results::{
-    Displacements, ReadOptions, repeated, solution_from_file, subcase_labels,
+    Displacements, ReadOptions, other_element_types, repeated, solution_from_file, subcase_labels,
 };
 use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad, combine_results};
 use crate::gauge::CornerRows;
@@ -18,7 +18,7 @@ use crate::model::{BeamIx, Load as ModelLoad, Model};
 use crate::sensitivity::{Load, LoadCaseOf};
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::results_fault;
+use crate::strain_chain::named_results::{other_deck, results_fault};
 use crate::strain_chain::solved::{
     MODES, cases_of_job, is_combination, label_of, relief_of_job, solve_kept, static_case,
     support_of_job,
@@ -275,6 +275,9 @@ fn read_results(
             case.beams.mark_loaded(loaded_bars(&deck, case.subcase));
         }
         work.findings.extend(solution.findings.iter().cloned());
+        if let Some(other) = other_element_types(&solution.findings) {
+            return Err(other_deck(job, named, other).into());
+        }
         solutions.push(solution);
         repeated_in.push(repeated);
         labels.push(of_file);
