@@ -80,6 +80,7 @@ pub use support::{
     Support, SupportChoice, SupportError, contradictions, relief_finding, suport_without_inrel,
     support_of,
 };
+pub(crate) use temperature::is_heated;
 pub use unsupported_cards::refuse;
 pub(crate) use unsupported_cards::unsupported_cards;
 pub use variants::solve_variants;

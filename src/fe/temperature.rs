@@ -4,7 +4,9 @@ use super::UnitLoad;
 use super::element::beam::LineStrain;
 use super::error::FeError;
 use super::load_case::LoadCase;
-use crate::model::{ElementTemperature, GridIx, MaterialKind, Model, Shell};
+use crate::model::{
+    ElementTemperature, GridIx, Material, MaterialIx, MaterialKind, Model, Shell, ShellKind,
+};
 use std::collections::HashMap;
 
 /// Rises at both ends, and gradients along y and along z at both ends.
@@ -108,4 +110,78 @@ pub(super) fn beam_expansion(model: &Model, i: usize, t: &Temperatures) -> Optio
         per_y: gradient[0].map(|t| alpha * t),
         per_z: gradient[1].map(|t| alpha * t),
     })
+}
+
+/// Rises of temperature up to this one are rounding of the cards.
+const NO_RISE: f64 = 1e-9;
+
+/// Returns whether the temperatures of a case act: an element whose material expands is warmer or colder than its reference.
+///
+/// # Errors
+/// A temperature set that the deck lacks.
+pub(crate) fn is_heated(model: &Model, case: &LoadCase) -> Result<bool, FeError> {
+    let Some(t) = Temperatures::of(model, case)? else {
+        return Ok(false);
+    };
+    let acts = |rise: f64| rise.abs() > NO_RISE;
+    let material = |ix: MaterialIx| model.materials.get(ix.us()).filter(|m| expands(m));
+    let on_line = |id: u32, grids: [GridIx; 2], ix: MaterialIx| {
+        material(ix).is_some_and(|m| {
+            let (ends, gradients) = t.line_rise(id, grids, m.tref);
+            ends.into_iter()
+                .chain(gradients.into_iter().flatten())
+                .any(acts)
+        })
+    };
+    let shells = model.shells.iter().any(|shell| {
+        let property = model.shell_properties.get(shell.property.us());
+        let references = property.map_or(Vec::new(), |p| match &p.kind {
+            ShellKind::Homogeneous {
+                membrane,
+                bending,
+                coupling,
+                ..
+            } => [membrane, bending, coupling]
+                .into_iter()
+                .filter_map(|ix| Some(material((*ix)?)?.tref))
+                .collect(),
+            ShellKind::Laminate { plies, tref, .. } => plies
+                .iter()
+                .filter_map(|p| material(p.material))
+                .map(|m| tref.unwrap_or(m.tref))
+                .collect(),
+        });
+        references.into_iter().any(|tref| {
+            let (corners, gradient) = t.shell_rise(shell, tref);
+            corners.into_iter().any(acts) || acts(gradient)
+        })
+    });
+    let beams = || {
+        model.beams.iter().any(|b| {
+            let property = model.beam_properties.get(b.property.us());
+            property.is_some_and(|p| on_line(b.id, b.grids, p.material))
+        })
+    };
+    let rods = || {
+        let mut rods = model.rods.iter();
+        rods.any(|r| on_line(r.id, r.grids, r.material))
+    };
+    let solids = || {
+        model.solids.iter().enumerate().any(|(i, s)| {
+            let property = model.solid_properties.get(s.property as usize);
+            let grids: Vec<GridIx> = s.grids.iter().flatten().copied().collect();
+            property.is_some_and(|p| material(p.material).is_some())
+                && t.solid_rise(model, i, &grids).into_iter().any(acts)
+        })
+    };
+    Ok(shells || beams() || rods() || solids())
+}
+
+fn expands(material: &Material) -> bool {
+    match material.kind {
+        MaterialKind::Isotropic { alpha, .. } => alpha != 0.0,
+        MaterialKind::Anisotropic2d { alpha, .. } => alpha != [0.0; 3],
+        MaterialKind::Orthotropic { alpha, .. } => alpha != [0.0; 2],
+        MaterialKind::Anisotropic3d { alpha, .. } => alpha != [0.0; 6],
+    }
 }

@@ -1,12 +1,16 @@
-//! Loads of a job compared with the forces and moments of the subcases whose results they name.
+//! Loads of a job compared with the loads of the subcases whose results they name.
 
 use crate::fe::{CaseResult, UnitLoad};
+use crate::finding::few;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::short;
 use crate::job::{Job, JobLoad, LoadActs};
 use crate::model::{Load, Model, Vec3};
+use crate::strain_chain::combined_subcases::read_combination;
 use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::other_loads::{OtherLoad, moved_supports, other_loads, thermal_loads};
 use crate::strain_chain::solved::{is_combination, label_of};
+use nastran::bdf::Subcase;
 
 /// Relative difference of forces and moments up to which job and deck agree: cards and jobs state four digits or more.
 const AGREES: f64 = 1e-3;
@@ -18,10 +22,11 @@ struct Resultant {
     moment: Vec3,
 }
 
-/// Refuses loads whose grid, component or size differ from the FORCE and MOMENT cards of their subcase: the result would belong to another load.
+/// Refuses loads whose subcase in the deck contains another load: the strain would belong to the other load.
 ///
-/// Compared are the force and the moment about the job's grid, so that a couple may stand for a moment. A subcase with other kinds of loads is
-/// not compared, nor one whose label differs in the results: they are of another deck then.
+/// For a load at a grid, force and moment about the grid are compared, so that a couple may stand for a moment. Pressures, accelerations,
+/// temperatures and enforced displacements in its subcase are refused. A load set is compared with the LOAD of the subcase. A combination
+/// is the sum of its subcases. A subcase whose label differs in the results is not compared: the results are of another deck.
 ///
 /// # Errors
 /// Every such load.
@@ -31,59 +36,273 @@ pub(super) fn check_deck_loads<'a>(
     units: &[UnitLoad],
     cases: impl Iterator<Item = &'a CaseResult>,
 ) -> Result<(), Faults> {
+    let subcases = deck.deck.case_control.effective_subcases();
     let mut faults = FaultList::new();
     for ((load, unit), case) in job.loads.iter().zip(units).zip(cases) {
-        let UnitLoad::AtGrid {
-            grid,
-            force,
-            moment,
-        } = unit
-        else {
+        let Some(at) = subcase_of(&subcases, case) else {
             continue;
         };
-        let Some(about) = deck.model.grids.get(grid.us()).map(|g| g.x) else {
-            continue;
+        let terms = match terms_of(deck, &subcases, at) {
+            Ok(terms) => terms,
+            Err(of_combination) => {
+                faults.extend(of_combination);
+                continue;
+            }
         };
-        let stated = Resultant {
-            force: *force,
-            moment: *moment,
+        let compared = Compared {
+            job,
+            deck,
+            load,
+            subcase: &subcases[at],
+            terms,
         };
-        let Some((sid, of_deck)) = deck_resultant(deck, case, about) else {
-            continue;
-        };
-        if !agree(&deck.model, stated, of_deck) {
-            faults.push(contradiction(job, load, (case.subcase, sid), of_deck));
-        }
+        faults.extend(compared.fault(unit));
     }
     Faults::check(faults)
 }
 
-/// Returns the load set of a case's subcase and its resultant about a point; `None` where the deck says nothing of it, or more than forces and
-/// moments at grids.
-fn deck_resultant(deck: &DeckModel, case: &CaseResult, about: Vec3) -> Option<(u32, Resultant)> {
-    let subcases = deck.deck.case_control.effective_subcases();
-    let subcase = subcases.iter().find(|s| s.id == case.subcase)?;
-    if is_combination(subcase) || !may_be_of(&label_of(subcase), &case.label) {
-        return None;
+/// Returns the index of the subcase of the deck whose results a case contains; `None` if the deck lacks it, or its label differs.
+pub(super) fn subcase_of(subcases: &[Subcase], case: &CaseResult) -> Option<usize> {
+    let at = subcases.iter().position(|s| s.id == case.subcase)?;
+    may_be_of(&label_of(&subcases[at]), &case.label).then_some(at)
+}
+
+/// Returns a subcase with the factor 1, or the subcases that a combination adds up.
+///
+/// # Errors
+/// A combination that states no sum of subcases.
+fn terms_of<'a>(
+    deck: &DeckModel,
+    subcases: &'a [Subcase],
+    at: usize,
+) -> Result<Vec<(f64, &'a Subcase)>, Faults> {
+    let (above, subcase) = (&subcases[..at], &subcases[at]);
+    if !is_combination(subcase) {
+        return Ok(vec![(1.0, subcase)]);
     }
-    let sid = subcase.load?;
-    let set = deck.model.load_sets.iter().find(|s| s.sid == sid)?;
-    let mut sum = Resultant {
-        force: Vec3::zeros(),
-        moment: Vec3::zeros(),
-    };
-    for (factor, load) in &set.loads {
-        match load {
-            Load::Force(grid, v) => {
-                let arm = deck.model.grids.get(grid.us())?.x - about;
-                sum.force += v * *factor;
-                sum.moment += arm.cross(v) * *factor;
+    let single = |(i, s): (usize, &Subcase)| (!is_combination(s)).then_some(i);
+    let solved: Vec<Option<usize>> = above.iter().enumerate().map(single).collect();
+    let combined = read_combination(deck, subcase, (above, &solved), at)?;
+    let terms = combined.terms().iter();
+    Ok(terms.map(|(factor, i)| (*factor, &above[*i])).collect())
+}
+
+/// Load of a job with the subcase of the deck that belongs to its results.
+struct Compared<'a> {
+    job: &'a Job,
+    deck: &'a DeckModel,
+    load: &'a JobLoad,
+    subcase: &'a Subcase,
+    /// Factors and subcases without combinations.
+    terms: Vec<(f64, &'a Subcase)>,
+}
+
+impl Compared<'_> {
+    /// Returns the fault of a load that is not the one of its subcase.
+    fn fault(&self, unit: &UnitLoad) -> Option<Fault> {
+        match unit {
+            UnitLoad::AtGrid {
+                grid,
+                force,
+                moment,
+            } => {
+                let stated = Resultant {
+                    force: *force,
+                    moment: *moment,
+                };
+                let about = self.deck.model.grids.get(grid.us()).map(|g| g.x)?;
+                self.other_than_a_force()
+                    .or_else(|| self.other_force(stated, about))
             }
-            Load::Moment(_, v) => sum.moment += v * *factor,
-            _ => return None,
+            UnitLoad::Set(set) => self.other_set(*set).or_else(|| {
+                let thermal = self.all(|deck, s| match s.temperature_load == Some(*set) {
+                    true => Vec::new(),
+                    false => thermal_loads(deck, s),
+                });
+                self.of_others(&thermal, None)
+            }),
+            UnitLoad::Temperature { set, .. } => self.other_temperature(*set),
         }
     }
-    (!set.loads.is_empty()).then_some((sid, sum))
+
+    fn all(&self, of: impl Fn(&DeckModel, &Subcase) -> Vec<OtherLoad>) -> Vec<OtherLoad> {
+        let terms = self.terms.iter().filter(|t| t.0 != 0.0);
+        terms.flat_map(|(_, s)| of(self.deck, s)).collect()
+    }
+
+    fn other_than_a_force(&self) -> Option<Fault> {
+        let mut others = self.all(other_loads);
+        let beyond_load = self.all(|deck, s| {
+            let mut all = thermal_loads(deck, s);
+            all.extend(moved_supports(deck, s));
+            all
+        });
+        // `load_set` states what LOAD selects, and nothing more.
+        let set = match (beyond_load.is_empty(), self.sids().as_slice()) {
+            (true, &[sid]) => Some(sid),
+            _ => None,
+        };
+        others.extend(beyond_load);
+        self.of_others(&others, set)
+    }
+
+    /// Returns the fault of a subcase that contains these loads too; `set` is the load set that contains them and the load.
+    fn of_others(&self, others: &[OtherLoad], set: Option<u32>) -> Option<Fault> {
+        if others.is_empty() {
+            return None;
+        }
+        let words: Vec<String> = others.iter().map(|o| o.words(self.deck)).collect();
+        let wrong = format!(
+            "{} of the deck also contains {}, so its strain is not the strain of the load alone",
+            self.subcase_in_words(),
+            few(&words)
+        );
+        let remedy = match set {
+            Some(sid) => format!(
+                "solve a subcase with the unit load alone; or state load_set = {sid} if the load is this whole set"
+            ),
+            None => "solve a subcase with the load alone".to_owned(),
+        };
+        Some(self.contradiction(wrong, &remedy))
+    }
+
+    fn other_force(&self, stated: Resultant, about: Vec3) -> Option<Fault> {
+        let of_deck = self.resultant(about)?;
+        if agree(&self.deck.model, stated, of_deck) {
+            return None;
+        }
+        let vector = |v: Vec3| format!("({}, {}, {})", short(v.x), short(v.y), short(v.z));
+        let wrong = format!(
+            "{} of the deck has force {} and moment {} about that grid",
+            self.subcase_in_words(),
+            vector(of_deck.force),
+            vector(of_deck.moment)
+        );
+        Some(self.contradiction(
+            wrong,
+            "correct `subcase`, `grid`, `component` or `applied` of the load, or name the deck that was run",
+        ))
+    }
+
+    /// Returns the forces and moments at grids about a point; `None` if the deck selects no load set that it contains.
+    fn resultant(&self, about: Vec3) -> Option<Resultant> {
+        let mut sum = Resultant {
+            force: Vec3::zeros(),
+            moment: Vec3::zeros(),
+        };
+        let mut loads = self.loads().peekable();
+        loads.peek()?;
+        for (factor, load) in loads {
+            match load {
+                Load::Force(grid, v) => {
+                    let arm = self.deck.model.grids.get(grid.us())?.x - about;
+                    sum.force += v * factor;
+                    sum.moment += arm.cross(v) * factor;
+                }
+                Load::Moment(_, v) => sum.moment += v * factor,
+                _ => {}
+            }
+        }
+        Some(sum)
+    }
+
+    /// Loads of the load sets with their factors.
+    fn loads(&self) -> impl Iterator<Item = (f64, &Load)> {
+        let sets = &self.deck.model.load_sets;
+        self.terms.iter().flat_map(move |(factor, s)| {
+            let set = sets.iter().filter(|set| Some(set.sid) == s.load);
+            let loads = set.flat_map(|set| &set.loads);
+            loads.map(move |(f, load)| (factor * f, load))
+        })
+    }
+
+    fn other_set(&self, set: u32) -> Option<Fault> {
+        let sids = self.sids();
+        let is_plain = matches!(self.terms.as_slice(), [(1.0, _)]);
+        if sids.is_empty() || (is_plain && sids == [set]) {
+            return None;
+        }
+        let stated = self.deck.model.load_sets.iter().find(|s| s.sid == set);
+        // Results of a deck with another load set of that number, or with none, are not compared.
+        let stated = stated?.loads.iter().map(|(f, load)| (*f, load));
+        let acts = |l: &(f64, &Load)| l.0 != 0.0;
+        if stated.filter(acts).eq(self.loads().filter(acts)) {
+            return None;
+        }
+        Some(self.contradiction(
+            format!("{} of the deck has other loads", self.subcase_in_words()),
+            "correct `subcase` or `load_set` of the load, or name the deck that was run",
+        ))
+    }
+
+    fn other_temperature(&self, set: u32) -> Option<Fault> {
+        let selected = |s: &Subcase| s.load.is_some() || s.temperature_load.is_some();
+        let is_it = |(factor, s): &(f64, &Subcase)| {
+            *factor == 1.0 && (s.temperature_load, s.load) == (Some(set), None)
+        };
+        let [term] = self.terms.as_slice() else {
+            return None;
+        };
+        if is_it(term) || !selected(term.1) {
+            return None;
+        }
+        let heated = term.1.temperature_load.unwrap_or(0);
+        Some(self.contradiction(
+            format!(
+                "{} of the deck has TEMPERATURE(LOAD) = {heated}",
+                self.subcase_in_words()
+            ),
+            "correct `subcase` or `load_set` of the load, or solve a subcase with these temperatures alone",
+        ))
+    }
+
+    /// Load sets that the subcase selects.
+    fn sids(&self) -> Vec<u32> {
+        self.terms.iter().filter_map(|(_, s)| s.load).collect()
+    }
+
+    /// `subcase 2 (LOAD = 77)`.
+    fn subcase_in_words(&self) -> String {
+        let terms = self.terms.iter();
+        let sets: Vec<String> = terms
+            .filter_map(|(factor, s)| {
+                let sid = s.load?;
+                Some(match *factor {
+                    1.0 => format!("LOAD = {sid}"),
+                    factor => format!("{} of LOAD = {sid}", short(factor)),
+                })
+            })
+            .collect();
+        match sets.is_empty() {
+            true => format!("subcase {}", self.subcase.id),
+            false => format!("subcase {} ({})", self.subcase.id, sets.join(", ")),
+        }
+    }
+
+    fn contradiction(&self, of_deck: String, remedy: &str) -> Fault {
+        let load = self.load;
+        let stated = match load.acts {
+            LoadActs::AtGrid {
+                grid, component, ..
+            } => format!(
+                "{} at grid {grid}, applied = {}",
+                component.name(),
+                short(load.applied)
+            ),
+            LoadActs::Set(set) => format!("load set {set}"),
+            LoadActs::Named => "named alone".to_owned(),
+        };
+        Fault::at(
+            &*self.job.file,
+            load.line,
+            "load.subcase",
+            format!(
+                "job-contradicts-deck: load `{}` is {stated}; {of_deck}",
+                load.name
+            ),
+            remedy,
+        )
+    }
 }
 
 /// Whether results with this label may be those of a subcase with that one; programs write a label of their own where the deck has none.
@@ -109,34 +328,6 @@ fn agree(model: &Model, a: Resultant, b: Resultant) -> bool {
         && (a.moment - b.moment).norm() <= AGREES * moment
 }
 
-fn contradiction(
-    job: &Job,
-    load: &JobLoad,
-    (subcase, sid): (u32, u32),
-    of_deck: Resultant,
-) -> Fault {
-    let vector = |v: Vec3| format!("({}, {}, {})", short(v.x), short(v.y), short(v.z));
-    let place = match load.acts {
-        LoadActs::AtGrid {
-            grid, component, ..
-        } => format!("{} at grid {grid}", component.name()),
-        _ => String::new(),
-    };
-    Fault::at(
-        &*job.file,
-        load.line,
-        "load.subcase",
-        format!(
-            "job-contradicts-deck: load `{}` is {place}, applied = {}; subcase {subcase} of the deck (LOAD = {sid}) has force {} and moment {} about that grid",
-            load.name,
-            short(load.applied),
-            vector(of_deck.force),
-            vector(of_deck.moment)
-        ),
-        "correct `subcase`, `grid`, `component` or `applied` of the load, or name the deck that was run",
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,7 +339,11 @@ mod tests {
 
     /// A force of 1000 along y at the tip of a bar of 2 m, a moment of 50 as a couple of the ends, and a subcase with gravity.
     const DECK: &str = "SOL 101\nCEND\nSUBCASE 1\nLABEL = tip\nLOAD = 1\nSUBCASE 2\nLABEL = couple\nLOAD = 2\nSUBCASE 3\nLOAD = 3\n\
-        BEGIN BULK\nPBAR,1,1,.01,1.-5,1.-5,1.-5\nMAT1,1,1.+10,,.3,100.\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n\
+        SUBCASE 4\nLOAD = 1\nTEMPERATURE(LOAD) = 7\nSUBCASE 5\nLOAD = 1\nTEMPERATURE(LOAD) = 8\n\
+        SUBCASE 6\nLOAD = 1\nSPC = 6\nSUBCOM 7\nSUBSEQ = 1., 0., 0., 0., 0., 0.\nSUBCOM 8\nSUBSEQ = 2., 1., 0., 0., 0., 0.\n\
+        SUBCASE 11\nLOAD = 11\nSUBCASE 12\nLOAD = 12\nSUBCASE 13\nLOAD = 13\n\
+        BEGIN BULK\nPBAR,1,1,.01,1.-5,1.-5,1.-5\nMAT1,1,1.+10,,.3,100.,1.-5,20.\nTEMPD,7,20.\nTEMPD,8,120.\n\
+        SPC,6,1,3,.01\nLOAD,11,1.,1.,1,1.,3\nLOAD,12,1.,1.,1,1.,22\nRFORCE,22,,,10.,0.,1.,0.\nLOAD,13,1.,1.,1,0.,3\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n\
         FORCE,1,2,,1000.,0.,1.,0.\nFORCE,2,2,,25.,0.,1.,0.\nFORCE,2,1,,-25.,0.,1.,0.\nGRAV,3,,9.81,0.,0.,-1.\nENDDATA\n";
 
     /// The faults of a load with these keys, its strain taken from the case of a subcase with a label.
@@ -201,14 +396,59 @@ mod tests {
     }
 
     #[test]
-    fn subcases_of_other_kinds_of_loads_and_results_of_other_decks_are_not_compared() {
+    fn results_of_other_decks_are_not_compared() {
         let wrong = "grid = 1\ncomponent = \"FX\"\napplied = 3.0";
-        // Gravity, no such subcase, a label that the deck does not have.
-        assert!(faults(wrong, 3, "").is_empty());
-        assert!(faults(wrong, 4, "").is_empty());
+        // No such subcase, a label that the deck does not have.
+        assert!(faults(wrong, 14, "").is_empty());
         assert!(faults(wrong, 1, "front left").is_empty());
         // A program's own label says nothing of the deck.
         assert_eq!(faults(wrong, 1, "SUBCASE 1").len(), 1);
         assert_eq!(faults(wrong, 1, "").len(), 1);
+    }
+
+    #[test]
+    fn a_subcase_in_which_more_acts_than_the_unit_load_is_refused() {
+        let tip = "grid = 2\ncomponent = \"FY\"\napplied = 1000.0";
+        for (subcase, card) in [
+            (3, "GRAV 3"),
+            (5, "TEMPERATURE(LOAD) = 8"),
+            (6, "SPC 6"),
+            (11, "GRAV 3"),
+            (12, "RFORCE 22"),
+        ] {
+            let found = faults(tip, subcase, "");
+            assert_eq!(found.len(), 1, "{subcase}");
+            let named = found[0].contains(card) && found[0].contains("`bar.bdf`:");
+            assert!(named && found[0].contains("alone"), "{found:?}");
+        }
+        // Temperatures at the reference, and a set with the factor 0, do not act.
+        assert_eq!(
+            [faults(tip, 4, "").len(), faults(tip, 13, "").len()],
+            [0, 0]
+        );
+    }
+
+    #[test]
+    fn a_combination_is_the_sum_of_its_subcases() {
+        let tip = "grid = 2\ncomponent = \"FY\"\napplied = 1000.0";
+        assert!(faults(tip, 7, "").is_empty());
+        let found = faults(tip, 8, "");
+        assert_eq!(found.len(), 1);
+        assert!(found[0].contains("2 of LOAD = 1"), "{found:?}");
+    }
+
+    #[test]
+    fn a_load_set_is_the_one_of_its_subcase_with_all_that_it_contains() {
+        assert!(faults("load_set = 11", 11, "").is_empty());
+        assert!(faults("load_set = 3", 3, "").is_empty());
+        assert!(faults("load_set = 1", 13, "").is_empty());
+        let found = faults("load_set = 2", 1, "tip");
+        assert_eq!(found.len(), 1);
+        assert!(
+            found[0].contains("load set 2") && found[0].contains("LOAD = 1"),
+            "{found:?}"
+        );
+        assert_eq!(faults("load_set = 1", 5, "").len(), 1);
+        assert!(faults("load_set = 1", 4, "").is_empty());
     }
 }

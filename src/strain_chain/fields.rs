@@ -2,10 +2,13 @@
 
 use super::combined_subcases::{other_stations, read_combination};
 use super::deck_loads::check_deck_loads;
-use super::load_cases::find_cases;
+use super::deck_supports::check_deck_supports;
+use super::load_cases::{check_labels, find_cases};
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::unit_loads;
-use crate::fe::from_results::{Displacements, ReadOptions, repeated, solution_from_file};
+use crate::fe::from_results::{
+    Displacements, ReadOptions, other_element_types, repeated, solution_from_file, subcase_labels,
+};
 use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad, combine_results};
 use crate::gauge::CornerRows;
 use crate::host::fault::{Fault, Faults};
@@ -15,7 +18,7 @@ use crate::model::{BeamIx, Load as ModelLoad, Model};
 use crate::sensitivity::{Load, LoadCaseOf};
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::job_deck::read_deck;
-use crate::strain_chain::named_results::results_fault;
+use crate::strain_chain::named_results::{other_deck, results_fault};
 use crate::strain_chain::solved::{
     MODES, cases_of_job, is_combination, label_of, relief_of_job, solve_kept, static_case,
     support_of_job,
@@ -257,26 +260,34 @@ fn read_results(
         subcases: Some(wanted),
         ..ReadOptions::default()
     };
-    let (mut solutions, mut repeated_in) = (Vec::new(), Vec::new());
+    let (mut solutions, mut repeated_in, mut labels) = (Vec::new(), Vec::new(), Vec::new());
     for named in &files.results {
         let bytes = work.inputs.read_named(job, named).map_err(Faults::from)?;
         let read = work.stage("read results", |_| {
             ResultsFile::read(&bytes, &named.given).map(|file| {
                 let solution = solution_from_file(&deck.model, &named.given, &file, &options);
-                (solution, repeated(&[&file], options.subcases.as_ref()))
+                let repeated = repeated(&[&file], options.subcases.as_ref());
+                (solution, repeated, subcase_labels(&file))
             })
         });
-        let (mut solution, repeated) = read.map_err(|e| results_fault(job, named, &e))?;
+        let (mut solution, repeated, of_file) = read.map_err(|e| results_fault(job, named, &e))?;
         for case in &mut solution.cases {
             case.beams.mark_loaded(loaded_bars(&deck, case.subcase));
         }
         work.findings.extend(solution.findings.iter().cloned());
+        if let Some(other) = other_element_types(&solution.findings) {
+            return Err(other_deck(job, named, other).into());
+        }
         solutions.push(solution);
         repeated_in.push(repeated);
+        labels.push(of_file);
     }
     let of_load = find_cases(work, job, &mut solutions, &repeated_in)?;
+    check_labels(job, &solutions, &of_load, &labels)?;
     let cases = of_load.iter().map(|(s, c)| &solutions[*s].cases[*c]);
-    check_deck_loads(job, &deck, &units, cases)?;
+    check_deck_loads(job, &deck, &units, cases.clone())?;
+    let supports = check_deck_supports(job, &deck, cases);
+    work.findings.extend(supports);
     work.findings.push(super::source_finding(
         &solutions
             .iter()

@@ -8,7 +8,7 @@ use crate::host::work::Work;
 use crate::job::{Job, JobLoad, NamedFile, Reference};
 use crate::strain_chain::named_results::results_fault;
 use nastran::results::ResultsFile;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Load or reference state that takes a subcase of the results.
 struct Taker<'a> {
@@ -185,6 +185,73 @@ fn without_case(job: &Job, load: &JobLoad, solutions: &[Solution]) -> Fault {
     let remedy = match there.is_empty() {
         true => "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned(),
         false => format!("state `subcase`; the results contain {}", few(&there)),
+    };
+    Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
+}
+
+/// Refuses loads that took their subcase by their number in the job, if labels of the results name another one.
+///
+/// `labels` has LABEL or SUBTITLE by subcase of each result file. Labels that are no load names are free text.
+///
+/// # Errors
+/// Every load whose subcase has the name of another load of the job, or whose name another subcase has.
+pub(super) fn check_labels(
+    job: &Job,
+    solutions: &[Solution],
+    of_load: &[(usize, usize)],
+    labels: &[BTreeMap<u32, String>],
+) -> Result<(), Faults> {
+    let mut faults = FaultList::new();
+    let same = |label: &str, name: &str| label_alone(label).eq_ignore_ascii_case(name.trim());
+    for (load, (file, case)) in job.loads.iter().zip(of_load) {
+        let case = solutions.get(*file).and_then(|s| s.cases.get(*case));
+        let (Some(case), Some(in_file), None) = (case, labels.get(*file), load.subcase) else {
+            continue;
+        };
+        let own = in_file.get(&case.subcase).map_or("", String::as_str);
+        if same(own, &load.name) {
+            continue;
+        }
+        // A label that several subcases have names none of them.
+        let mut with_own = in_file.values().filter(|l| l.as_str() == own);
+        let is_single = with_own.next().is_some() && with_own.next().is_none();
+        let mut others = job.loads.iter().filter(|l| l.name != load.name);
+        let other = others.find(|l| is_single && same(own, &l.name));
+        let mut named = in_file.iter().filter(|(_, label)| same(label, &load.name));
+        let named = match (named.next(), named.next()) {
+            (Some((subcase, _)), None) => Some(*subcase),
+            _ => None,
+        };
+        if other.is_some() || named.is_some() {
+            faults.push(other_label(job, load, (case.subcase, own), named));
+        }
+    }
+    Faults::check(faults)
+}
+
+/// Returns the label without what a program writes after it, far to the right.
+fn label_alone(label: &str) -> &str {
+    label.trim().split("   ").next().unwrap_or_default()
+}
+
+fn other_label(
+    job: &Job,
+    load: &JobLoad,
+    (subcase, label): (u32, &str),
+    named: Option<u32>,
+) -> Fault {
+    let wrong = format!(
+        "job-contradicts-deck: load `{}` has number {} in the job and takes subcase {subcase}, whose label in the results is `{}`",
+        load.name,
+        load.number,
+        label_alone(label)
+    );
+    let remedy = match named {
+        Some(named) => format!(
+            "state subcase = {named}, which has the label `{}`; or state subcase = {subcase} if the label is wrong",
+            load.name
+        ),
+        None => format!("state `subcase` of the load; subcase = {subcase} if the label is wrong"),
     };
     Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
 }

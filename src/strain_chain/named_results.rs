@@ -1,5 +1,6 @@
 //! Result files that a job names.
 
+use crate::finding::Finding;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::host::unreadable_at;
@@ -49,6 +50,17 @@ pub fn results_fault(job: &Job, named: &NamedFile, e: &ResultsError) -> Fault {
         &*named.key,
         format!("`{}`: {e}", named.given),
         RESULTS_REMEDY,
+    )
+}
+
+/// Returns the fault of results whose elements have another type than in the deck.
+pub fn other_deck(job: &Job, named: &NamedFile, finding: &Finding) -> Fault {
+    Fault::at(
+        &*job.file,
+        named.line,
+        &*named.key,
+        format!("`{}`: {}", named.given, finding.message),
+        &*finding.remedy,
     )
 }
 

@@ -114,6 +114,7 @@ pub fn cases_of_job(job: &Job, read: &DeckModel) -> Result<Vec<LoadCase>, Faults
     check_mpc_sets(read)?;
     let support = support_of_job(job, &read.model)?;
     let loads = crate::strain_chain::unit_loads(job, &read.model)?;
+    crate::strain_chain::unit_loads::refuse_missing_sets(job, &read.model, &loads)?;
     Ok(job
         .loads
         .iter()

@@ -88,6 +88,31 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
     Ok(loads)
 }
 
+/// Refuses loads of the job whose load set the deck lacks.
+///
+/// # Errors
+/// Every such load.
+pub(super) fn refuse_missing_sets(
+    job: &Job,
+    model: &Model,
+    loads: &[UnitLoad],
+) -> Result<(), Faults> {
+    let mut faults = FaultList::new();
+    for (load, unit) in job.loads.iter().zip(loads) {
+        let UnitLoad::Set(sid) = unit else { continue };
+        if model.load_sets.iter().all(|s| s.sid != *sid) {
+            faults.push(Fault::at(
+                &*job.file,
+                load.line,
+                "load.load_set",
+                format!("load `{}`: the deck has no load set {sid}", load.name),
+                "correct `load_set`, or add the set to the deck",
+            ));
+        }
+    }
+    Faults::check(faults)
+}
+
 /// The fault of a load at a grid that the deck lacks.
 fn no_grid(job: &Job, load: &JobLoad, grid: u32) -> Fault {
     Fault::at(

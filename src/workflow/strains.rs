@@ -1,7 +1,9 @@
 //! `strains`: shell and bar strain of every static subcase, in the element and the basic frame.
 
 use crate::fe::Solution;
-use crate::fe::from_results::{Displacements, ReadOptions, solution_from_results};
+use crate::fe::from_results::{
+    Displacements, ReadOptions, other_element_types, solution_from_results,
+};
 use crate::fe::strain_rows::{n_rows, without_normal_strain};
 use crate::finding::{Finding, Severity, few};
 use crate::host::context::Context;
@@ -101,6 +103,15 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
     });
     if let Some(cut) = deck.cut_beside(&solution.findings) {
         return Err(cut.into());
+    }
+    if let Some(other) = other_element_types(&solution.findings) {
+        let fault = Fault::of(
+            other.subject.as_str(),
+            "results",
+            other.message.as_str(),
+            other.remedy.as_str(),
+        );
+        return Err(fault.into());
     }
     work.findings.append(&mut solution.findings);
     let silent = without_normal_strain(&deck.model, &solution.cases);

@@ -7,6 +7,7 @@ mod deck_rules;
 mod first_hour;
 mod frame;
 mod gauges;
+mod job_and_deck;
 mod misread;
 mod named_properties;
 mod names;

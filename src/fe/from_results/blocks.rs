@@ -14,3 +14,12 @@ pub(super) fn is_shell_or_bar(block: &Block) -> bool {
             .element
             .is_some_and(|e| matches!(e.0, 33 | 64 | 70 | 74 | 75 | 82 | 144 | 227 | 228))
 }
+
+/// Number of corners of the shells of a block; `None` if it contains other elements.
+pub(super) fn shell_corners(block: &Block) -> Option<usize> {
+    match block.element?.0 {
+        33 | 64 | 82 | 95 | 96 | 144 | 228 => Some(4),
+        70 | 74 | 75 | 97 | 98 | 227 => Some(3),
+        _ => None,
+    }
+}

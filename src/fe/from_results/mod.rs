@@ -17,8 +17,11 @@ mod shells;
 mod tally;
 
 pub use merge::complete;
-pub use read::{Displacements, ReadOptions, solution_from_file, solution_from_results};
+pub use read::{
+    Displacements, ReadOptions, solution_from_file, solution_from_results, subcase_labels,
+};
 pub use repeated::{HOLD_ONCE, Repeated, repeated};
+pub use tally::other_element_types;
 
 #[cfg(test)]
 mod tests;

@@ -248,6 +248,16 @@ fn read_case(
     (case, tally, findings)
 }
 
+/// Returns LABEL, else SUBTITLE, of every subcase of a file that has one.
+pub fn subcase_labels(file: &ResultsFile) -> BTreeMap<u32, String> {
+    let named = file.blocks().iter().filter_map(|b| {
+        let [_, subtitle, label] = &b.titles;
+        let name = [label, subtitle].into_iter().find(|t| !t.is_empty())?;
+        Some((b.subcase, name.clone()))
+    });
+    named.collect()
+}
+
 /// LABEL, else SUBTITLE, else TITLE.
 fn label(block: &Block) -> String {
     block

@@ -1,5 +1,6 @@
 //! Shell rows of one subcase.
 
+use super::blocks::shell_corners;
 use super::ids::Ids;
 use super::tally::{Met, Tally};
 use crate::fe::strain_tensor::{strain_from_curvature, strain_from_stress};
@@ -86,6 +87,10 @@ impl<'m> ShellCollector<'m> {
         tally: &mut Tally,
     ) -> Option<Target> {
         let shell = self.model.shells.get(ix)?;
+        if shell_corners(block).is_some_and(|n| n != shell.shape.n_corners()) {
+            tally.add(Met::OtherType, shell.id);
+            return None;
+        }
         let z = self.model.fibres(shell);
         let law = match block.quantity {
             Quantity::Stress => {

@@ -19,6 +19,8 @@ pub(super) enum Met {
     Unpaired,
     /// Ply results without element strain.
     PliesOnly,
+    /// Shell rows of an element type with another number of corners than the element of the deck.
+    OtherType,
 }
 
 /// Counts by kind with the first ids and the largest number.
@@ -77,6 +79,12 @@ impl Tally {
     }
 }
 
+/// Returns the finding on results whose elements have another type than in the deck.
+pub fn other_element_types(findings: &[Finding]) -> Option<&Finding> {
+    let mut findings = findings.iter();
+    findings.find(|f| f.code == "element-not-in-deck" && f.severity == Severity::Error)
+}
+
 fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
     let n = entry.count;
     let mut ids = entry
@@ -88,7 +96,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
     if n > entry.ids.len() && entry.ids.len() >= LISTED {
         ids += ", ..";
     }
-    use Severity::{Info, Warning};
+    use Severity::{Error, Info, Warning};
     let (severity, code, message, remedy) = match met {
         Met::ForeignCorner => (
             Warning,
@@ -135,6 +143,14 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             "shell-rows-unpaired",
             format!("{n} shell rows have no second fibre and were left out: elements {ids}"),
             "export the results again",
+        ),
+        Met::OtherType => (
+            Error,
+            "element-not-in-deck",
+            format!(
+                "results of another element type than in the deck (three corners instead of four, or four instead of three); elements ({n}): {ids}"
+            ),
+            "give the deck of this run: its elements differ",
         ),
         Met::PliesOnly => (
             Info,

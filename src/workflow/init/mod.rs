@@ -13,7 +13,7 @@ mod text;
 mod trial;
 
 use crate::fe::from_results::{
-    Displacements, HOLD_ONCE, ReadOptions, repeated, solution_from_file,
+    Displacements, HOLD_ONCE, ReadOptions, repeated, solution_from_file, subcase_labels,
 };
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
@@ -243,7 +243,7 @@ fn read_strained(
         let read = work.stage("read results", |_| {
             ResultsFile::read(&bytes, &name).map(|f| {
                 let solution = solution_from_file(&deck.model, &name, &f, &options);
-                (solution, repeated(&[&f], None), labels(&f))
+                (solution, repeated(&[&f], None), subcase_labels(&f))
             })
         });
         let (solution, repeated, labels) =
@@ -270,14 +270,4 @@ fn read_strained(
         strained.push((name, named.collect()));
     }
     Ok(strained)
-}
-
-/// LABEL of each subcase of a results file, else its SUBTITLE.
-fn labels(file: &ResultsFile) -> BTreeMap<u32, String> {
-    let named = file.blocks().iter().filter_map(|b| {
-        let [_, subtitle, label] = &b.titles;
-        let name = [label, subtitle].into_iter().find(|t| !t.is_empty())?;
-        Some((b.subcase, name.clone()))
-    });
-    named.collect()
 }
