@@ -53,20 +53,18 @@ impl Mass {
             .map(|i| shell_mass(model, i))
             .collect();
         for (i, (shell, pairs)) in model.shells.iter().zip(shells).enumerate() {
-            if matches!(shell.shape, ShellShape::Quad8 | ShellShape::Tria6) {
-                mass.add_many(model, i);
+            let offset = shell_offset(model, i);
+            if is_consistent(shell.shape) {
+                let (grids, products) = many_mass(model, i);
+                if offset == Vec3::zeros() {
+                    mass.scalar.push((grids, products));
+                } else {
+                    mass.coupled
+                        .push(coupled_points(&grids, &products, &offset));
+                }
                 continue;
             }
             let n = shell.shape.n_corners().min(4);
-            let offset = if shell.zoffs == 0.0 {
-                Vec3::zeros()
-            } else {
-                let x: Vec<Vec3> = shell.grids[..n]
-                    .iter()
-                    .map(|g| model.grids[g.us()].x)
-                    .collect();
-                output_frame(&x).map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
-            };
             if model.params.coupmass {
                 let products: Vec<f64> = pairs[..n]
                     .iter()
@@ -128,22 +126,6 @@ impl Mass {
             .chain(mass.scalar.iter_mut().flat_map(|m| &mut m.1))
             .for_each(|v| *v *= w);
         mass
-    }
-
-    /// A shell with mid-side grids, consistent always.
-    fn add_many(&mut self, model: &Model, i: usize) {
-        let shell = &model.shells[i];
-        let (grids, products) = many_mass(model, i);
-        let corners = shell.grids.iter().take(shell.shape.n_corners());
-        let x: Vec<Vec3> = corners.map(|g| model.grids[g.us()].x).collect();
-        match output_frame(&x) {
-            Some(frame) if shell.zoffs != 0.0 => {
-                let offset = frame.row(2).transpose() * shell.zoffs;
-                self.coupled
-                    .push(coupled_points(&grids, &products, &offset));
-            }
-            _ => self.scalar.push((grids, products)),
-        }
     }
 
     /// A point mass at an offset from a grid.
@@ -262,6 +244,22 @@ impl Mass {
         let mut all = self.point.iter().chain(blocks).chain(coupled).chain(scalar);
         all.all(|v| *v == 0.0)
     }
+}
+
+/// Whether shells of this shape have a consistent mass whatever PARAM,COUPMASS states.
+pub(super) fn is_consistent(shape: ShellShape) -> bool {
+    matches!(shape, ShellShape::Quad8 | ShellShape::Tria6)
+}
+
+/// Returns the vector from the grids of shell `i` to its mass.
+pub(super) fn shell_offset(model: &Model, i: usize) -> Vec3 {
+    let shell = &model.shells[i];
+    if shell.zoffs == 0.0 {
+        return Vec3::zeros();
+    }
+    let corners = shell.grids.iter().take(shell.shape.n_corners());
+    let x: Vec<Vec3> = corners.map(|g| model.grids[g.us()].x).collect();
+    output_frame(&x).map_or_else(Vec3::zeros, |f| f.row(2).transpose() * shell.zoffs)
 }
 
 /// Gradient of the centrifugal acceleration -w x (w x r) of a rotation.

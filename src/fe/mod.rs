@@ -52,6 +52,7 @@ mod thermal_force;
 mod unbalanced;
 mod unsupported_cards;
 mod variants;
+mod weight;
 mod what_hangs;
 
 pub use adjoint::{Adjoint, StrainTerm};
@@ -84,3 +85,4 @@ pub(crate) use temperature::is_heated;
 pub use unsupported_cards::refuse;
 pub(crate) use unsupported_cards::unsupported_cards;
 pub use variants::solve_variants;
+pub(crate) use weight::mass_moved;

@@ -1,4 +1,4 @@
-//! Elements with mid-side grids: where their mass lies.
+//! Elements with mid-side grids: their shape functions, and areas of shells.
 //!
 //! The map from parameters to space is isoparametric serendipity, written as the linear map of the corners plus, for every edge with
 //! a mid-side grid, its edge function times the grid's distance from the middle of the edge,
@@ -60,36 +60,15 @@ struct Map {
     edges: Vec<(usize, Vec3)>,
 }
 
-/// A piece of an element, a point of its Gauss rule.
-pub(super) struct Part {
-    /// Area or volume.
-    pub measure: f64,
-    /// Where it lies.
-    pub x: Vec3,
-    /// Linear shape functions of the first four corners there: what interpolates corner thicknesses of a shell.
-    pub corners: [f64; 4],
-}
-
-/// The parts of a shell with mid-side grids; `None` for other shells. `x`: corners, then mid-side grids (`None`: a straight edge).
-pub(super) fn shell_parts(shape: ShellShape, x: &[Option<Vec3>]) -> Option<Vec<Part>> {
-    let (domain, edges): (_, &[_]) = match shape {
-        ShellShape::Tria6 => (Domain::Triangle, &TRIANGLE),
-        ShellShape::Quad8 => (Domain::Square, &SQUARE),
-        _ => return None,
+/// Returns the area of a shell; `None` without all its corners. `x`: corners, then mid-side grids (`None`: a straight edge).
+pub(super) fn shell_area(shape: ShellShape, x: &[Option<Vec3>]) -> Option<f64> {
+    let n = shape.n_corners();
+    let domain = if n == 3 {
+        Domain::Triangle
+    } else {
+        Domain::Square
     };
-    Some(Map::of(domain, edges, x)?.parts())
-}
-
-/// The parts of a solid with at least one mid-side grid, given as in [`shell_parts`]; `None` for straight ones and pyramids.
-pub(super) fn solid_parts(shape: SolidShape, x: &[Option<Vec3>]) -> Option<Vec<Part>> {
-    let (domain, edges): (_, &[_]) = match shape {
-        SolidShape::Tetra => (Domain::Tetrahedron, &TETRAHEDRON),
-        SolidShape::Penta => (Domain::Wedge, &WEDGE),
-        SolidShape::Hexa => (Domain::Cube, &CUBE),
-        SolidShape::Pyram => return None,
-    };
-    let map = Map::of(domain, edges, x)?;
-    (!map.edges.is_empty()).then(|| map.parts())
+    Some(Map::of(domain, face_edges(n), x)?.area())
 }
 
 /// Value, then exact derivatives: every function is of second degree at most in each parameter.
@@ -155,7 +134,7 @@ impl Map {
         }
         let bent = edges
             .iter()
-            .zip(x.get(n..)?)
+            .zip(x.get(n..).unwrap_or_default())
             .enumerate()
             .filter_map(|(e, ((a, b), m))| {
                 let (a, b) = (corners.get(*a)?, corners.get(*b)?);
@@ -169,35 +148,19 @@ impl Map {
         })
     }
 
-    /// The element at a Gauss point, by the table of its domain.
-    fn part(&self, at: &RulePoint) -> Part {
-        let sum = |k: usize| -> Vec3 {
-            let straight: Vec3 = self
-                .corners
-                .iter()
-                .zip(&at.corners)
-                .map(|(x, n)| x * n[k])
-                .sum();
-            let bent = self
-                .edges
-                .iter()
-                .filter_map(|(e, d)| Some(d * at.edges.get(*e)?[k]));
-            straight + bent.sum::<Vec3>()
+    /// Area of a triangle or square by the Gauss rule of its domain.
+    fn area(&self) -> f64 {
+        let at = |point: &RulePoint| {
+            let sum = |k: usize| -> Vec3 {
+                let corners = self.corners.iter().zip(&point.corners);
+                let straight: Vec3 = corners.map(|(x, n)| x * n[k]).sum();
+                let bent = self.edges.iter();
+                let bent = bent.filter_map(|(e, d)| Some(d * point.edges.get(*e)?[k]));
+                straight + bent.sum::<Vec3>()
+            };
+            point.weight * sum(1).cross(&sum(2)).norm()
         };
-        let (r, s) = (sum(1), sum(2));
-        let measure = match self.domain {
-            Domain::Triangle | Domain::Square => r.cross(&s).norm(),
-            _ => r.cross(&s).dot(&sum(3)),
-        };
-        Part {
-            measure: at.weight * measure,
-            x: sum(0),
-            corners: [0, 1, 2, 3].map(|c| at.corners.get(c).map_or(0.0, |n| n[0])),
-        }
-    }
-
-    fn parts(&self) -> Vec<Part> {
-        self.domain.rule().iter().map(|p| self.part(p)).collect()
+        self.domain.rule().iter().map(at).sum()
     }
 }
 
@@ -220,10 +183,10 @@ impl Domain {
         }
     }
 
-    /// The domain's rule, made once.
+    /// Gauss rule of a triangle or square, computed once.
     fn rule(self) -> &'static [RulePoint] {
-        static RULES: [OnceLock<Vec<RulePoint>>; 5] = [const { OnceLock::new() }; 5];
-        RULES[self as usize].get_or_init(|| {
+        static RULES: [OnceLock<Vec<RulePoint>>; 2] = [const { OnceLock::new() }; 2];
+        RULES[usize::from(self != Domain::Triangle)].get_or_init(|| {
             let point = |(weight, p): (f64, [f64; 3])| RulePoint {
                 weight,
                 corners: self.corner_functions(p),
@@ -312,26 +275,16 @@ impl Domain {
         }
     }
 
-    /// Gauss rule: three points a direction (exact for the volume of any of these elements), triangles and tetrahedra as collapsed squares and cubes.
+    /// Gauss rule of a triangle or square: three points a direction, the triangle as a collapsed square.
     fn points(self) -> Vec<(f64, [f64; 3])> {
         let mut out = Vec::new();
-        let third: &[(f64, f64)] = match self {
-            Domain::Triangle | Domain::Square => &[(0.0, 1.0)],
-            _ => &GAUSS_3,
-        };
         for (u, wu) in GAUSS_3 {
             for (v, wv) in GAUSS_3 {
-                for (t, wt) in third.iter().copied() {
-                    let w = wu * wv * wt;
-                    out.push(match self {
-                        Domain::Square | Domain::Cube => (w, [u, v, t]),
-                        Domain::Triangle | Domain::Wedge => (w * (1.0 - u), [u, v * (1.0 - u), t]),
-                        Domain::Tetrahedron => {
-                            let rest = (1.0 - u) * (1.0 - v);
-                            (w * (1.0 - u) * rest, [u, v * (1.0 - u), t * rest])
-                        }
-                    });
-                }
+                let w = wu * wv;
+                out.push(match self {
+                    Domain::Triangle => (w * (1.0 - u), [u, v * (1.0 - u), 0.0]),
+                    _ => (w, [u, v, 0.0]),
+                });
             }
         }
         out

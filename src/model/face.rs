@@ -1,6 +1,6 @@
 //! Faces of solids as PLOAD4 tells them.
 
-use super::types::{GridIx, Solid, Vec3};
+use super::types::{GridIx, Solid};
 use nastran::cards::SolidShape;
 
 /// Faces by corner, each in an order whose right-hand normal points into the element.
@@ -68,27 +68,4 @@ pub(super) fn solid_face(s: &Solid, corner: [Option<GridIx>; 2]) -> Option<[Opti
         *slot = *s.grids.get(c)?;
     }
     Some(out)
-}
-
-/// Volume of a solid with these corners: pyramids from the centre over every face, each face as four triangles about its middle
-/// (for bilinear faces this is exact).
-pub(super) fn volume(shape: SolidShape, x: &[Vec3]) -> f64 {
-    if x.len() != shape.n_corners() {
-        return 0.0;
-    }
-    let centre = x.iter().sum::<Vec3>() / x.len() as f64;
-    let mut sum = 0.0;
-    for face in faces(shape) {
-        let p: Vec<Vec3> = face
-            .iter()
-            .filter_map(|i| x.get(*i))
-            .map(|p| p - centre)
-            .collect();
-        let middle = p.iter().sum::<Vec3>() / p.len() as f64;
-        for (a, b) in p.iter().zip(p.iter().cycle().skip(1)) {
-            // The order of a face points inward.
-            sum -= middle.dot(&a.cross(b)) / 6.0;
-        }
-    }
-    sum
 }

@@ -59,7 +59,7 @@ pub struct WeighSpec {
     pub model_rel: f64,
     /// Standard deviation of a measured wheel force.
     pub reaction_sigma: f64,
-    /// Largest weight that is possible.
+    /// Largest weight that is searched: far above the weight that the readings show, so that it does not change the answer.
     pub largest: f64,
     /// Region of the payload, as shifts; `None`: anywhere between the wheels.
     pub region: Option<[[f64; 2]; 2]>,

@@ -238,10 +238,8 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     let mut sizes: Vec<f64> = Vec::new();
     for (i, run) in runs.iter().enumerate() {
         let (estimates, estimate_sigma) = alone(model, run, run.shift, &[], 0.0, spec);
-        let possible = |v: &f64| *v > 0.0 && *v <= spec.largest;
-        let mut e: Vec<f64> = estimates.iter().copied().filter(possible).collect();
-        e.sort_by(f64::total_cmp);
-        let size = e.get(e.len() / 2).copied().unwrap_or(0.0);
+        let possible = |e: &f64| *e > 0.0 && *e <= spec.largest;
+        let size = median_of(&estimates, &estimate_sigma, possible).unwrap_or(0.0);
         let (estimates, estimate_sigma) = match size > 0.0 {
             true => alone_on_floor(model, run, size, spec),
             false => (estimates, estimate_sigma),
@@ -325,16 +323,24 @@ fn by_strain(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     }
 }
 
+/// Returns the median of the estimates that `take` accepts, weighted by the inverse of their standard deviations. Without stated noise all
+/// gauges have the same weight.
+fn median_of(estimates: &[f64], sigma: &[f64], take: impl Fn(&f64) -> bool) -> Option<f64> {
+    let known = |(e, s): &(&f64, &f64)| e.is_finite() && s.is_finite();
+    let pairs = || estimates.iter().zip(sigma).filter(known);
+    let least = EXACT * pairs().fold(f64::MIN_POSITIVE, |a, p| a.max(p.0.abs()));
+    let taken = pairs().filter(|p| take(p.0));
+    let mut weighted: Vec<(f64, f64)> = taken.map(|(e, s)| (*e, 1.0 / s.max(least))).collect();
+    weighted_median(&mut weighted)
+}
+
 /// Why a run can't have an answer, whatever the others say: its gauges, weighed by what each can tell, say a weight below zero beyond doubt, or
 /// none says a possible one.
 fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<Refusal> {
     let known = |(e, s): &(&f64, &f64)| e.is_finite() && s.is_finite();
     let pairs = || estimates.iter().zip(sigma).filter(known);
-    // Where no noise is stated all gauges weigh the same.
-    let least = EXACT * pairs().fold(f64::MIN_POSITIVE, |a, p| a.max(p.0.abs()));
     let possible = |(e, s): (&f64, &f64)| *e > -SIGN_SIGMAS * s && *e <= largest;
-    let mut told: Vec<(f64, f64)> = pairs().map(|(e, s)| (*e, 1.0 / s.max(least))).collect();
-    let Some(force) = weighted_median(&mut told) else {
+    let Some(force) = median_of(estimates, sigma, |_| true) else {
         return Some(Refusal::Undetermined);
     };
     if force < -doubt(pairs().map(|p| *p.1)) {

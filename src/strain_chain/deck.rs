@@ -1,11 +1,14 @@
 //! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
 
+use crate::fe::mass_moved;
 use crate::finding::{Finding, Severity, few};
 use crate::host::fault::{Fault, FaultList};
 use crate::host::files::{Inputs, why_unreadable};
 use crate::host::what_is::binary_kind;
 pub use crate::host::what_is::looks_like_op2;
-use crate::model::{FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault, Vec3};
+use crate::model::{
+    FaultKind, FaultWeight, Material, MaterialKind, Model, ModelFault, Vec3, Weight,
+};
 use crate::series::record::format_of;
 use crate::strain_chain::not_solved::{not_solved, not_solved_of_op2};
 use nastran::bdf::{Deck, IncludeRequest, Loaded, Loader, read_deck};
@@ -106,7 +109,8 @@ pub fn model_of_deck(inputs: &mut Inputs, base: &Path, given: &str, bytes: &[u8]
 /// The fault of a model whose mass, centre of gravity or moments of inertia exceed the range of numbers.
 fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
     let about_origin = model.rigid_body_mass(Vec3::zeros());
-    let about_centre = model.rigid_body_mass(model.weight().cg);
+    let centre = Weight::of(&about_origin, Vec3::zeros()).map_or_else(Vec3::zeros, |w| w.cg);
+    let about_centre = mass_moved(&about_origin, -centre);
     let mut numbers = about_origin.iter().chain(about_centre.iter());
     // Inertia relief and its checks multiply two of them.
     (!numbers.all(|v| (v * v).is_finite())).then(|| {

@@ -2,11 +2,14 @@
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::fmt::Write;
 use strainbridge::calibrate::{CommonZero, KnownLoads, KnownRun, Task, calibrate};
+use strainbridge::host::context::InMemory;
 use strainbridge::linalg::Matrix;
 use strainbridge::payload::{PayloadModel, PayloadRun, Place, WeighSpec, weigh};
 use strainbridge::recovery::{ErrorModel, Readings, recover};
 use strainbridge::sensitivity::{Load, Sensitivity};
+use strainbridge::{Context, Job};
 
 const NOISE: f64 = 0.5e-6;
 /// Scatter of each gauge in a run. (Where the gauges scatter together, a dozen runs of eight gauges know the covariance too badly: intervals of
@@ -175,5 +178,68 @@ fn weight_and_moment_have_the_sigma_of_recover_where_both_ask_the_same() {
                 assert!(alike(w.shift[0] * w.force, e.values[1]));
             }
         }
+    }
+}
+
+/// A plate of 20 by 2 on four wheels at its corners, of this density, one gauge above and one below its middle; the job reads `strain`.
+fn plate_on_wheels(density: &str, strain: &str) -> InMemory {
+    let mut deck = "SOL 101\nCEND\nBEGIN BULK\n".to_owned();
+    for i in 0..=20 {
+        for (j, y) in [0.0, 1.0, 2.0].into_iter().enumerate() {
+            let _ = writeln!(deck, "GRID,{},,{i}.,{y:?},0.", 10 * (i + 1) + j);
+        }
+    }
+    for i in 0..20 {
+        for j in 0..2 {
+            let (a, b) = (10 * (i + 1) + j, 10 * (i + 2) + j);
+            let id = 10 * (i + 1) + j;
+            let _ = writeln!(deck, "CQUAD4,{id},1,{a},{b},{},{}", b + 1, a + 1);
+        }
+    }
+    let _ = write!(
+        deck,
+        "PSHELL,1,1,.05,1,,1\nMAT1,1,2.+11,,.3,{density}\nENDDATA\n"
+    );
+    let mut job =
+        "units = \"m-kg-s\"\n[model]\ndeck = \"deck.bdf\"\nsupport = \"free\"\n".to_owned();
+    for (name, grid) in [("A", 10), ("B", 12), ("C", 210), ("D", 212), ("P", 111)] {
+        let _ = writeln!(
+            job,
+            "[[load]]\nname = \"{name}\"\ngrid = {grid}\ncomponent = \"FZ\""
+        );
+    }
+    for (name, surface) in [("TOP", "top"), ("BOTTOM", "bottom")] {
+        let _ = writeln!(
+            job,
+            "[[gauge]]\nname = \"{name}\"\nelement = 90\nsurface = \"{surface}\"\ndirection = [1, 0, 0]"
+        );
+    }
+    job += "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[payload]\ngrid = 111\n";
+    InMemory::default()
+        .with("deck.bdf", deck)
+        .with("job.toml", job)
+        .with("strain.csv", strain)
+}
+
+/// Readings limit a payload, the mass of the model does not.
+#[test]
+fn a_payload_of_many_times_the_mass_of_the_model_is_weighed() {
+    let strain = "run,TOP,BOTTOM\nR1,-50,50\nR2,-500,500\nR3,-750,750\n";
+    let weights = |density: &str| -> Vec<f64> {
+        let files = plate_on_wheels(density, strain);
+        let job = Job::read("job.toml", &files).unwrap();
+        let found = strainbridge::payload(&job, &Context::new(&files)).unwrap();
+        let runs = found.weighing.runs.iter();
+        runs.inspect(|r| assert_eq!(r.refused, None, "{}", r.run))
+            .map(|r| r.force)
+            .collect()
+    };
+    let (heavy, light) = (weights("7800."), weights(".1"));
+    // The light plate has a mass of 0.2 kg.
+    assert!(light[2] > 100.0 * 0.2 * 9.81, "{light:?}");
+    for (run, size) in [1.0, 10.0, 15.0].into_iter().enumerate() {
+        let (expected, found) = (size * heavy[0], light[run]);
+        assert!((found / expected - 1.0).abs() < 3e-3, "{found} {expected}");
+        assert!((heavy[run] / found - 1.0).abs() < 1e-6, "{found}");
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::small_decks::{at, close, model, refused, solve};
 use strainbridge::fe::*;
+use strainbridge::model::Vec3;
 
 /// A plate of 2 x 1 x .01 and a bar of length 2 along its side; density 1000.
 const PLATE: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nMAT1,1,2.+11,,.3,1000.\n\
@@ -108,6 +109,77 @@ fn the_weight_of_every_kind_of_mass_is_that_of_the_mass_matrix() {
         close(cards, theirs.mass, ours.mass, 1e-12);
         let apart = (ours.cg - theirs.cg).norm();
         assert!(apart < 1e-12, "{cards}: {} {}", ours.cg, theirs.cg);
+    }
+}
+
+/// Materials and properties of [`SHAPES`]: density 7.
+const DENSE: &str = "MAT1,1,2.+11,,.3,7.\nPSHELL,1,1,.1,1\nPSOLID,2,1\n";
+
+/// Elements that are no parallelograms or parallelepipeds: cards, mass, centre of gravity along x, y, z.
+const SHAPES: [(&str, f64, [f64; 3]); 5] = [
+    // A right trapezoid with parallel sides 4 and 1, height 3.
+    (
+        "GRID,1,,0.,0.,0.\nGRID,2,,4.,0.,0.\nGRID,3,,1.,3.,0.\nGRID,4,,0.,3.,0.\nCQUAD4,1,1,1,2,3,4",
+        0.7 * 7.5,
+        [1.4, 1.2, 0.0],
+    ),
+    // A square of side 2, its thickness from .1 at x = 0 to .3 at x = 2.
+    (
+        "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\nCQUAD4,1,1,1,2,3,4\n,,,.1,.3,.3,.1",
+        7.0 * 0.8,
+        [7.0 / 6.0, 1.0, 0.0],
+    ),
+    // A triangle of sides 3, its thickness .1 at two corners and .4 at the one on x.
+    (
+        "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,0.,3.,0.\nCTRIA3,1,1,1,2,3\n,,,.1,.4,.1",
+        7.0 * 0.9,
+        [1.125, 0.9375, 0.0],
+    ),
+    // A frustum of height 3 with square ends of side 2 and 1.
+    (
+        "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,2.,0.\nGRID,4,,0.,2.,0.\nGRID,5,,.5,.5,3.\nGRID,6,,1.5,.5,3.\n\
+         GRID,7,,1.5,1.5,3.\nGRID,8,,.5,1.5,3.\nCHEXA,1,2,1,2,3,4,5,6\n,7,8",
+        49.0,
+        [1.0, 1.0, 33.0 / 28.0],
+    ),
+    // A frustum of height 3 with triangular ends, legs 2 and 1.
+    (
+        "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,0.,2.,0.\nGRID,4,,0.,0.,3.\nGRID,5,,1.,0.,3.\nGRID,6,,0.,1.,3.\n\
+         CPENTA,1,2,1,2,3,4,5,6",
+        24.5,
+        [15.0 / 28.0, 15.0 / 28.0, 33.0 / 28.0],
+    ),
+];
+
+#[test]
+fn tapered_elements_have_the_mass_and_the_centre_of_the_body() {
+    for (cards, mass, centre) in SHAPES {
+        for coupled in ["", "PARAM,COUPMASS,1\n"] {
+            let (model, faults) = model("", &format!("{DENSE}{coupled}{cards}"));
+            assert!(faults.is_empty(), "{faults:?}");
+            let ours = model.weight();
+            close(cards, ours.mass, mass, 1e-12);
+            let apart = (ours.cg - Vec3::from(centre)).amax();
+            assert!(apart < 1e-12, "{cards}: {} {centre:?}", ours.cg);
+        }
+    }
+}
+
+/// Elements of every shape, warped and offset: the solver's R' M R about its centre of gravity is that of the model.
+#[test]
+fn the_rigid_mass_of_warped_and_curved_elements_is_that_of_the_mass_matrix() {
+    const WARPED: &str = "GRID,1,,0.,0.,0.\nGRID,2,,2.,0.,.4\nGRID,3,,2.2,1.,0.\nGRID,4,,0.,1.3,.3\nGRID,5,,.1,0.,1.\nGRID,6,,2.,.2,1.4\n\
+         GRID,7,,2.,1.,1.2\nGRID,8,,0.,1.,1.\nGRID,9,,1.,-.1,.3\nCQUAD4,1,1,1,2,3,4,,.2\nCQUAD8,2,1,5,6,7,8\nCTRIA3,3,1,2,3,6\n\
+         CHEXA,4,2,1,2,3,4,5,6\n,7,8,9\nCTETRA,5,2,1,2,4,5\nCBEAM,6,6,3,7,1.,0.,0.\nPBEAM,6,1,.01,1.-5,1.-5,,1.-5,2.\n\
+         CSHEAR,7,7,1,2,3,4\nPSHEAR,7,1,.1\nSPC1,1,123456,1,THRU,4\nFORCE,1,7,,1.,1.,0.,0.\nPARAM,AUTOSPC,YES\n";
+    for coupled in ["", "PARAM,COUPMASS,1\n"] {
+        let (model, solved) = solve("SPC = 1\nLOAD = 1", &format!("{DENSE}{coupled}{WARPED}"));
+        let (ours, theirs) = (model.weight(), solved.report.mass.unwrap());
+        close("mass", ours.mass, theirs.mass, 1e-12);
+        let apart = (ours.cg - theirs.cg).norm();
+        assert!(apart < 1e-12, "{} {}", ours.cg, theirs.cg);
+        let apart = (model.rigid_body_mass(theirs.cg) - theirs.matrix).amax();
+        assert!(apart < 1e-12 * theirs.matrix.amax(), "{coupled}: {apart}");
     }
 }
 

@@ -18,7 +18,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits};
 use crate::host::work::Work;
 use crate::job::Job;
-use crate::payload::{PayloadModel, PayloadRun, WeighSpec, weigh};
+use crate::payload::{PayloadModel, PayloadRun, Support, WeighSpec, weigh};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::has_covariance;
 use crate::strain_chain::named_results::check_tables;
@@ -83,12 +83,12 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// Weight that makes the gauge which the payload strains most read the largest of all readings; 1 where nothing does.
+/// Weight at the nominal place that makes the gauge which the payload strains most read the largest of all readings; 1 where nothing does.
 fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
     let readings = runs.iter().flat_map(|r| &r.strain).map(|e| e.abs());
     let largest = readings.filter(|e| e.is_finite()).fold(0.0, f64::max);
-    let rows = 0..model.payload.nrows();
-    let strongest = rows.fold(0.0, |a: f64, g| a.max(model.payload[(g, 0)].abs()));
+    let unit = model.unit_strain([0.0; 2], Support::Floor);
+    let strongest = unit.iter().fold(0.0, |a: f64, e| a.max(e.abs()));
     let weight = largest / strongest;
     if weight > 0.0 && weight.is_finite() {
         weight
@@ -97,7 +97,7 @@ fn by_strongest(model: &PayloadModel, runs: &[PayloadRun]) -> f64 {
     }
 }
 
-/// A limit far above any payload, in weights of the largest reading.
+/// Largest weight that is searched, over the weight that makes the largest reading. Readings, not the mass of the model, limit a payload.
 const FAR: f64 = 1.0e3;
 
 /// Error of the strain coefficients, 1 sd, of each and of the whole: as stated, or what the covariance of a calibrated S leaves. Few repeats
@@ -139,12 +139,7 @@ fn spec_of(task: &Task, parts: &Parts, runs: &[PayloadRun]) -> WeighSpec {
         place: task.payload.position,
         model_rel: model_rel(job, s),
         reaction_sigma: stated.unwrap_or(readings::ASSUMED_NOISE * largest_reaction),
-        largest: match (task.empty.iter().sum::<f64>(), largest_reaction) {
-            (empty, _) if empty > 0.0 => 10.0 * empty,
-            (_, r) if r > 0.0 => FAR * r.max(1.0),
-            // On supports: what the strongest gauge would need for the largest reading.
-            _ => FAR * by_strongest(model, runs),
-        },
+        largest: FAR * by_strongest(model, runs),
         region: region
             .map(|r| [0, 1].map(|k| r[k].map(|v| v - task.nominal[k])))
             .or(between),

@@ -7,6 +7,7 @@ use crate::fe::element::ElementMatrix;
 use crate::fe::error::Refusal;
 use crate::linalg::{DMatrix, Vector6};
 use crate::model::{GridIx, Model, Solid, Vec3};
+use nastran::cards::SolidShape;
 
 /// Strain of a solid: xx yy zz xy yz zx, engineering shear; basic frame, or the material's where PSOLID names one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,26 +37,27 @@ fn folded(solid: &Solid) -> impl Fn(Folded) -> Refusal + '_ {
 }
 
 fn input(model: &Model, solid: &Solid) -> Result<SolidInput, Refusal> {
-    let n = solid.shape.n_corners();
-    let mids: Vec<usize> = (0..20 - n)
-        .filter(|i| solid.grids[n + i].is_some())
-        .collect();
-    if solid.shape == nastran::cards::SolidShape::Pyram && !mids.is_empty() {
+    if solid.shape == SolidShape::Pyram && solid.grids[5..].iter().any(Option::is_some) {
         return Err(refuse(
             solid,
             "the built-in solver has no pyramid with mid-side grids",
             "leave the mid-side grids out, or solve with Nastran",
         ));
     }
-    Ok(SolidInput {
+    Ok(shape_of(model, solid, &solid.all_grids()))
+}
+
+/// Returns the shape of a solid through all its grids, or through its corners alone.
+fn shape_of(model: &Model, solid: &Solid, grids: &[GridIx]) -> SolidInput {
+    let n = solid.shape.n_corners();
+    let all = grids.len() > n;
+    SolidInput {
         shape: solid.shape,
-        x: solid
-            .all_grids()
-            .iter()
-            .map(|g| model.grids[g.us()].x)
+        x: grids.iter().map(|g| model.grids[g.us()].x).collect(),
+        mids: (0..20 - n)
+            .filter(|i| all && solid.grids[n + i].is_some())
             .collect(),
-        mids,
-    })
+    }
 }
 
 fn formed(model: &Model, solid: &Solid) -> Result<(SolidInput, SolidLaw), Refusal> {
@@ -90,8 +92,8 @@ pub(crate) fn solid_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, 
     Ok(out)
 }
 
-/// Grids and, row by row, the integral of density times products of shape functions, before WTMASS; empty for a folded shape, which
-/// its stiffness refuses.
+/// Grids and, row by row, the integral of density times products of shape functions, before WTMASS; empty without density. A pyramid
+/// has the mass between its corners: the solver refuses its mid-side grids.
 pub(crate) fn solid_mass(model: &Model, i: usize) -> (Vec<GridIx>, Vec<f64>) {
     let solid = &model.solids[i];
     let rho = model
@@ -99,16 +101,16 @@ pub(crate) fn solid_mass(model: &Model, i: usize) -> (Vec<GridIx>, Vec<f64>) {
         .get(solid.property as usize)
         .and_then(|p| model.materials.get(p.material.us()))
         .map_or(0.0, |m| m.rho);
-    let products = input(model, solid)
-        .ok()
-        .and_then(|input| input.products().ok());
-    match products {
-        Some(mut p) if rho != 0.0 => {
-            p.iter_mut().for_each(|v| *v *= rho);
-            (solid.all_grids(), p)
-        }
-        _ => (Vec::new(), Vec::new()),
+    if rho == 0.0 {
+        return (Vec::new(), Vec::new());
     }
+    let mut grids = solid.all_grids();
+    if solid.shape == SolidShape::Pyram {
+        grids.truncate(solid.shape.n_corners());
+    }
+    let mut products = shape_of(model, solid, &grids).products();
+    products.iter_mut().for_each(|v| *v *= rho);
+    (grids, products)
 }
 
 /// Thermal strain at a point from the temperature rise of the grids.
