@@ -27,7 +27,9 @@ pub(super) fn check_deck_supports<'a>(
         // A subcase without loads is not the run of these results.
         let is_run = s.load.is_some() || s.temperature_load.is_some();
         if is_run && !is_combination(s) {
-            by_set.entry(s.spc).or_insert(s.id);
+            // SPC = NONE is the set 0.
+            let set = s.spc.filter(|sid| *sid != 0);
+            by_set.entry(set).or_insert(s.id);
         }
     }
     let stated = job

@@ -56,9 +56,11 @@ pub(super) fn thermal_loads(deck: &DeckModel, subcase: &Subcase) -> Vec<OtherLoa
         let at = deck.deck.case_control.place_of(word, Some(subcase.id));
         at.unwrap_or(subcase.at)
     };
-    let heat = subcase
-        .temperature_load
-        .filter(|_| is_heated(&deck.model, &case).unwrap_or(false));
+    // Equal sets before and after make no thermal strain.
+    let heat = subcase.temperature_load.filter(|_| {
+        subcase.temperature_initial != subcase.temperature_load
+            && is_heated(&deck.model, &case).unwrap_or(false)
+    });
     let heat = heat.map(|sid| OtherLoad {
         name: format!("TEMPERATURE(LOAD) = {sid}"),
         at: stated("TEMPERATURE"),
