@@ -256,6 +256,7 @@ fn read() -> Result<Frame, Box<dyn Error>> {
     let s = Sensitivity {
         values: Matrix::from_fn(gauges.len(), names.len(), |g, l| s[g][l] * 1e-9),
         uncertainty: None,
+        noise: None,
         gauges,
         loads: names.iter().map(Load::named).collect(),
     };

@@ -54,6 +54,22 @@ pub(crate) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     Ok(lines.text)
 }
 
+/// Returns the names of the sheets of a spreadsheet; none of another file.
+#[cfg(feature = "xlsx")]
+pub(crate) fn sheet_names(bytes: &[u8]) -> Vec<String> {
+    use calamine::{Reader, Xlsx};
+    if !is_sheet(bytes) || unpacked_size(bytes).is_none_or(|n| n > MOST_UNPACKED) {
+        return Vec::new();
+    }
+    Xlsx::new(std::io::Cursor::new(bytes)).map_or_else(|_| Vec::new(), |b| b.sheet_names())
+}
+
+/// Returns no name: this build reads no spreadsheets.
+#[cfg(not(feature = "xlsx"))]
+pub(crate) fn sheet_names(_: &[u8]) -> Vec<String> {
+    Vec::new()
+}
+
 /// Returns a cell formatted as a date or a time as text: date and time of day, or the time of day alone where the cell contains less than two
 /// days. A number of days would be read as a number in the unit of its column.
 #[cfg(feature = "xlsx")]

@@ -1,9 +1,11 @@
 //! Files of a job, read with the line that names them, and its folder of kept solutions.
 
 use super::{Job, NamedFile};
+use crate::finding::few;
 use crate::host::context::Context;
-use crate::host::fault::Fault;
+use crate::host::fault::{Fault, Faults};
 use crate::host::files::{FileBytes, Inputs, as_table, no_text, unreadable};
+use crate::host::sheet::sheet_names;
 use crate::host::store::Folder;
 use crate::host::work::Work;
 use crate::series::record::csv::table_text;
@@ -27,6 +29,31 @@ impl Inputs<'_> {
         };
         self.note_end(&named.given, read.as_ref().ok());
         read.map_err(|f| at_job_line(job, named, f))
+    }
+
+    /// Returns faults of a table that a job names; where its spreadsheet has several sheets, with the sheet that was read and the others.
+    pub(crate) fn with_sheet_read(&self, job: &Job, named: &NamedFile, faults: Faults) -> Faults {
+        let bytes = self.load(&job.folder.join(&named.given));
+        let names = bytes.map_or_else(|_| Vec::new(), |b| sheet_names(&b));
+        let [read, others @ ..] = &names[..] else {
+            return faults;
+        };
+        if others.is_empty() {
+            return faults;
+        }
+        let others: Vec<String> = others.iter().map(|n| format!("`{n}`")).collect();
+        let others = few(&others);
+        let mut list = faults.into_list();
+        for fault in list.iter_mut().filter(|f| f.file == named.given) {
+            fault.wrong +=
+                &format!("; this is the first sheet, `{read}`, the file also has {others}");
+            fault.remedy +=
+                "; only the first sheet is read: move the table there if it is in another";
+        }
+        match Faults::check(list) {
+            Err(faults) => faults,
+            Ok(()) => Fault::of(&*named.given, "sheet", "no table", "write a table").into(),
+        }
     }
 
     /// Returns the text of a table that a job names: UTF-8, UTF-16, or the eight-bit code of Windows that spreadsheets write.

@@ -17,7 +17,8 @@ pub struct Table {
     pub rows: Vec<(u32, Vec<String>)>,
 }
 
-/// The table in a CSV text. Comma, semicolon or tab, whichever the header has most of; lines starting with `#` are comments.
+/// The table in a CSV text. Comma, semicolon or tab, whichever the header has most of or a first line `sep=;` states; lines starting with
+/// `#` are comments.
 /// Where commas don't divide the fields, a number may have a decimal comma.
 ///
 /// # Errors
@@ -39,14 +40,18 @@ pub fn each_part(
     most: usize,
     take: &mut dyn FnMut(Table),
 ) -> Result<(), Faults> {
+    let (stated, text) = match stated_delimiter(text) {
+        Some((delimiter, rest)) => (Some(delimiter), rest),
+        None => (None, text),
+    };
     let first = text
         .lines()
         .find(|l| !l.trim().is_empty() && !l.starts_with('#'))
         .unwrap_or("");
-    let delimiter = [b',', b';', b'\t']
+    let most_used = [b',', b';', b'\t']
         .into_iter()
-        .max_by_key(|d| (first.bytes().filter(|b| b == d).count(), *d == b','))
-        .unwrap_or(b',');
+        .max_by_key(|d| (first.bytes().filter(|b| b == d).count(), *d == b','));
+    let delimiter = stated.or(most_used).unwrap_or(b',');
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
         .comment(Some(b'#'))
@@ -79,6 +84,7 @@ pub fn each_part(
         match record {
             Ok(r) => {
                 let line = r.position().map_or(0, |p| p.line() as u32);
+                let line = line + u32::from(stated.is_some());
                 if r.iter().all(str::is_empty) {
                     continue;
                 }
@@ -112,6 +118,16 @@ pub fn each_part(
     Faults::check(faults)?;
     take(part);
     Ok(())
+}
+
+/// Returns the delimiter that a first line `sep=;` of spreadsheets states, and the text below that line.
+fn stated_delimiter(text: &str) -> Option<(u8, &str)> {
+    let (line, rest) = text.split_once('\n')?;
+    let line = line.trim_start_matches(['\u{feff}', '"', ' ']);
+    let (word, delimiter) = line.split_at_checked(4)?;
+    let delimiter = delimiter.bytes().next()?;
+    let is_stated = word.eq_ignore_ascii_case("sep=") && [b',', b';', b'\t'].contains(&delimiter);
+    is_stated.then_some((delimiter, rest))
 }
 
 fn empty(file: &str) -> Fault {

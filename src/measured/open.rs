@@ -54,6 +54,17 @@ pub(crate) fn open(
     measured: &Measured,
     named: &NamedFile,
 ) -> Result<MeasuredStrain, Faults> {
+    open_first_sheet(inputs, job, measured, named)
+        .map_err(|faults| inputs.with_sheet_read(job, named, faults))
+}
+
+/// Opens a strain file, of a spreadsheet the first sheet.
+fn open_first_sheet(
+    inputs: &mut Inputs,
+    job: &Job,
+    measured: &Measured,
+    named: &NamedFile,
+) -> Result<MeasuredStrain, Faults> {
     let bytes = inputs.read_named(job, named)?;
     let wanted = wanted_columns(inputs, job);
     if is_record(&bytes) {

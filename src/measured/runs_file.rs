@@ -38,6 +38,12 @@ pub struct RunRow {
 /// Every fault: missing columns, units that are none or contradict the job, fields that are no numbers or none of their
 /// quantity, runs named twice.
 pub fn read_runs(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunRow>, Faults> {
+    runs_of_first_sheet(inputs, job, runs)
+        .map_err(|faults| inputs.with_sheet_read(job, &runs.file, faults))
+}
+
+/// Reads the runs, of a spreadsheet those in its first sheet.
+fn runs_of_first_sheet(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Vec<RunRow>, Faults> {
     let text = inputs
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;

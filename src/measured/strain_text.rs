@@ -79,6 +79,9 @@ impl Reading {
         let run = headers.iter().position(|c| c.name == "run");
         let mut times = headers.iter().enumerate();
         let time = times.find(|(i, c)| c.is_time(*i == 0)).map(|t| t.0);
+        // In a record, a channel `Run` is no name of runs.
+        let any_case = || headers.iter().position(Column::is_run);
+        let run = run.or_else(|| if time.is_none() { any_case() } else { None });
         let Some(key) = run.or(time) else {
             return Err(Faults::from(Fault::at(
                 &*t.file,

@@ -360,9 +360,9 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
 
 #[test]
 fn a_column_of_runs_that_is_written_otherwise_is_asked_for() {
-    let said = strain_text::strain_from_text("s.csv", "Run,G1\nR1,2\n", &["G1".to_owned()]);
+    let said = strain_text::strain_from_text("s.csv", "Runs,G1\nR1,2\n", &["G1".to_owned()]);
     let said = said.unwrap_err()[0].to_string();
-    assert!(said.contains("did you mean `Run` for `run`?"), "{said}");
+    assert!(said.contains("did you mean `Runs` for `run`?"), "{said}");
     let said = runs_of("Runs,LF.FZ\nR1,2\n", "").unwrap_err()[0].to_string();
     assert!(said.contains("did you mean `Runs` for `run`?"), "{said}");
     let said = strain_text::strain_from_text("s.csv", "a,b\n1,2\n", &[]).unwrap_err();
@@ -395,4 +395,23 @@ fn a_channel_that_is_ignored_is_not_asked_for_its_unit() {
     let table = strain_file::read_strain(&mut inputs, &job, &measured.strain, &wanted).unwrap();
     assert_eq!(table.gauges, ["G1", "G2"]);
     assert!(table.row(0)[0] == 1.0 && table.row(0)[1].is_nan());
+}
+
+/// Spreadsheets state the delimiter in a first line; the case of `run` does not matter.
+#[test]
+fn a_table_of_runs_is_read_below_a_line_that_states_its_delimiter() {
+    let expected = strain_text::strain_from_text("s.csv", "run,G1,G2\nR1,1.5,2\nR2,-3,4\n", &[]);
+    let expected = expected.unwrap();
+    for text in [
+        "sep=;\nrun;G1;G2\nR1;1.5;2\nR2;-3;4\n",
+        "sep=;\r\nRun;G1;G2\r\nR1;1,5;2\r\nR2;-3;4\r\n",
+        "SEP=,\nRUN,G1,G2\nR1,1.5,2\nR2,-3,4\n",
+        "\"sep=\t\"\nrun\tG1\tG2\nR1\t1.5\t2\nR2\t-3\t4\n",
+        "sep=;;\nrun;G1;G2\nR1;1.5;2\nR2;-3;4\n",
+    ] {
+        let found = strain_text::strain_from_text("s.csv", text, &[]);
+        assert_eq!(found.unwrap_or_else(|f| panic!("{text}: {f:?}")), expected);
+    }
+    let wrong = strain_text::strain_from_text("s.csv", "sep=;\nrun;G1\nR1;1\nR2;x\n", &[]);
+    assert_eq!(wrong.unwrap_err()[0].line, Some(4));
 }

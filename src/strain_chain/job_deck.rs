@@ -8,7 +8,7 @@ use crate::job::{Job, ModelFiles};
 use crate::model::Model;
 use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::strain_chain::not_solved::NOT_SOLVED;
-use crate::units::check_units;
+use crate::units::{UnitSystem, check_units};
 
 /// The deck of a job; what is worth knowing of it, and what contradicts the job's units, goes to the work.
 ///
@@ -30,13 +30,21 @@ pub(crate) fn read_deck(
             .extend(suport_without_inrel(&read.model, read.deck.sol));
     }
     Faults::check(read.faults.clone())?;
-    work.findings.extend(against_units(job, &read.model));
+    work.findings.extend(against_units(job.units, &read.model));
     Ok(read)
 }
 
-/// Contradictions between the job's units and its deck.
-pub(crate) fn against_units(job: &Job, model: &Model) -> Vec<Finding> {
+/// Returns the materials that contradict the system of units that they suggest as a whole.
+pub(crate) fn against_suggested_units(system: UnitSystem, model: &Model) -> Vec<Finding> {
+    let mut findings = against_units(system, model);
+    // No job states units that PARAM,UNITSYS could contradict.
+    findings.retain(|f| f.code != "units-contradict-unitsys");
+    findings
+}
+
+/// Returns the contradictions between a system of units, stated by a job or suggested by the materials, and a deck.
+pub(crate) fn against_units(system: UnitSystem, model: &Model) -> Vec<Finding> {
     let (moduli, densities) = moduli_and_densities(model);
     let unitsys = model.params.unitsys.as_deref();
-    check_units(job.units, unitsys, &moduli, &densities)
+    check_units(system, unitsys, &moduli, &densities)
 }

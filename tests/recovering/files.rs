@@ -83,6 +83,34 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
 
 #[cfg(feature = "xlsx")]
 #[test]
+fn a_refused_spreadsheet_of_several_sheets_names_the_sheet_that_was_read() {
+    let mut book = rust_xlsxwriter::Workbook::new();
+    for (name, head) in [("Notes", "remark"), ("Runs", "run"), ("Old", "run")] {
+        let sheet = book.add_worksheet().set_name(name).unwrap();
+        sheet.write_string(0, 0, head).unwrap();
+        sheet.write_string(0, 1, "G1").unwrap();
+        sheet.write_string(1, 0, "R1").unwrap();
+        sheet.write_number(1, 1, 2.0).unwrap();
+    }
+    let bytes = book.save_to_buffer().unwrap();
+    let (_, _, _, dir) = recover("runs-sheets", &table("run", 12, as_is), "");
+    std::fs::write(dir.join("strain.xlsx"), &bytes).unwrap();
+    let job = std::fs::read_to_string(dir.join("job.toml")).unwrap();
+    let job = job.replace("strain.csv", "strain.xlsx");
+    std::fs::write(dir.join("sheets.toml"), job).unwrap();
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["recover", dir.join("sheets.toml").to_str().unwrap()])
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{said}");
+    for word in ["first sheet", "`Notes`", "`Runs`", "`Old`"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
+}
+
+#[cfg(feature = "xlsx")]
+#[test]
 fn a_spreadsheet_of_runs_is_read_as_the_same_table_in_text() {
     let text = table("run", 12, as_is);
     let (code, said, from_text, dir) = recover("runs-text", &text, "");

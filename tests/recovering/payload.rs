@@ -181,8 +181,23 @@ fn weight_and_moment_have_the_sigma_of_recover_where_both_ask_the_same() {
     }
 }
 
-/// A plate of 20 by 2 on four wheels at its corners, of this density, one gauge above and one below its middle; the job reads `strain`.
-fn plate_on_wheels(density: &str, strain: &str) -> InMemory {
+/// Wheels at the corners of the plate.
+const WHEELS: [(&str, u32); 4] = [("A", 10), ("B", 12), ("C", 210), ("D", 212)];
+
+/// A gauge along the plate, or at an angle to it.
+fn gauge(name: &str, element: usize, surface: &str, angle_deg: u32) -> String {
+    format!(
+        "[[gauge]]\nname = \"{name}\"\nelement = {element}\nsurface = \"{surface}\"\ndirection = [1, 0, 0]\nangle_deg = {angle_deg}\n"
+    )
+}
+
+/// A plate of 20 by 2 of this density, with the loads, gauges and further lines of a job that reads `strain`.
+fn plate_on_wheels(
+    density: &str,
+    (loads, gauges): (&[(&str, u32)], &str),
+    more: &str,
+    strain: &str,
+) -> InMemory {
     let mut deck = "SOL 101\nCEND\nBEGIN BULK\n".to_owned();
     for i in 0..=20 {
         for (j, y) in [0.0, 1.0, 2.0].into_iter().enumerate() {
@@ -202,19 +217,16 @@ fn plate_on_wheels(density: &str, strain: &str) -> InMemory {
     );
     let mut job =
         "units = \"m-kg-s\"\n[model]\ndeck = \"deck.bdf\"\nsupport = \"free\"\n".to_owned();
-    for (name, grid) in [("A", 10), ("B", 12), ("C", 210), ("D", 212), ("P", 111)] {
+    for (name, grid) in loads {
         let _ = writeln!(
             job,
             "[[load]]\nname = \"{name}\"\ngrid = {grid}\ncomponent = \"FZ\""
         );
     }
-    for (name, surface) in [("TOP", "top"), ("BOTTOM", "bottom")] {
-        let _ = writeln!(
-            job,
-            "[[gauge]]\nname = \"{name}\"\nelement = 90\nsurface = \"{surface}\"\ndirection = [1, 0, 0]"
-        );
-    }
-    job += "[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n[payload]\ngrid = 111\n";
+    let _ = write!(
+        job,
+        "{gauges}[measured]\nstrain = \"strain.csv\"\nnoise_microstrain = 0.5\n{more}"
+    );
     InMemory::default()
         .with("deck.bdf", deck)
         .with("job.toml", job)
@@ -226,7 +238,10 @@ fn plate_on_wheels(density: &str, strain: &str) -> InMemory {
 fn a_payload_of_many_times_the_mass_of_the_model_is_weighed() {
     let strain = "run,TOP,BOTTOM\nR1,-50,50\nR2,-500,500\nR3,-750,750\n";
     let weights = |density: &str| -> Vec<f64> {
-        let files = plate_on_wheels(density, strain);
+        let loads = [&WHEELS[..], &[("P", 111)]].concat();
+        let gauges = gauge("TOP", 90, "top", 0) + &gauge("BOTTOM", 90, "bottom", 0);
+        let more = "[payload]\ngrid = 111\n";
+        let files = plate_on_wheels(density, (&loads, &gauges), more, strain);
         let job = Job::read("job.toml", &files).unwrap();
         let found = strainbridge::payload(&job, &Context::new(&files)).unwrap();
         let runs = found.weighing.runs.iter();
@@ -242,4 +257,29 @@ fn a_payload_of_many_times_the_mass_of_the_model_is_weighed() {
         assert!((found / expected - 1.0).abs() < 3e-3, "{found} {expected}");
         assert!((heavy[run] / found - 1.0).abs() < 1e-6, "{found}");
     }
+}
+
+/// Total loads of a model on its wheels add up to its weight, not to zero.
+#[test]
+fn total_loads_are_compared_with_the_weight_of_the_model() {
+    let places = [40, 41, 100, 101, 160, 161];
+    let gauges = |angle: u32| places.map(|e| gauge(&format!("G{e}_{angle}"), e, "bottom", angle));
+    let names = |angle: u32| places.map(|e| format!("G{e}_{angle}")).join(",");
+    let unbalanced = |along: f64| -> Option<String> {
+        let readings = format!("{},0,0,0,0,0,0", vec![along.to_string(); 6].join(","));
+        let strain = format!("run,{},{}\nR1,{readings}\n", names(0), names(45));
+        let gauges = gauges(0).concat() + &gauges(45).concat();
+        let more = "reference = \"gravity\"\n";
+        let files = plate_on_wheels("7800.", (&WHEELS, &gauges), more, &strain);
+        let job = Job::read("job.toml", &files).unwrap();
+        let found = strainbridge::recover(&job, &Context::new(&files)).unwrap();
+        let mut findings = found.findings.iter();
+        let balance = findings.find(|f| f.code == "loads-not-in-balance");
+        balance.map(|f| f.message.clone())
+    };
+    assert_eq!(unbalanced(0.0), None);
+    let words = unbalanced(2000.0).unwrap();
+    assert!(words.contains("the weight of the model"), "{words}");
+    // 7800 x 20 x 2 x .05 kg, standard gravity.
+    assert!(words.contains("expected 152983.740"), "{words}");
 }

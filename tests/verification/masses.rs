@@ -133,7 +133,7 @@ const SHAPES: [(&str, f64, [f64; 3]); 5] = [
     (
         "GRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,0.,3.,0.\nCTRIA3,1,1,1,2,3\n,,,.1,.4,.1",
         7.0 * 0.9,
-        [1.125, 0.9375, 0.0],
+        [1.25, 0.875, 0.0],
     ),
     // A frustum of height 3 with square ends of side 2 and 1.
     (

@@ -498,3 +498,40 @@ fn loads_beside_a_long_record_are_answered_without_a_comparison() {
     let said = |c: &String| c.contains(" gauges-not-compared ");
     assert!(codes.iter().any(said), "{codes:?}");
 }
+
+/// A deck in mm and kg with a density of kg/m3, and one in inches with weight densities: no job states units.
+#[test]
+fn a_deck_alone_is_tested_for_its_densities() {
+    let deck = |material: &str| {
+        format!(
+            "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,9.,0.,0.\nGRID,3,,9.,9.,0.\nGRID,4,,0.,9.,0.\n\
+             CQUAD4,1,1,1,2,3,4\nPSHELL,1,1,.2,1,,1\n{material}\nSPC1,1,123456,1,4\nFORCE,1,2,,1.,0.,0.,1.\nENDDATA\n"
+        )
+    };
+    let folder = copied("deck-alone-densities", "frame");
+    for (material, wrong) in [
+        ("MAT1,1,70000.,,.33,2700.", true),
+        ("MAT1,1,1.0+7,,.33,.1", true),
+        ("MAT1,1,70000.,,.33,2.7-9", false),
+    ] {
+        std::fs::write(folder.join("alone.bdf"), deck(material)).unwrap();
+        for arguments in [
+            &["check", "alone.bdf"][..],
+            &["init", "alone.bdf", "--out", "new"],
+        ] {
+            let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+                .args(arguments)
+                .current_dir(&folder)
+                .output()
+                .unwrap();
+            let said = [done.stdout, done.stderr].concat();
+            let said = String::from_utf8_lossy(&said);
+            assert_eq!(
+                said.contains("units-density"),
+                wrong,
+                "{arguments:?} {material}\n{said}"
+            );
+            let _ = std::fs::remove_dir_all(folder.join("new"));
+        }
+    }
+}

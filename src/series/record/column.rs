@@ -95,9 +95,13 @@ fn unquoted(header: &str) -> &str {
 /// Name and unit of a header such as `P01 [um/m]` or `a_body (m/s2)`; the last bracket is the unit's: `SG1 (left) (um/m)`.
 pub fn name_and_unit(header: &str) -> Column {
     let header = Header::of(header);
+    let unit = match unit_of_time_name(&header.whole) {
+        Some(unit) => unit.to_owned(),
+        None => header.bracket.clone(),
+    };
     Column {
         name: header.name.clone(),
-        unit: header.bracket.clone(),
+        unit,
         header,
         stated: String::new(),
     }
@@ -106,6 +110,10 @@ pub fn name_and_unit(header: &str) -> Column {
 impl Column {
     /// A channel of a format that keeps units apart from names.
     pub fn of_channel(name: &str, unit: &str) -> Self {
+        let unit = match unit_of_time_name(name) {
+            Some(of_name) if unit.is_empty() => of_name,
+            _ => unit,
+        };
         Self {
             name: name.to_owned(),
             unit: unit.to_owned(),
@@ -136,6 +144,11 @@ impl Column {
     pub fn is_time(&self, first: bool) -> bool {
         is_time(&self.name, first)
             || self.clash() == Some(Clash::Size) && is_time(&self.header.name, first)
+    }
+
+    /// Whether this column contains the names of runs. Case does not matter.
+    pub fn is_run(&self) -> bool {
+        self.name.eq_ignore_ascii_case("run")
     }
 
     /// What can't be right of the unit in brackets beside the name and the one stated elsewhere.
@@ -262,6 +275,15 @@ pub fn seconds_in(unit: &str) -> Option<f64> {
     }
 }
 
+/// Returns the unit of time at the end of a name such as `time_ms`; `None` for other names and for seconds, which need no unit.
+pub(super) fn unit_of_time_name(name: &str) -> Option<&'static str> {
+    let word = name.trim().to_lowercase();
+    let unit = ["time_", "t_", "timestamp_"]
+        .iter()
+        .find_map(|w| word.strip_prefix(w))?;
+    ["ms", "us", "ns", "min"].into_iter().find(|u| *u == unit)
+}
+
 /// Whether a column of this name, the first of its file or not, is that of time.
 pub fn is_time(name: &str, first: bool) -> bool {
     let word = name.trim().to_lowercase();
@@ -269,6 +291,7 @@ pub fn is_time(name: &str, first: bool) -> bool {
         "time" | "t" if name != "T" => true,
         "t_s" | "time_s" | "zeit" | "timestamp" | "datetime" | "date_time" | "date time"
         | "date/time" | "datum" | "date" => true,
+        _ if unit_of_time_name(&word).is_some() => true,
         // Measuring programs add the name of the clock: `Time  1 - default sample rate`.
         _ => {
             first

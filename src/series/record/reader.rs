@@ -116,6 +116,10 @@ pub trait RecordReader: Send + Sync {
     fn left_out(&self) -> Option<usize> {
         None
     }
+    /// Returns the seconds in one of the unit of time that the file states in words; `None` if it states none.
+    fn stated_time_unit_s(&self) -> Option<f64> {
+        None
+    }
     /// Whether its times are those of a day, which begin again at midnight.
     fn are_times_of_day(&self) -> bool {
         false

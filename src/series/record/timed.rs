@@ -24,11 +24,21 @@ struct Timed {
 /// one time where the file states no unit.
 ///
 /// # Errors
-/// Times that can't be read.
+/// Times that can't be read, and a file that states another unit than `time_unit_s`.
 pub(super) fn timed(
     reader: Box<dyn RecordReader>,
     time_unit_s: Option<f64>,
 ) -> Result<(Box<dyn RecordReader>, Option<TimeUnit>), SeriesError> {
+    if let Some((stated, of_job)) = reader.stated_time_unit_s().zip(time_unit_s)
+        && (stated / of_job - 1.0).abs() > 1e-9
+    {
+        return Err(SeriesError::Broken {
+            wrong: format!(
+                "the file states its times in units of {stated} s, the job states `time_unit` of {of_job} s"
+            ),
+            remedy: "correct whichever is wrong: the unit of the column of times, or `time_unit` of the job",
+        });
+    }
     let (rounding_s, epoch_s, unit_stated) = match reader.times() {
         Times::Stored {
             rounding_s,

@@ -1,12 +1,14 @@
 //! Decks in `result.json` and in words.
 
 use crate::fe::{check_shapes, contradictions, held_dependents};
+use crate::finding::Finding;
 use crate::host::fault::FaultList;
 use crate::host::words::{counted, short};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::{Model, UnsupportedCard};
 use crate::strain_chain::deck::{DeckModel, model_of_deck, moduli_and_densities};
+use crate::strain_chain::job_deck::against_suggested_units;
 use crate::strain_chain::solved::find_repeated_subcases;
 use crate::units::{Quantity, Unit, UnitSystem, factor, likely_system};
 use nastran::bdf::vocabulary::{Effect, effect_of_card};
@@ -175,6 +177,16 @@ impl DeckEntry {
             faults: d.faults.len(),
             shown: suggested(m),
             model: Some(d.model),
+        }
+    }
+
+    /// Returns what contradicts the units that the materials suggest. A deck of a job is tested against the units of the job.
+    pub(super) fn contradictions_of_suggested_units(&self) -> Vec<Finding> {
+        match (&self.model, self.shown) {
+            (Some(model), Some(shown)) if !shown.is_stated => {
+                against_suggested_units(shown.system, model)
+            }
+            _ => Vec::new(),
         }
     }
 

@@ -181,7 +181,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
             }
         }
         if let Some(model) = found.decks.get(before).and_then(|d| d.model.as_ref()) {
-            work.findings.extend(against_units(job, model));
+            work.findings.extend(against_units(job.units, model));
             work.findings.extend(point_findings(model, job));
             match support_of_job(job, model) {
                 Ok(support) => {

@@ -35,6 +35,10 @@ pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<Checked>, Faults
         work.stage("read", |w| look(w, Path::new(""), &given, &mut found));
     }
     work.stage("compare", |w| together::compare(w, &mut found));
+    for deck in &found.decks {
+        work.findings
+            .extend(deck.contradictions_of_suggested_units());
+    }
     let units = found.units.clone();
     Ok(work.finish(units, found))
 }

@@ -23,6 +23,7 @@ use crate::host::words::counted;
 use crate::host::work::Work;
 use crate::model::{Model, Shell};
 use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
+use crate::strain_chain::job_deck::against_suggested_units;
 use crate::strain_chain::named_results::RESULTS_REMEDY;
 use crate::units::likely_system;
 use nastran::results::ResultsFile;
@@ -119,6 +120,8 @@ pub fn init(
     work.findings.extend(deck.findings.iter().cloned());
     let (moduli, densities) = moduli_and_densities(&deck.model);
     let system = likely_system(deck.model.params.unitsys.as_deref(), &moduli, &densities);
+    let of_units = system.map(|s| against_suggested_units(s, &deck.model));
+    work.findings.extend(of_units.into_iter().flatten());
     let strained = read_strained(results, &deck, &mut work)?;
     let found = proposals(&deck, &strained, system);
     let plan = JobPlan {

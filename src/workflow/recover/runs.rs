@@ -14,11 +14,12 @@ use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::input_faults::identical::identical_readings;
 use crate::input_faults::not_explained_by;
-use crate::job::LoadActs;
 use crate::job::correct::channel_of;
+use crate::job::{LoadActs, Reference};
 use crate::measured::columns::columns_of;
 use crate::measured::faults::no_gauge_column;
 use crate::measured::strain_table::StrainTable;
+use crate::measured::wheels::wheels_of;
 use crate::measured::zero::{RowZeros, zeros_by_row};
 use crate::recovery::{Readings, Recovery, recover_with_alternatives};
 use crate::sensitivity::Sensitivity;
@@ -241,11 +242,25 @@ pub(super) fn runs(
     Ok((runs, beside))
 }
 
-/// Equilibrium: the sum of all forces by direction, where it is far from zero in a run.
+/// Returns axis and size of the weight that total loads carry; `None` if loads are changes. With the reference "gravity", wheels carry the
+/// model.
+fn weight_carried(task: &Task) -> Option<(usize, f64)> {
+    let fields = task.prepared.fields.as_ref()?;
+    if task.measured.reference != Reference::Gravity {
+        return None;
+    }
+    let model = fields.model();
+    let wheels = wheels_of(task.job, model).ok()?;
+    Some((wheels.axis, model.weight().mass * task.job.gravity()))
+}
+
+/// Equilibrium: the sum of all forces by direction, where it is far from the weight, or from zero, in a run.
 fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
+    let carried = weight_carried(task);
     let mut worst: Vec<String> = Vec::new();
     let mut largest = 0.0_f64;
-    for component in ["FX", "FY", "FZ"] {
+    for (axis, component) in ["FX", "FY", "FZ"].into_iter().enumerate() {
+        let weight = carried.filter(|w| w.0 == axis).map_or(0.0, |w| w.1);
         let members: Vec<usize> = task
             .job
             .loads
@@ -267,16 +282,22 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
                 .map(|(a, b)| r.estimate.covariance[a * k + b])
                 .sum();
             let half = r.estimate.coverage_factor * var.max(0.0).sqrt();
-            if sum.abs() > 2.0 * half && sum.abs() > 0.1 * size {
+            let gap = (sum - weight).abs();
+            let size = size.max(weight);
+            if gap > 2.0 * half && gap > 0.1 * size {
                 let u = &units[members[0]];
+                let expected = match carried {
+                    Some(_) => format!(" (expected {:.3})", weight * u.factor),
+                    None => String::new(),
+                };
                 worst.push(format!(
-                    "{} {component} {:+.3} +- {:.3} {}",
+                    "{} {component} {:+.3} +- {:.3} {}{expected}",
                     r.estimate.run,
                     sum * u.factor,
                     half * u.factor,
                     u.name
                 ));
-                largest = largest.max(sum.abs() / size);
+                largest = largest.max(gap / size);
             }
         }
     }
@@ -288,7 +309,11 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
             Severity::Info,
             "loads-not-in-balance",
             "equilibrium",
-            format!("the recovered forces do not add up to zero: {}. Under inertia relief acceleration takes the rest", few(&worst)),
+            format!(
+                "the recovered forces do not add up to {}: {}. Under inertia relief acceleration takes the rest",
+                if carried.is_some() { "the weight of the model" } else { "zero" },
+                few(&worst)
+            ),
             "at a standstill they must: then a load is missing, or a sign or an `applied` is wrong",
         )
         .with_numbers(largest, 0.1),

@@ -3,13 +3,41 @@
 use crate::series::record::time_unit::DAY;
 
 /// Seconds since 1970 of a date with a time: `2026-05-01 12:00:00.002`, `2026-05-01T12:00:00,002Z`, `01.05.2026 12:00:00`,
-/// `2026/05/01 12:00:00`, `5/31/2026 1:05:09 PM`. A time zone other than `Z` is refused, so are dates whose day and month could be exchanged
-/// (`05/01/2026`).
+/// `2026/05/01 12:00:00`, `5/31/2026 1:05:09 PM`. An offset from UTC (`Z`, `+01:00`, `-0500`, `+01`) is subtracted. Dates whose day and month
+/// could be exchanged (`05/01/2026`) are refused.
 pub fn seconds(field: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(field).ok()?.trim();
     let (date, time) = text.split_once([' ', 'T'])?;
-    let of_day = seconds_of_day(time.trim().trim_end_matches('Z'))?;
-    Some(days_of(date)? as f64 * DAY + of_day)
+    let (time, offset_s) = without_offset(time.trim())?;
+    Some(days_of(date)? as f64 * DAY + seconds_of_day(time)? - offset_s)
+}
+
+/// Splits a time of day into the time and its offset from UTC in seconds; `None` for an offset that cannot be.
+fn without_offset(time: &str) -> Option<(&str, f64)> {
+    if let Some(time) = time.strip_suffix(['Z', 'z']) {
+        return Some((time.trim_end(), 0.0));
+    }
+    let Some(at) = time.rfind(['+', '-']) else {
+        return Some((time, 0.0));
+    };
+    let (before, offset) = time.split_at(at);
+    let (sign, offset) = offset.split_at(1);
+    let (hours, minutes) = match (offset.split_once(':'), offset.len()) {
+        (Some(parts), _) => parts,
+        (None, 4) => offset.split_at_checked(2)?,
+        (None, _) => (offset, "0"),
+    };
+    let (hours, minutes) = (whole(hours)?, whole(minutes)?);
+    let size = (hours <= 14 && minutes < 60).then_some((hours * 3600 + minutes * 60) as f64)?;
+    Some((before.trim_end(), if sign == "-" { -size } else { size }))
+}
+
+/// Whether a field is a date whose day and month could be exchanged, such as `3/1/2026 10:00:00 AM`.
+pub fn is_ambiguous(field: &[u8]) -> bool {
+    let text = std::str::from_utf8(field).unwrap_or_default().trim();
+    let date = text.split([' ', 'T']).next().unwrap_or_default();
+    let parts: Vec<&str> = date.split('/').collect();
+    matches!(parts[..], [a, b, c] if c.len() == 4 && [a, b].iter().all(|p| whole(p).is_some_and(|n| (1..=12).contains(&n))))
 }
 
 /// Seconds since 1970 of a date in one field and a time of day in the other.
@@ -89,7 +117,7 @@ fn whole(text: &str) -> Option<i64> {
 /// Decimals of the seconds.
 pub fn decimals(field: &[u8]) -> usize {
     let end = field.trim_ascii();
-    let digits = end.rsplit(|b| *b == b':').next().unwrap_or_default();
+    let digits = end.splitn(3, |b| *b == b':').last().unwrap_or_default();
     digits
         .iter()
         .position(|b| matches!(b, b'.' | b','))
@@ -127,6 +155,17 @@ mod tests {
         ] {
             assert_eq!(seconds(text.as_bytes()), Some(noon + 0.25), "{text}");
         }
+        for text in [
+            "2026-05-01 14:00:00.250+02:00",
+            "2026-05-01T07:00:00.25-0500",
+            "2026-05-01T13:00:00,25+01",
+            "2026-05-02T01:45:00.25 +13:45",
+        ] {
+            assert_eq!(seconds(text.as_bytes()), Some(noon + 0.25), "{text}");
+        }
+        assert_eq!(decimals(b"2026-05-01 12:00:00.250+02:00"), 3);
+        assert!(is_ambiguous(b"05/01/2026 12:00:00") && is_ambiguous(b"3/1/2026 1:00:00 AM"));
+        assert!(!is_ambiguous(b"5/31/2026 1:05:09 PM") && !is_ambiguous(b"12.5"));
         for text in ["5/31/2026 1:05:09.5 PM", "31/5/2026 13:05:09.5"] {
             let may = f64::from((56 * 365 + 14 + 150) * 86_400 + 47_109);
             assert_eq!(seconds(text.as_bytes()), Some(may + 0.5), "{text}");
@@ -144,6 +183,8 @@ mod tests {
             "2026-13-01 12:00:00",
             "",
             "2026-05-01 25:00",
+            "2026-05-01 12:00:00+25:00",
+            "2026-05-01 12:00:00+",
         ] {
             assert_eq!(seconds(text.as_bytes()), None, "{text}");
         }

@@ -388,7 +388,7 @@ pub fn is_units(fields: &[&[u8]], columns: &[Column], mark: DecimalMark) -> bool
     if fields.len() != columns.len() || !fields.iter().all(|f| f.is_empty() || word(f)) {
         return false;
     }
-    if let Some(run) = columns.iter().position(|c| c.name == "run") {
+    if let Some(run) = columns.iter().position(Column::is_run) {
         let mut others = fields.iter().enumerate().filter(|(at, _)| *at != run);
         return fields.get(run).is_some_and(|f| states_none(f)) && others.any(|(_, f)| word(f));
     }

@@ -102,6 +102,13 @@ impl RecordReader for Csv {
         }
     }
 
+    fn stated_time_unit_s(&self) -> Option<f64> {
+        match self.layout.time {
+            Some((_, TimeKind::Number { factor })) if self.layout.unit_stated => Some(factor),
+            _ => None,
+        }
+    }
+
     fn are_times_of_day(&self) -> bool {
         matches!(self.layout.time, Some((_, TimeKind::OfDay { .. })))
     }
@@ -339,9 +346,18 @@ impl Parser<'_> {
                     .columns
                     .get(field)
                     .map_or("", |c| c.name.as_str());
+                let ambiguous = time.is_some() && date::is_ambiguous(shown);
                 let mut shown = String::from_utf8_lossy(shown).into_owned();
                 if let Some((end, _)) = shown.char_indices().nth(40) {
                     shown.truncate(end);
+                }
+                if ambiguous {
+                    return Err((
+                        format!(
+                            "`{shown}` in column `{name}` is a date whose day and month could be exchanged"
+                        ),
+                        "write dates as 2026-03-01 10:00:00.002, or give times in seconds",
+                    ));
                 }
                 Err((
                     format!("`{shown}` in column `{name}` is not a number"),

@@ -180,3 +180,47 @@ fn clocks_that_are_set_back_are_refused_and_set_forward_leave_a_gap() {
     let values = samples(&record, "A").unwrap();
     assert_eq!(values.iter().filter(|v| v.is_finite()).count(), 4);
 }
+
+/// The offset from UTC of each row counts: clocks go forward between the second and the third row.
+#[test]
+fn times_with_an_offset_and_units_in_the_name_of_a_column_are_read() {
+    for text in [
+        "time,A\n2026-03-29T01:59:59.980+01:00,1\n2026-03-29T01:59:59.990+01:00,2\n2026-03-29T03:00:00.000+02:00,3\n",
+        "time,A\n2026-03-29 01:59:59.980-0130,1\n2026-03-29 01:59:59.990-0130,2\n2026-03-29 02:00:00.000-0130,3\n",
+        "time_ms,A\n0,1\n10,2\n20,3\n",
+        "T_us;A\n0;1\n1e4;2\n2e4;3\n",
+    ] {
+        let record = open(text.as_bytes()).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let rate = record.clock.rate_hz;
+        assert!((rate - 100.0).abs() < 1e-2, "{text}: {rate}");
+        assert_eq!(samples(&record, "A").unwrap(), [1.0, 2.0, 3.0], "{text}");
+    }
+    let words = refusal("time,A\n3/1/2026 10:00:00.000 AM,1\n3/1/2026 10:00:00.010 AM,2\n");
+    assert!(
+        words.contains("day and month could be exchanged"),
+        "{words}"
+    );
+    assert!(words.contains("2026-03-01"), "{words}");
+}
+
+#[test]
+fn a_stated_unit_of_time_that_contradicts_the_header_is_refused() {
+    let open = |text: &str, second: f64| {
+        let reader = Csv::new(Arc::new(text.as_bytes().to_vec()))?;
+        Record::new(Box::new(reader), None, Some(second))
+    };
+    let rate = |text: &str| open(text, 1e-3).map(|r| r.clock.rate_hz.round());
+    for text in [
+        "time [s],A\n0,1\n10,2\n20,3\n",
+        "time_us,A\n0,1\n10,2\n20,3\n",
+    ] {
+        let words = rate(text).unwrap_err().to_string();
+        assert!(words.contains("`time_unit` of 0.001 s"), "{words}");
+    }
+    for text in [
+        "time,A\n0,1\n10,2\n20,3\n",
+        "time [ms],A\n0,1\n10,2\n20,3\n",
+    ] {
+        assert_eq!(rate(text).unwrap(), 100.0, "{text}");
+    }
+}
