@@ -65,6 +65,7 @@ fn task(scatter: f64) -> Task {
         gauges: (0..GAUGES).map(|g| format!("G{g}")).collect(),
         loads: (0..LOADS).map(|l| Load::named(format!("L{l}"))).collect(),
         noise: NOISE,
+        gauge_noise: None,
         model: Some(ModelPrior {
             values: model,
             moves: Vec::new(),
