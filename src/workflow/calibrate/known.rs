@@ -180,16 +180,8 @@ pub(super) fn read_known(
     work.findings.extend(partly_known(&table.file, &partly));
     // Rows of a second file of held-out runs are not in this one.
     if !matches!(measured.hold_out, HoldOut::File(_)) {
-        let has_loads = |at: &usize| {
-            let mut cells = stated.iter().map(|s| cell(&table, *at, s));
-            cells.any(|c| matches!(c, Ok(Some(_))))
-        };
-        let rows = (0..table.rows.len()).filter(has_loads);
-        let lacking = rows
-            .map(name_of)
-            .filter(|run| !strain.iter().any(|s| s == run));
-        work.findings
-            .extend(without_strain(&table.file, &lacking.collect::<Vec<_>>()));
+        let found = without_strain(&table, key, &stated, strain);
+        work.findings.extend(found);
     }
     Ok(KnownRuns {
         runs: out,
@@ -198,19 +190,36 @@ pub(super) fn read_known(
     })
 }
 
-/// Returns the finding on runs with known loads that have no strain: names that differ between the two files, or runs of another day.
-fn without_strain(file: &str, runs: &[&str]) -> Option<Finding> {
+/// Returns the finding on runs with known loads that have no strain: names that differ between the two files, or runs of another day. `key` is the
+/// column of the names, `strain` has the runs of the strain file.
+fn without_strain(
+    table: &Table,
+    key: usize,
+    stated: &[Stated],
+    strain: &[String],
+) -> Option<Finding> {
+    let has_loads = |at: usize| {
+        let mut cells = stated.iter().map(|s| cell(table, at, s));
+        cells.any(|c| matches!(c, Ok(Some(_))))
+    };
+    let rows = table.rows.iter().enumerate();
+    let lacking = rows.filter_map(|(at, (_, fields))| {
+        let run = fields.get(key)?.as_str();
+        (!strain.iter().any(|s| s == run) && has_loads(at)).then_some(run)
+    });
+    let runs: Vec<&str> = lacking.collect();
     (!runs.is_empty()).then(|| {
         let wrong = format!(
-            "the strain file has no row for {} with known loads in `{file}`: {}",
+            "the strain file has no row for {} with known loads in `{}`: {}",
             counted(runs.len(), "run"),
-            few(runs)
+            table.file,
+            few(&runs)
         );
         let remedy = "give the runs the same names in both files, or remove these rows";
         Finding::new(
             Severity::Warning,
             "run-without-record",
-            few(runs),
+            few(&runs),
             wrong,
             remedy,
         )
