@@ -30,35 +30,37 @@ pub fn take_units(t: &mut Table) -> Vec<Column> {
     columns
 }
 
-/// Gives columns without a unit the one that `result.json` beside the table states for them: tables of `recover` have names alone in their
-/// headers. Nothing where no `result.json` describes this table.
-pub fn take_units_beside(
+/// Returns name and unit of every column as [`take_units`] does. A column without a unit has the one that `result.json` of the same folder states
+/// for it: tables of `recover` have names alone in their headers.
+pub fn take_units_of(
     inputs: &mut Inputs,
     job: &Job,
     named: &NamedFile,
-    columns: &mut [Column],
-) {
+    t: &mut Table,
+) -> Vec<Column> {
+    let mut columns = take_units(t);
     let given = Path::new(&named.given);
-    let beside = given.with_file_name("result.json");
-    let path = job.folder.join(&beside);
+    let result = given.with_file_name("result.json");
+    let path = job.folder.join(&result);
     let Ok(bytes) = inputs.load(&path) else {
-        return;
+        return columns;
     };
-    let result: Value = serde_json::from_slice(&bytes).unwrap_or_default();
+    let answer: Value = serde_json::from_slice(&bytes).unwrap_or_default();
     let name = given
         .file_name()
         .and_then(|n| n.to_str())
         .unwrap_or_default();
-    let units = result.get("tables").and_then(|tables| tables.get(name));
+    let units = answer.get("tables").and_then(|tables| tables.get(name));
     let Some(units) = units.and_then(Value::as_object) else {
-        return;
+        return columns;
     };
-    inputs.record(&beside.display().to_string(), path, &bytes);
+    inputs.record(&result.display().to_string(), path, &bytes);
     for column in columns.iter_mut().filter(|c| c.unit.is_empty()) {
         if let Some(unit) = units.get(&column.header.whole).and_then(Value::as_str) {
             take_unit_below(column, unit);
         }
     }
+    columns
 }
 
 /// The column whose header is `name`, or `name` and a unit; `None` where there is none.

@@ -48,8 +48,7 @@ fn runs_of_first_sheet(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Ve
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
     let mut t = read_table(&runs.file.given, &text)?;
-    let mut headers = take_units(&mut t);
-    take_units_beside(inputs, job, &runs.file, &mut headers);
+    let headers = take_units_of(inputs, job, &runs.file, &mut t);
     t.check_rows()?;
     let mut faults = FaultList::new();
     let key = run_column(job, &t, &headers)?;

@@ -10,8 +10,7 @@ use crate::host::work::Work;
 use crate::job::table::{Table, read_table};
 use crate::job::{HoldOut, Job, Measured, Runs};
 use crate::measured::runs_columns::{
-    asked_column, column_called, known_column, note_unread_runs, run_column, take_units,
-    take_units_beside,
+    asked_column, column_called, known_column, note_unread_runs, run_column, take_units_of,
 };
 use crate::sensitivity::Load;
 use crate::series::record::Column;
@@ -78,8 +77,7 @@ pub(super) fn read_known(
         .read_named_text(job, &runs.file)
         .map_err(Faults::from)?;
     let mut table = read_table(&runs.file.given, &text)?;
-    let mut headers = take_units(&mut table);
-    take_units_beside(&mut work.inputs, job, &runs.file, &mut headers);
+    let mut headers = take_units_of(&mut work.inputs, job, &runs.file, &mut table);
     table.check_rows()?;
     let names: Vec<String> = loads.iter().map(|l| l.name.clone()).collect();
     note_unread_runs(&mut work.inputs, job, (&table, &headers), &names);
@@ -90,10 +88,9 @@ pub(super) fn read_known(
     let place = |name: &str, key: &str, faults: &mut FaultList| {
         column(job, &table, &headers, name, key, faults)
     };
-    let mut repeats = Vec::new();
-    for name in &job.calibration.repeats {
-        repeats.extend(place(name, "calibration.repeats", &mut faults));
-    }
+    let repeats = job.calibration.repeats.iter();
+    let repeats = repeats.filter_map(|name| place(name, "calibration.repeats", &mut faults));
+    let repeats: Vec<usize> = repeats.collect();
     let depends = job.calibration.depends_on.as_ref();
     let depends = depends.and_then(|name| {
         let at = place(name, "calibration.depends_on", &mut faults)?;
@@ -173,16 +170,14 @@ pub(super) fn read_known(
         out.push(Known::of(row, known, group));
     }
     faults.extend(payloads.and_then(|p| p.unaccounted(job, &table, &teaching)));
-    if out.is_empty() && faults.is_empty() {
-        faults.push(nothing_known(&table, loads));
-    }
+    let none = (out.is_empty() && faults.is_empty()).then(|| nothing_known(&table, loads));
+    faults.extend(none);
     Faults::check(faults)?;
     work.findings.extend(partly_known(&table.file, &partly));
     // Rows of a second file of held-out runs are not in this one.
-    if !matches!(measured.hold_out, HoldOut::File(_)) {
-        let found = without_strain(&table, key, &stated, strain);
-        work.findings.extend(found);
-    }
+    let whole = !matches!(measured.hold_out, HoldOut::File(_));
+    let lacking = whole.then(|| without_strain(&table, key, &stated, strain));
+    work.findings.extend(lacking.flatten());
     Ok(KnownRuns {
         runs: out,
         checks: checked,

@@ -8,7 +8,7 @@ use crate::host::work::Work;
 use crate::job::table::{Table, each_part};
 use crate::job::unread::unread_columns;
 use crate::job::{Job, NamedFile, Runs};
-use crate::measured::runs_columns::{known_column, take_units, take_units_beside};
+use crate::measured::runs_columns::{known_column, take_units_of};
 use crate::recovery::beyond_expected;
 use crate::respond::{LoadState, Spread};
 use crate::series::record::{Column, is_format, is_time, name_and_unit};
@@ -90,12 +90,12 @@ pub(super) fn from_table(work: &mut Work, job: &Job, named: &NamedFile) -> Resul
     let mut keys = KeysRead::default();
     each_part(&named.given, &text, PART, &mut |part| {
         let columns = columns.get_or_insert_with(|| {
-            let mut read = take_units(&mut Table {
+            let mut header = Table {
                 file: part.file.clone(),
                 header: part.header.clone(),
                 rows: Vec::new(),
-            });
-            take_units_beside(&mut work.inputs, job, named, &mut read);
+            };
+            let read = take_units_of(&mut work.inputs, job, named, &mut header);
             unread = unread_loads((&part, &read), job, &names);
             Columns::of((&part, &read), job, named, &mut faults)
         });
