@@ -1,8 +1,7 @@
 //! The runs file: what else was measured in each run, by the job's names, in SI units.
 
 use super::runs_columns::{
-    PAYLOAD, column_meant, known_column, note_unread_runs, run_column, take_units,
-    take_units_beside,
+    PAYLOAD, column_meant, known_column, note_unread_runs, run_column, take_units, take_units_of,
 };
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::Inputs;

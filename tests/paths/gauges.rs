@@ -323,7 +323,7 @@ fn a_reference_subcase_is_that_of_the_deck_where_the_solver_is_built_in() {
             .unwrap()
             .to_string();
         let why = match n {
-            6 => "SUBCOM 6: a combination has no LOAD of its own".to_owned(),
+            6 => "SUBCOM 6: a combination of subcases can't have a LOAD".to_owned(),
             n => format!("no static subcase {n}"),
         };
         assert!(text.contains(&why), "{text}");

@@ -237,7 +237,7 @@ fn sections_that_are_not_bulk_data_have_words_of_their_own() {
     let plots = "DISP = ALL\nSTRESSES(PLOT) = ALL\nOUTPUT(PLOT)\nPLOTFOO 7\nSPCC = 1\n";
     let deck = format!(
         "NASTRAN SYSTEM(1)=2\nINIT MASTER(S)\nID A,B\nASSIGN OUTPUT2='a.op2'\nDOMAINSOLVER ACMS\nDIAG 8\nTIME 5\nGEOMCHECK NONE\n\
-         MYDMAP $\nSOL 101\nFOO A/B $\nCEND\nECHO = NONE\nSPC = 1\nLOAD = 1\n{plots}BEGIN BULK\nPARAM,MYPARAM,3\n{ROD}ENDDATA\nwords behind it\n"
+         SOL 101\nCEND\nECHO = NONE\nSPC = 1\nLOAD = 1\n{plots}BEGIN BULK\nPARAM,MYPARAM,3\n{ROD}ENDDATA\nwords behind it\n"
     );
     let t = tried(&deck);
     assert_eq!(t.faults, Vec::<String>::new());
