@@ -39,7 +39,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                      the unit that is taken, its noise is stated too large, or nothing moved.",
                     number(floor)
                 ),
-                "State the unit beside the channel's name, `f_wheel [kN]`, or the noise that the sensors have.",
+                "State the unit after the name of the channel, `f_wheel [kN]`, or the noise that the sensors have.",
             )
             .with_numbers(floor, DROWNED),
         );
