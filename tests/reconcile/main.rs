@@ -6,7 +6,6 @@ mod given;
 mod heat;
 mod hidden;
 mod joint;
-mod ladder;
 mod local;
 mod real;
 mod smooth;

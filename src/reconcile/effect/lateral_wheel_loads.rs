@@ -62,12 +62,8 @@ impl StrainEffect for LateralWheelLoads {
             kinds: known().map(|(k, _)| k).collect(),
             usual: usual(frame),
             steady: usual(frame),
-            correlation: 0.0,
             unit: "kN",
-            plausible: usual(frame)
-                .iter()
-                .map(|u| frame.rules.side_load * u)
-                .collect(),
+            plausible: frame.usual_load(),
         })
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {

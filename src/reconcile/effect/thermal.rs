@@ -71,9 +71,8 @@ impl StrainEffect for Thermal {
             kinds: vec![0],
             usual: vec![self.usual_degrees()],
             steady: vec![self.usual_degrees()],
-            correlation: 0.0,
             unit: "degC",
-            plausible: vec![60.0],
+            plausible: 60.0,
         })
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {

@@ -26,9 +26,8 @@ impl StrainFrame {
             kinds,
             usual: sizes.clone(),
             steady: sizes.clone(),
-            correlation: 0.0,
             unit: "1",
-            plausible: vec![f64::INFINITY; sizes.len()],
+            plausible: f64::INFINITY,
         };
         Some(SizedAmplitudes {
             amplitudes,
