@@ -342,11 +342,11 @@ mod tests {
     /// A force of 1000 along y at the tip of a bar of 2 m, a moment of 50 as a couple of the ends, and a subcase with gravity.
     const DECK: &str = "SOL 101\nCEND\nSUBCASE 1\nLABEL = tip\nLOAD = 1\nSUBCASE 2\nLABEL = couple\nLOAD = 2\nSUBCASE 3\nLOAD = 3\n\
         SUBCASE 4\nLOAD = 1\nTEMPERATURE(LOAD) = 7\nSUBCASE 5\nLOAD = 1\nTEMPERATURE(LOAD) = 8\n\
-        SUBCASE 6\nLOAD = 1\nSPC = 6\nSUBCOM 7\nSUBSEQ = 1., 0., 0., 0., 0., 0.\nSUBCOM 8\nSUBSEQ = 2., 1., 0., 0., 0., 0.\n\
+        SUBCASE 6\nLOAD = 1\nSPC = 61\nSUBCOM 7\nSUBSEQ = 1., 0., 0., 0., 0., 0.\nSUBCOM 8\nSUBSEQ = 2., 1., 0., 0., 0., 0.\n\
         SUBCASE 11\nLOAD = 11\nSUBCASE 12\nLOAD = 12\nSUBCASE 13\nLOAD = 13\n\
         SUBCASE 14\nLOAD = 1\nTEMPERATURE(LOAD) = 8\nTEMPERATURE(INITIAL) = 8\n\
         BEGIN BULK\nPBAR,1,1,.01,1.-5,1.-5,1.-5\nMAT1,1,1.+10,,.3,100.,1.-5,20.\nTEMPD,7,20.\nTEMPD,8,120.\n\
-        SPC,6,1,3,.01\nLOAD,11,1.,1.,1,1.,3\nLOAD,12,1.,1.,1,1.,22\nRFORCE,22,,,10.,0.,1.,0.\nLOAD,13,1.,1.,1,0.,3\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n\
+        SPC,6,1,3,.01\nSPCADD,60,6\nSPCADD,61,60\nLOAD,11,1.,1.,1,1.,3\nLOAD,12,1.,1.,1,1.,22\nRFORCE,22,,,10.,0.,1.,0.\nLOAD,13,1.,1.,1,0.,3\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nCBAR,1,1,1,2,0.,1.,0.\n\
         FORCE,1,2,,1000.,0.,1.,0.\nFORCE,2,2,,25.,0.,1.,0.\nFORCE,2,1,,-25.,0.,1.,0.\nGRAV,3,,9.81,0.,0.,-1.\nENDDATA\n";
 
     /// The faults of a load with these keys, its strain taken from the case of a subcase with a label.

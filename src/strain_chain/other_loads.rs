@@ -78,9 +78,10 @@ pub(super) fn moved_supports(deck: &DeckModel, subcase: &Subcase) -> Vec<OtherLo
     let Some(sid) = subcase.spc else {
         return Vec::new();
     };
-    let sums = cards.spcadds.iter().filter(|s| s.sid == sid);
-    let mut sets: BTreeSet<u32> = sums.flat_map(|s| s.sets.iter().copied()).collect();
-    sets.insert(sid);
+    let sets = sets_of(sid, |sid| {
+        let sums = cards.spcadds.iter().filter(|s| s.sid == sid);
+        sums.flat_map(|s| s.sets.iter().copied()).collect()
+    });
     let moves = |s: &&nastran::place::Placed<nastran::cards::Spc>| {
         sets.contains(&s.sid) && s.terms.iter().any(|t| t.2 != 0.0)
     };
@@ -93,14 +94,21 @@ pub(super) fn moved_supports(deck: &DeckModel, subcase: &Subcase) -> Vec<OtherLo
         .collect()
 }
 
-/// Returns the load sets that a set stands for: itself, and the sets that LOAD cards add up.
+/// Returns the load sets that a set contains: itself, and the sets that LOAD cards add up.
 fn selected_sets(cards: &Cards, sid: u32) -> BTreeSet<u32> {
+    sets_of(sid, |sid| {
+        let sums = cards.loads.iter().filter(|l| l.sid == sid);
+        let terms = sums.flat_map(|l| l.terms.iter().map(move |t| (t.0 * l.scale, t.1)));
+        terms.filter(|t| t.0 != 0.0).map(|t| t.1).collect()
+    })
+}
+
+/// Returns a set with all sets that its sums name, directly or through other sums; `named` are the sets that the sum of an id names.
+fn sets_of(sid: u32, named: impl Fn(u32) -> Vec<u32>) -> BTreeSet<u32> {
     let (mut all, mut next) = (BTreeSet::new(), vec![sid]);
     while let Some(sid) = next.pop() {
         if all.insert(sid) {
-            let sums = cards.loads.iter().filter(|l| l.sid == sid);
-            let terms = sums.flat_map(|l| l.terms.iter().map(move |t| (t.0 * l.scale, t.1)));
-            next.extend(terms.filter(|t| t.0 != 0.0).map(|t| t.1));
+            next.extend(named(sid));
         }
     }
     all

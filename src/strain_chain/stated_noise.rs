@@ -1,14 +1,14 @@
 //! Noise of gauges as the job states it.
 
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::job::Job;
+use crate::job::{Job, suggest};
 use crate::sensitivity::GaugeNoise;
 
 /// Returns the noise of these gauges in units of the root mean square that the job states; `None` where all have the same, independent of each
 /// other.
 ///
 /// # Errors
-/// Gauges whose noise is not stated where that of others is.
+/// Gauges without stated noise if other gauges have it; names that are not gauges.
 pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, Faults> {
     let Some(measured) = &job.measured else {
         return Ok(None);
@@ -34,6 +34,21 @@ pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, 
         })
         .collect();
     Faults::check(missing)?;
+    let of_job =
+        |name: &String| job.gauges.iter().any(|g| g.name == *name) || gauges.contains(name);
+    let unknown: FaultList = (measured.noise_by_gauge.iter().map(|n| &n.0))
+        .filter(|name| !of_job(name))
+        .map(|name| {
+            Fault::at(
+                &*job.file,
+                measured.line,
+                "measured.noise_microstrain",
+                format!("`{name}` is not a gauge of the job"),
+                suggest::remedy(name, gauges.iter().map(String::as_str)),
+            )
+        })
+        .collect();
+    Faults::check(unknown)?;
     let unit = measured.noise_microstrain;
     let sd: Vec<f64> = gauges.iter().filter_map(of).map(|sd| sd / unit).collect();
     Ok(Some(GaugeNoise::with_correlation(&sd, correlation)))
