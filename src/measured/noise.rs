@@ -14,7 +14,7 @@ use crate::units::MICROSTRAIN;
 /// S of the job's gauges, with the noise that the job states or its zero record shows.
 ///
 /// # Errors
-/// As [`prepare`]; faults of the zero file.
+/// Faults of [`prepare`] and of the zero file.
 pub(crate) fn prepare_with_noise(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let mut prepared = prepare(work, job)?;
     if let Some(measured) = &job.measured {

@@ -187,7 +187,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
         (
             "run,LF.FZ [kg],LF.MX\n-,kN,N m\nR1,2,3\n",
             "",
-            "`kg` beside the name, `kN` in the row of units below",
+            "`kg` after the name, and `kN` as the unit of the column",
         ),
         // Noise in kN, or as the column in N?
         (
@@ -338,21 +338,22 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
     let text = "run,G1 [m/m],G2 [um/m]\n-,um/m,microstrain\nR1,1,2\n";
     for gauges in [&["G1", "G2"][..], &["G1 [m/m]", "G2"], &[]] {
         let said = read(text, gauges).unwrap_err()[0].to_string();
-        let wrong = "G1 [m/m]: `m/m` beside the name, `um/m` in the row of units below";
+        let wrong = "G1 [m/m]: `m/m` after the name, and `um/m` as the unit of the column";
         assert!(said.contains(wrong), "{said}");
     }
     let table = read(text, &["G2"]).unwrap();
     assert_eq!(table.gauges[1], "G2");
     assert_eq!(table.microstrain[1], 2.0);
     let said = read("time [s],G1\nms,um/m\n0,1\n1,2\n", &["G1"]).unwrap_err()[0].to_string();
-    assert!(said.contains("`s` beside the name, `ms` in"), "{said}");
+    assert!(said.contains("`s` after the name, and `ms` in"), "{said}");
     // A millionth of a meganewton is not a millinewton.
     for [beside, below] in [["MN", "mN"], ["N", "kN"]] {
         let table = format!("run,LF.FZ [{beside}],LF.MX\n-,{below},N m\nR1,2,3\n");
         let named = format!("columns = {{ \"LF.FZ\" = \"LF.FZ [{beside}]\" }}\n");
         for more in ["", &named] {
             let said = runs_of(&table, more).unwrap_err()[0].to_string();
-            let wrong = format!("`{beside}` beside the name, `{below}` in the row of units below");
+            let wrong =
+                format!("`{beside}` after the name, and `{below}` as the unit of the column");
             assert!(said.contains(&wrong), "{said}");
         }
     }

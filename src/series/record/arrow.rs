@@ -53,7 +53,7 @@ pub(super) struct Field {
     pub children: Vec<Field>,
 }
 
-/// What a Parquet file states of its columns beside their types, by name.
+/// Notes of a Parquet file on its columns, by name of the column.
 #[derive(Default)]
 pub(super) struct Notes {
     /// Seconds in one unit of the durations.
@@ -62,7 +62,7 @@ pub(super) struct Notes {
     pub units: HashMap<String, String>,
 }
 
-/// Returns what the notes of a Parquet file state of its columns; nothing of a schema that can't be read.
+/// Returns the notes of a Parquet file on its columns; none of a schema that can't be read.
 ///
 /// Units are in the notes of a column, key `unit` or `units`, or in those of the file, key `unit of` with the name, as `recover` writes them.
 ///
@@ -286,6 +286,19 @@ mod tests {
     const MILLISECONDS: &str = "/////6gAAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAIAAABMAAAABAAAAMz///8AAAEDEAAAACAAAAAEAAAAAAAAAAkAAABHMCBbdW0vbV0ABgAIAAYABgAAAAAAAgAQABQACAAGAAcADAAAABAAEAAAAAAAARIQAAAAHAAAAAQAAAAAAAAABAAAAHRpbWUAAAAABAAEAAQAAAA=";
     /// The same in nanoseconds.
     const NANOSECONDS: &str = "/////6gAAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAIAAABIAAAABAAAAND///8AAAEDEAAAABwAAAAEAAAAAAAAAAkAAABHMCBbdW0vbV0AAADG////AAACABAAFAAIAAYABwAMAAAAEAAQAAAAAAABEhAAAAAcAAAABAAAAAAAAAAEAAAAdGltZQAABgAIAAYABgAAAAAAAwA=";
+
+    /// As pyarrow 19 writes it of the columns `time`, `P` with the note unit = kN, `G1` with the notes Units = mm/m and note = x, and `n`.
+    const UNITS: &str = "/////6ABAAAQAAAAAAAKAAwABgAFAAgACgAAAAABBAAMAAAACAAIAAAABAAIAAAABAAAAAQAAABAAQAA0AAAADwAAAAEAAAA4P7//wAAAQIQAAAAHAAAAAQAAAAAAAAAAQAAAG4AAAAIAAwACAAHAAgAAAAAAAABQAAAAIL///8AAAEDFAAAAGwAAAAIAAAAEAAAAAAAAAACAAAARzEAAAIAAAAoAAAABAAAAHT///8QAAAABAAAAAEAAAB4AAAABAAAAG5vdGUAAAAAlP///xQAAAAEAAAABAAAAG1tL20AAAAABQAAAFVuaXRzAAYABgAEAAYAAAABABIAGAAIAAYABwAMAAAAEAAUABIAAAAAAAEDFAAAAEgAAAAIAAAAEAAAAAAAAAABAAAAUAAAAAEAAAAMAAAACAAMAAQACAAIAAAAEAAAAAQAAAACAAAAa04AAAQAAAB1bml0AAAAAMb///8AAAIAEAAUAAgABgAHAAwAAAAQABAAAAAAAAEDEAAAABwAAAAEAAAAAAAAAAQAAAB0aW1lAAAGAAgABgAGAAAAAAACAA==";
+
+    #[test]
+    fn units_are_in_the_notes_of_columns() {
+        let bytes = from_base64(UNITS).unwrap();
+        let units = [("P", "kN"), ("G1", "mm/m")].map(|(c, u)| (c.to_owned(), u.to_owned()));
+        assert_eq!(of_schema(&bytes).unwrap().units, HashMap::from(units));
+        for i in 0..bytes.len() {
+            let _ = of_schema(&bytes[..i]);
+        }
+    }
 
     #[test]
     fn durations_are_told_with_their_unit_and_a_damaged_schema_tells_nothing_wrong() {

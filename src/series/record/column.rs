@@ -166,7 +166,7 @@ impl Column {
     /// What is wrong with a column whose units clash.
     pub fn clash_words(&self) -> String {
         format!(
-            "`{}` beside the name, `{}` in the row of units below",
+            "`{}` after the name, and `{}` as the unit of the column",
             self.header.bracket, self.stated
         )
     }
