@@ -117,7 +117,7 @@ fn bulge(model: &Model, ix: ShellIx, x: Vec3) -> Option<f64> {
         }
     }
     let scale = normal_matrix.trace();
-    // Of one neighbour the smallest curvature that explains its slope.
+    // With one neighbour, this is the smallest curvature that explains its slope.
     let curvature = normal_matrix
         .svd(true, true)
         .solve(&right, f64::EPSILON.sqrt() * scale)
@@ -174,7 +174,7 @@ mod tests {
             let middle = centre(&model, &model.shells[ix.us()]).unwrap();
             let sagitta = RADIUS * (1.0 - half.cos());
             let found = bulge(&model, ix, middle).unwrap();
-            // Of the next order in the angle between shells: `half^2` of itself, times 3.
+            // The error is of the next order in the angle between shells: `half^2`, times 3.
             assert!(
                 (found / sagitta - 1.0).abs() < 3.0 * half * half,
                 "{n}: {found} {sagitta}"

@@ -145,7 +145,7 @@ impl Projection {
         })
     }
 
-    /// The same for samples of a record of which only a `share` is independent: squares and degrees of freedom count that share.
+    /// Returns the projection for samples of a record of which only a `share` is independent: squares and degrees of freedom count that share.
     pub fn with_share(self, share: f64) -> Self {
         Self { share, ..self }
     }

@@ -34,7 +34,7 @@ pub fn recover_with_alternatives(
     recover_beyond(s, readings, errors, (&[], Order::Runs), faults)
 }
 
-/// What readings follow each other as.
+/// Relation between consecutive readings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// Runs, independent of each other.

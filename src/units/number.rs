@@ -29,3 +29,16 @@ pub fn fixed(x: f64, digits: usize) -> String {
         false => UNKNOWN.into(),
     }
 }
+
+/// Formats a share in percent with three digits: `9.64 %`; a dash for NaN and infinity.
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if !percent.is_finite() {
+        return UNKNOWN.into();
+    }
+    let digits = match percent.abs() {
+        v if v >= 100.0 || v == 0.0 => 0,
+        v => (2 - v.log10().floor() as i32).clamp(0, 4) as usize,
+    };
+    format!("{percent:.digits$} %")
+}

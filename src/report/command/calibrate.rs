@@ -7,10 +7,10 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::page::{KeyNumber, Page, percent};
+use crate::report::page::{KeyNumber, Page};
 use crate::report::strain::{GLUED_COLUMNS, calibrate_page, glued_csv, sensitivity_csv};
 use crate::strain_chain::covariance_bytes;
-use crate::units::{MICROSTRAIN, Quantity, half_width, number};
+use crate::units::{MICROSTRAIN, Quantity, half_width, number, percent};
 use crate::workflow::calibrate::{Calibrated, CheckLoad, LeftOutLoad, calibrated_job};
 
 /// The gauges where the runs say that they sit, as a table that a job can name.

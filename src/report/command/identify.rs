@@ -7,13 +7,13 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{KeyNumber, Page, percent};
+use crate::report::page::{KeyNumber, Page};
 use crate::report::vehicle::{
     Curve, Curves, identify_page, restoring_curves, restoring_unit, write_chassis_forces,
     write_parameters, write_restoring_force, write_wheel_forces,
 };
 use crate::series::welch::cross_spectra;
-use crate::units::{number, plus_minus};
+use crate::units::{number, percent, plus_minus};
 use crate::vehicle::identify::Estimate;
 use crate::vehicle::loads::LoadHistory;
 use crate::vehicle::motion::Motion;

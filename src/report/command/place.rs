@@ -8,7 +8,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::figure::CountPoint;
-use crate::report::page::{KeyNumber, Page, Paper, percent};
+use crate::report::page::{KeyNumber, Page, Paper};
 use crate::report::scene::{Places, Pointing, Scene, placed_mark, scene_of};
 use crate::report::spreadsheet::gauge_sheets;
 use crate::report::strain::{
@@ -16,7 +16,7 @@ use crate::report::strain::{
     sensitivity_csv,
 };
 use crate::strain_chain::LoadSigma;
-use crate::units::{half_width, number};
+use crate::units::{half_width, number, percent};
 use crate::workflow::place::{Installed, InstalledQuality, Placed};
 
 impl Report for Outcome<Placed> {

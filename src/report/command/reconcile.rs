@@ -10,7 +10,8 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::reconcile::{CauseOutcome, CauseSet};
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{KeyNumber, Page, Paper, number, percent, table_section};
+use crate::report::page::{KeyNumber, Page, Paper, number, table_section};
+use crate::units::percent;
 use crate::vehicle::term::UnitNames;
 use crate::workflow::reconcile::{GapFound, Reconciled, effect_in_words};
 

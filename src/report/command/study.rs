@@ -9,8 +9,8 @@ use crate::host::words::counted;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
-use crate::report::page::{KeyNumber, Page, Section, figure_section, percent, table_section};
-use crate::units::{half_width, number, plus_minus};
+use crate::report::page::{KeyNumber, Page, Section, figure_section, table_section};
+use crate::units::{half_width, number, percent, plus_minus};
 use crate::workflow::study::{Studied, StudiedLayout, StudiedLoad};
 
 impl Report for Outcome<Studied> {

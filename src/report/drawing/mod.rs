@@ -10,6 +10,7 @@ mod traces;
 mod trails;
 
 pub(super) use chart::pictures;
+pub(super) use scale::round_step;
 pub(super) use sketch::{Look, STROKES, marks, views};
 pub(super) use svg::to_svg;
 

@@ -20,7 +20,7 @@ pub struct Page {
     pub lead: String,
     /// In any order: the worst are shown first.
     pub findings: Vec<Finding>,
-    /// What the first screen shows.
+    /// Content of the first screen.
     pub first: FirstScreen,
     /// Parts.
     pub sections: Vec<Section>,
@@ -212,7 +212,7 @@ impl Card {
         }
     }
 
-    /// The same card with the first picture of a figure.
+    /// Returns the card with the first picture of a figure in place of its own.
     pub fn with_figure(self, figure: &Figure) -> Self {
         let picture = pictures(figure).into_iter().next().or(self.picture);
         Self { picture, ..self }

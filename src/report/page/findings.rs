@@ -15,6 +15,18 @@ pub(super) struct Sorted<'a> {
     pub notes: Vec<&'a Finding>,
 }
 
+impl<'a> Sorted<'a> {
+    /// Sorts findings by severity; those of one severity keep their order.
+    pub(super) fn of(findings: &'a [Finding]) -> Self {
+        let of = |severity| findings.iter().filter(|f| f.severity == severity).collect();
+        Self {
+            errors: of(Severity::Error),
+            warnings: of(Severity::Warning),
+            notes: of(Severity::Info),
+        }
+    }
+}
+
 /// Whether the answer can be relied on, and why: for a notebook.
 pub(in crate::report) fn judged(findings: &[&Finding]) -> Markup {
     let is_note = |g: &Vec<&Finding>| g.iter().all(|f| f.severity == Severity::Info);

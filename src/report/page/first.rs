@@ -3,7 +3,7 @@
 use super::block::{Block, Page, Table};
 use super::findings::{Sorted, group, groups_of, passed};
 use super::table::{list_of_links, table};
-use crate::finding::{Finding, Severity};
+use crate::finding::Finding;
 use crate::host::words::counted;
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{pictures, to_svg};
@@ -195,19 +195,3 @@ const TALL: usize = 200;
 
 /// Words for the still picture of a model.
 const MODEL: &str = "the model with its gauges and loads";
-
-/// Findings of a page by severity.
-impl<'a> Sorted<'a> {
-    /// Returns the findings of a page by severity, each list in the order of the stages.
-    pub(super) fn of(page: &'a Page) -> Self {
-        let of = |severity| {
-            let all = page.findings.iter();
-            all.filter(|f| f.severity == severity).collect()
-        };
-        Self {
-            errors: of(Severity::Error),
-            warnings: of(Severity::Warning),
-            notes: of(Severity::Info),
-        }
-    }
-}

@@ -14,7 +14,7 @@ const STYLE: &str = include_str!("page.css");
 impl Page {
     /// `report.html`: works from the file, without a network.
     pub fn to_html(&self) -> String {
-        let findings = Sorted::of(self);
+        let findings = Sorted::of(&self.findings);
         let sections = html! {
             @for (i, s) in self.sections.iter().enumerate() {
                 section.pair[is_pair(&s.blocks)] id=(format!("s{}", i + 1)) { h2 { (s.title) } @for b in &s.blocks { (block(b)) } }

@@ -25,16 +25,3 @@ impl KeyNumber {
         }
     }
 }
-
-/// Returns a share in percent with three digits.
-pub fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if !percent.is_finite() {
-        return "-".to_owned();
-    }
-    let digits = match percent.abs() {
-        v if v >= 100.0 || v == 0.0 => 0,
-        v => (2 - v.log10().floor() as i32).clamp(0, 4) as usize,
-    };
-    format!("{percent:.digits$} %")
-}

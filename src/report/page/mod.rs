@@ -13,4 +13,4 @@ pub use block::{
 };
 pub(in crate::report) use findings::judged;
 pub(in crate::report) use html::block as block_html;
-pub use key_number::{KeyNumber, percent};
+pub use key_number::KeyNumber;

@@ -4,6 +4,7 @@ use super::tables::corner_distances;
 use crate::model::{Model, Shell, Vec3};
 use crate::placement::Role;
 use crate::report::drawing::picture::{Picture, Shape};
+use crate::report::drawing::round_step;
 use crate::report::page::{Block, Card, Page, Section, number};
 use crate::report::scene::{Scene, still_of};
 use crate::workflow::place::PlacedGauge;
@@ -288,18 +289,10 @@ fn sketch(model: &Model, p: &PlacedGauge, view: &View) -> Picture {
         let at = [tip[0] + 1.5, tip[1] + 1.0];
         picture.word(at, [0.0, 1.0], &direction(v));
     }
-    let bar = round_length(reach / 2.0);
+    let bar = round_step(reach / 4.0);
     let y = SKETCH[1] - 4.0;
     let to = SKETCH[0] - 4.0;
     picture.line([to - scale * bar, y], [to, y], "#1c2530", 0.8);
     picture.word([to, y - 1.5], [1.0, 1.0], &number(bar));
     picture
-}
-
-/// 1, 2 or 5 times a power of ten, at most `length`.
-fn round_length(length: f64) -> f64 {
-    let power = 10f64.powf(length.log10().floor());
-    let steps = [5.0, 2.0, 1.0];
-    let step = steps.iter().find(|k| **k * power <= length);
-    step.unwrap_or(&1.0) * power
 }

@@ -5,7 +5,7 @@ use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::figure::{CrossPlot, cross};
 use crate::report::page::{Block, Page, Section, number, table_section};
-use crate::units::fixed;
+use crate::units::{fixed, percent};
 use crate::workflow::recover::{Comparison, LoadComparison, Recovered, Sections};
 use std::io::Write;
 
@@ -99,11 +99,6 @@ fn sections_csv(w: &mut dyn Write, sections: &Sections) -> std::io::Result<()> {
         writeln!(w, "{},{}", names.join(","), numbers.map(cell).join(","))?;
     }
     Ok(())
-}
-
-/// Share in percent.
-fn percent(share: f64) -> String {
-    format!("{} %", fixed(100.0 * share, 1))
 }
 
 /// Damage ratio with its interval; a dash of runs.

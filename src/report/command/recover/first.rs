@@ -3,8 +3,8 @@
 use super::compared;
 use crate::host::outcome::Outcome;
 use crate::report::console::ConsoleTable;
-use crate::report::page::{KeyNumber, percent};
-use crate::units::{half_width, number, plus_minus};
+use crate::report::page::KeyNumber;
+use crate::units::{half_width, number, percent, plus_minus};
 use crate::workflow::recover::{LoadSpan, Recovered, RecoveredLoad, RecoveredRuns, States};
 
 /// Largest load, residual, gauges, least certain load.

@@ -10,6 +10,7 @@ use crate::estimate::Deviations;
 use crate::finding::{Finding, Severity};
 use crate::host::outcome::finite;
 use crate::host::words::short;
+use crate::units::percent;
 use serde::Serialize;
 
 /// Recovered against recorded loads.
@@ -193,8 +194,4 @@ impl LoadComparison {
             .with_numbers(self.share_within, 0.95),
         )
     }
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.1} %", 100.0 * share)
 }
