@@ -34,8 +34,10 @@ pub fn stated_noise(job: &Job, gauges: &[String]) -> Result<Option<GaugeNoise>, 
         })
         .collect();
     Faults::check(missing)?;
-    let of_job =
-        |name: &String| job.gauges.iter().any(|g| g.name == *name) || gauges.contains(name);
+    let of_job = |name: &String| {
+        let ignored = job.corrections.iter().any(|c| c.gauge == *name);
+        ignored || gauges.contains(name) || job.gauges.iter().any(|g| g.name == *name)
+    };
     let unknown: FaultList = (measured.noise_by_gauge.iter().map(|n| &n.0))
         .filter(|name| !of_job(name))
         .map(|name| {

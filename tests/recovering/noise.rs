@@ -55,4 +55,10 @@ fn noise_of_some_gauges_alone_is_a_fault() {
     );
     assert_eq!(code, 2);
     assert!(said.contains("expected a number above 0"), "{said}");
+    let (code, said, _) = two_gauges(
+        "noise_unknown",
+        "noise_microstrain = { G1 = 0.5, G2 = 1, G22 = 1 }",
+    );
+    assert_eq!(code, 2);
+    assert!(said.contains("`G22` is not a gauge of the job"), "{said}");
 }
