@@ -79,7 +79,7 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
         let side = skins.nearer().word();
         let why = match skins.is_within_bulge() {
             true => format!(
-                "lies between the flat element {element} and the curved surface of its neighbours, {} {unit} from it",
+                "is between the flat element {element} and the curved surface through its neighbours, {} {unit} away",
                 short(skins.bulge.abs())
             ),
             false => format!(

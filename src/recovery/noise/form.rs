@@ -51,6 +51,25 @@ pub(super) struct Fit {
     pub log_likelihood: f64,
 }
 
+/// Rules of the search for the largest likelihood.
+struct Search {
+    /// Steps at most; a search that needs more ends at its last step.
+    steps: usize,
+    /// Gain of log likelihood below which the fit is found: far below a gain that a test can see.
+    found: f64,
+    /// Damping beyond which no step gains: the step is then smaller than rounding.
+    most_damping: f64,
+    /// Change of a logarithm in one step at most: a factor of e on a standard deviation.
+    ln_step: f64,
+}
+
+const SEARCH: Search = Search {
+    steps: 60,
+    found: 1e-6,
+    most_damping: 1e8,
+    ln_step: 1.0,
+};
+
 /// Parameters of a form.
 #[derive(Clone)]
 struct Parameters {
@@ -118,11 +137,6 @@ impl Form {
     /// Returns the fit by scoring with Levenberg's damping. `ln_sd_between` is the standard deviation, beforehand, of the logarithm of a gauge's
     /// noise about the mean: without it the variance of a gauge with much leverage can be estimated as zero. `None` where numbers are not finite.
     pub fn fit(self, r: &Sample, ln_sd_between: f64) -> Option<Fit> {
-        const ITERATIONS: usize = 60;
-        const CONVERGED: f64 = 1e-6;
-        const MOST_DAMPING: f64 = 1e8;
-        /// Change of a logarithm in one step at most.
-        const STEP: f64 = 1.0;
         let n = r.t.ncols();
         let precision = match self.by_gauge {
             true => ln_sd_between.powi(-2),
@@ -138,10 +152,10 @@ impl Form {
         let mut damping = 1e-3;
         let least = -0.5 / n.saturating_sub(1).max(1) as f64;
         let parameters = self.derivatives(&at).len();
-        for _ in 0..ITERATIONS {
+        for _ in 0..SEARCH.steps {
             let (score, information) = self.score(r, &at, precision)?;
             let next = loop {
-                if damping > MOST_DAMPING {
+                if damping > SEARCH.most_damping {
                     break None;
                 }
                 let mut damped = information.clone();
@@ -152,7 +166,8 @@ impl Form {
                 let mut next = at.clone();
                 if let Some(step) = &step {
                     for (g, v) in next.ln_sd.iter_mut().enumerate() {
-                        *v += step[if self.by_gauge { g } else { 0 }].clamp(-STEP, STEP);
+                        *v += step[if self.by_gauge { g } else { 0 }]
+                            .clamp(-SEARCH.ln_step, SEARCH.ln_step);
                     }
                     if self.correlated {
                         let to = at.correlation + step[parameters - 1];
@@ -171,7 +186,7 @@ impl Form {
             let gained = penalised - now;
             (at, likelihood, now) = (next, l, penalised);
             damping = (damping / 10.0).max(1e-9);
-            if gained < CONVERGED {
+            if gained < SEARCH.found {
                 break;
             }
         }
