@@ -345,7 +345,10 @@ fn units_that_contradict_each_other_are_faults_of_what_is_asked_for() {
     assert_eq!(table.gauges[1], "G2");
     assert_eq!(table.microstrain[1], 2.0);
     let said = read("time [s],G1\nms,um/m\n0,1\n1,2\n", &["G1"]).unwrap_err()[0].to_string();
-    assert!(said.contains("`s` after the name, and `ms` in"), "{said}");
+    assert!(
+        said.contains("`s` after the name, and `ms` as the unit of the column"),
+        "{said}"
+    );
     // A millionth of a meganewton is not a millinewton.
     for [beside, below] in [["MN", "mN"], ["N", "kN"]] {
         let table = format!("run,LF.FZ [{beside}],LF.MX\n-,{below},N m\nR1,2,3\n");

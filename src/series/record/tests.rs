@@ -171,7 +171,7 @@ fn a_record_whose_time_has_two_units_is_refused() {
         assert!(
             wrong
                 .as_deref()
-                .is_some_and(|w| w.contains("`s` beside the name, `ms` in")),
+                .is_some_and(|w| w.contains("`s` after the name, and `ms` as the unit")),
             "{wrong:?}"
         );
     }
