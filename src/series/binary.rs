@@ -19,26 +19,26 @@ use std::io::{self, Write};
 
 const MAGIC: &[u8; 8] = b"STRAINBH";
 
-/// What stands before the samples.
+/// Header of a record in this format: all fields before the samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// Bytes a number, 4 or 8.
+    /// Bytes per number, 4 or 8.
     pub width: usize,
-    /// Columns.
+    /// Names of the columns.
     pub names: Vec<String>,
     /// First byte of the samples.
     pub start: usize,
-    /// How many samples.
+    /// Number of samples.
     pub samples: usize,
-    /// Time of the first, s.
+    /// Time of the first sample, s.
     pub t0: f64,
-    /// Time between them, s.
+    /// Time between samples, s.
     pub dt: f64,
-    /// Value of one unit.
+    /// Value of one unit (1e-6: microstrain).
     pub unit: f64,
 }
 
-/// What is wrong with a header.
+/// Fault of a header, as a message.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct HeaderError(&'static str);

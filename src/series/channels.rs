@@ -81,8 +81,8 @@ impl Channels {
             })
     }
 
-    /// The same record with missing samples (NaN, infinities) filled by straight lines between neighbours, and how many were
-    /// filled in each channel. A channel without any finite sample becomes zero.
+    /// Returns a copy in which straight lines between neighbours fill missing samples (NaN, infinities), and the number of filled samples by channel.
+    /// A channel without any finite sample becomes zero.
     pub fn with_gaps_filled(&self) -> (Self, Vec<usize>) {
         let mut filled = self.clone();
         let counts = filled

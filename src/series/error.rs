@@ -1,8 +1,8 @@
-//! What can be wrong with a record.
+//! Errors of a record.
 
 use std::fmt;
 
-/// What can be wrong with a record.
+/// Errors of a record: samples, times, columns or file format.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SeriesError {
     /// Two channels differ in length.
@@ -27,23 +27,23 @@ pub enum SeriesError {
     Line {
         /// Line number, from 1.
         line: usize,
-        /// What is wrong.
+        /// Message about the fault.
         what: String,
-        /// What to do.
+        /// Remedy.
         remedy: &'static str,
     },
     /// The time column and the declared sample rate disagree.
     Rate {
-        /// From the time column.
+        /// Rate from the time column.
         found_hz: f64,
-        /// From the job.
+        /// Rate from the job.
         declared_hz: f64,
     },
     /// The time steps are unequal.
     UnevenTime {
         /// Line number, from 1.
         line: usize,
-        /// Step there.
+        /// Step at this line.
         found_s: f64,
         /// Median step.
         expected_s: f64,
@@ -61,21 +61,21 @@ pub enum SeriesError {
     },
     /// A file of a known format that can't be read.
     Broken {
-        /// What is wrong.
+        /// Message about the fault.
         wrong: String,
-        /// What to do.
+        /// Remedy.
         remedy: &'static str,
     },
     /// Times that do not ascend.
     NotAscending {
         /// Line or sample, from 1.
         line: usize,
-        /// Time there.
+        /// Time at this line or sample.
         time_s: f64,
         /// The time before it.
         before_s: f64,
     },
-    /// A time that is missing or no number.
+    /// A time that is missing or not a number.
     NoTime {
         /// Line or sample, from 1.
         line: usize,
@@ -84,16 +84,16 @@ pub enum SeriesError {
     Empty,
     /// No sample for most of the record's span.
     Hole {
-        /// Last time before.
+        /// Last time before the hole.
         from_s: f64,
-        /// First time after.
+        /// First time after the hole.
         to_s: f64,
-        /// Samples that would have been there.
+        /// Samples that even steps would place in the hole.
         missing: u64,
     },
     /// A kind of file that this build does not read.
     NotBuilt {
-        /// What it is.
+        /// Name of the kind of file.
         name: &'static str,
         /// The feature that reads it.
         feature: &'static str,
@@ -103,7 +103,7 @@ pub enum SeriesError {
         /// Their names.
         names: Vec<String>,
     },
-    /// A band that the sampling can't hold.
+    /// A band that the sample rate can't represent.
     Band {
         /// Lower edge.
         low_hz: f64,
@@ -115,7 +115,7 @@ pub enum SeriesError {
 }
 
 impl SeriesError {
-    /// What is wrong, and what to do.
+    /// Returns the message and the remedy.
     pub fn parts(&self) -> (String, String) {
         let (wrong, remedy) = match self {
             Self::Length {

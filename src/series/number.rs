@@ -7,7 +7,7 @@ pub enum DecimalMark {
     Point,
     /// `1,5`, in a table that has commas and no points in its numbers.
     Comma,
-    /// Either, in a table whose fields are not divided by commas, as long as no number of it has told which.
+    /// Comma or point: a table that commas don't divide, until one of its numbers shows which.
     CommaOrPoint,
 }
 
@@ -18,7 +18,7 @@ impl DecimalMark {
         (b == b'.' && self != Self::Comma) || (b == b',' && self != Self::Point)
     }
 
-    /// What a table can hold whose fields are divided by `delimiter`.
+    /// Returns the decimal mark that is possible in a table whose fields `delimiter` divides.
     pub fn beside(delimiter: u8) -> Self {
         if delimiter == b',' {
             Self::Point
@@ -34,8 +34,8 @@ const EXACT: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
-/// The number at the beginning of `text` and how many bytes it takes, where its digits fit an exact product of a whole number
-/// below 2^53 and a power of ten up to 22 (then the result is the nearest number, Clinger 1990); `None` where it takes more care.
+/// Returns the number at the beginning of `text` and its length in bytes; `None` if the exact method does not apply.
+/// It applies to digits that are a whole number below 2^53 times a power of ten up to 22: the product is the nearest number (Clinger 1990).
 #[inline]
 pub fn short_number(text: &[u8], mark: DecimalMark) -> Option<(f64, usize)> {
     let mut at = 0;
@@ -105,12 +105,12 @@ pub fn short_number(text: &[u8], mark: DecimalMark) -> Option<(f64, usize)> {
     Some((if negative { -size } else { size }, at))
 }
 
-/// What programs and spreadsheets write where nothing was measured.
+/// Texts that programs and spreadsheets write for a missing value.
 const NOT_MEASURED: [&[u8]; 6] = [b"nan", b"na", b"n/a", b"#n/a", b"#nv", b"null"];
-/// What the C library of Windows writes for a number that is none, before zeros that fill the field.
+/// Texts that the C library of Windows writes for NaN, without the zeros that fill the field.
 const NO_NUMBER: [&[u8]; 3] = [b"1.#qnan", b"1.#snan", b"1.#ind"];
 
-/// Whether a field says that nothing was measured: `NaN`, `-nan(ind)`, `#N/A`, `-1.#IND00`.
+/// Whether a field is a text for a missing value: `NaN`, `-nan(ind)`, `#N/A`, `-1.#IND00`.
 fn is_not_measured(field: &[u8]) -> bool {
     let is = |list: &[&[u8]], f: &[u8]| list.iter().any(|w| f.eq_ignore_ascii_case(w));
     let bare = field
@@ -129,7 +129,7 @@ fn is_not_measured(field: &[u8]) -> bool {
     is(&NOT_MEASURED, field) || is(&[b"nan"], before.unwrap_or(bare)) || is(&NO_NUMBER, &point)
 }
 
-/// The number in a whole field; an empty one, `NaN`, `NA`, `#N/A` and the like are NaN. `None` where it is no number.
+/// Returns the number in a whole field; NaN for an empty field, `NaN`, `NA`, `#N/A` and similar texts; `None` if it is not a number.
 pub fn number(field: &[u8], mark: DecimalMark) -> Option<f64> {
     let field = field.trim_ascii();
     if let Some((v, n)) = short_number(field, mark)

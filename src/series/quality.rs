@@ -1,11 +1,11 @@
-//! What each channel's own samples say about its sensor.
+//! Quality checks of each channel's sensor, from its own samples.
 
 use super::channels::{Channel, Channels};
 use super::detrend::{line, mean};
 use crate::estimate::median;
 use crate::finding::{Finding, Severity};
 
-/// What a channel measures: decides which checks make sense.
+/// Measured quantity of a channel, which decides the checks that apply.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// Vertical acceleration; a DC-coupled sensor reads +g at rest.
@@ -16,9 +16,9 @@ pub enum Kind {
     Other,
 }
 
-/// Share of missing samples above which a channel can't be relied on.
+/// Share of missing samples above which a channel is unreliable.
 const MISSING_LIMIT: f64 = 0.05;
-/// Samples in a row at one value that no live sensor gives.
+/// Samples in a row at one value that no working sensor gives.
 const STUCK_RUN: usize = 25;
 /// A channel below this share of its peers' median variation is dead.
 const DEAD_SHARE: f64 = 0.01;

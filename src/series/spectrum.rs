@@ -130,12 +130,12 @@ impl Spectrum {
         out
     }
 
-    /// Limited to a band and integrated `times` times over time (negative: differentiated); the mean is dropped.
+    /// Returns the spectrum limited to a band and integrated `times` times over time (negative: differentiated); the mean is dropped.
     pub fn band_integrated(&self, band: Band, times: i32) -> Self {
         self.band_integrated_for(band, times, 1)
     }
 
-    /// The same for every `keep_every`-th sample alone: frequencies above the new half rate are left out.
+    /// Returns the result of [`Self::band_integrated`] for every `keep_every`-th sample only: frequencies above half of the new rate are dropped.
     pub fn band_integrated_for(&self, band: Band, times: i32, keep_every: usize) -> Self {
         let step = self.rate_hz / self.n_padded as f64;
         let unit = Complex64::new(0.0, 1.0).powi(-times);
@@ -153,13 +153,13 @@ impl Spectrum {
         }
     }
 
-    /// Samples, padding included, of which every `keep_every`-th is kept.
+    /// Returns the number of kept samples, padding included, if every `keep_every`-th is kept.
     fn n_thinned(&self, keep_every: usize) -> usize {
         let step = keep_every.max(1).next_power_of_two();
         self.n_padded / step.min(self.n_padded / 4)
     }
 
-    /// Weighted sum of spectra of one length; `None` when there is none or lengths differ.
+    /// Returns the weighted sum of spectra of one length; `None` without any, or if lengths differ.
     pub fn sum(parts: &[(f64, &Spectrum)]) -> Option<Self> {
         let (_, first) = parts.first()?;
         let mut out = (*first).clone();

@@ -1,24 +1,24 @@
-//! Columns of a record that give nothing, or one and the same value, in all of it or in a part.
+//! Columns of a record that contain no numbers, or a constant, in all of it or in a part.
 
 use super::error::SeriesError;
 use super::record::Record;
 use std::ops::{ControlFlow, Range};
 
-/// What a column gives over the rows looked at.
+/// Content of a column over the examined rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gives {
     /// No number.
     Nothing,
-    /// One and the same number every time.
+    /// One number in all rows.
     OneValue,
     /// Different numbers.
     Signal,
 }
 
-/// Rows below which equal numbers say nothing of a column.
+/// Number of rows below which equal numbers do not show a constant column.
 const FEW: usize = 4;
 
-/// Rows of a record as they come, of `n` columns.
+/// Contents of the `n` columns of a record, from its rows in sequence.
 #[derive(Clone, Debug)]
 pub struct Still {
     first: Vec<Option<f64>>,
@@ -27,7 +27,7 @@ pub struct Still {
 }
 
 impl Still {
-    /// Nothing looked at yet.
+    /// Returns the state before any row.
     pub fn new(n: usize) -> Self {
         Self {
             first: vec![None; n],
@@ -36,7 +36,7 @@ impl Still {
         }
     }
 
-    /// Looks at rows, one after the other in `values`.
+    /// Examines rows, which follow each other in `values`.
     pub fn look(&mut self, values: &[f64]) {
         for row in values.chunks_exact(self.first.len().max(1)) {
             self.rows += 1;
@@ -48,7 +48,7 @@ impl Still {
         }
     }
 
-    /// What each column gives. Where the rows are few every number counts as a signal.
+    /// Returns the content of each column. With few rows every number counts as a signal.
     pub fn columns(&self) -> Vec<Gives> {
         let gives = |(first, varies): (&Option<f64>, &bool)| match first {
             None => Gives::Nothing,
@@ -58,11 +58,11 @@ impl Still {
         self.first.iter().zip(&self.varies).map(gives).collect()
     }
 
-    /// What each column gives in all of `record`, of which the rows looked at are some; `columns` are theirs. Where none varies the vehicle may stand
-    /// still, and every number counts as a signal.
+    /// Returns the content of each column in all of `record`, of which the examined rows are a part; `columns` are the columns of those rows.
+    /// If no column varies the vehicle may be stationary, and every number counts as a signal.
     ///
     /// # Errors
-    /// What can't be decoded.
+    /// A record that can't be decoded.
     pub fn throughout(
         &self,
         record: &Record,

@@ -1,35 +1,36 @@
-//! What damage would be without the noise that is in its loads, from counts with more noise.
+//! Estimates the bias that noise in the loads adds to damage, from counts with more noise.
 
 use super::tally::NOISE;
 
-/// Where the rise of an extreme leaves the square of the noise for the noise itself. With it [`rise`] is within a twelfth of the mean rise of the
-/// largest of samples on a parabola, drawn some million times, from a noise of an eighth to eight times what the parabola falls within a sample.
+/// Bend of [`rise`]: there the rise of an extreme changes from the square of the noise to the noise itself. With it [`rise`] is within a twelfth
+/// of the mean rise of the largest of samples on a parabola. It was compared with some million random cases, for a noise of an eighth to eight
+/// times the fall of the parabola within a sample.
 const BEND: f64 = 0.21;
-/// Ends of the search for the sharpness of peaks, natural logs: beyond them only a square, or a straight line, is left of [`rise`].
+/// Ends of the search for the sharpness of peaks, natural logs: beyond them [`rise`] is only a square, or only a straight line.
 const ENDS: [f64; 2] = [-4.0, 6.0];
 
-/// What white noise `x` adds, in the mean, to the largest of samples on a parabola that falls by half of one within a sample: like `x^2` below one,
-/// where one or two samples compete, like `x sqrt(log x)` above, where many do.
+/// Returns the mean rise of the largest of samples by white noise `x`. The samples follow a parabola that falls by half of one within a sample.
+/// Below one the rise grows like `x^2`, as one or two samples compete; above, with many samples, like `x sqrt(log x)`.
 fn rise(x: f64) -> f64 {
     x * (BEND * (1.0 + x * x / BEND).ln()).sqrt()
 }
 
-/// How a count without noise follows from counts with noise, in logarithms of damage.
+/// Bias of a count by noise, from counts with more noise, in natural logarithms of damage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Bias {
-    /// Log of what was counted, less that without noise.
+    /// Log of the counted damage, minus the log of the damage without noise.
     pub taken: f64,
-    /// What a straight line through the first two counts would take.
+    /// Log of the bias by a straight line through the logarithms of the first two counts.
     pub line: f64,
-    /// By how much the result moves with the noise that was added, as a multiple of what the noise itself makes.
+    /// Change of the result with the added noise, as a multiple of its change with the noise in the loads.
     pub of_added: f64,
 }
 
 impl Bias {
-    /// The bias of the first of damages counted with noise of once, twice and three times ([`NOISE`]): `L(q) = L(0) + a rise(q x)` goes through the
-    /// logarithms, `x` being how large the noise is beside the curvature of the peaks that do the damage, `a` how much they count (Cook and
-    /// Stefanski's simulation extrapolation). A parabola, or a line, through them takes off a fifth to two thirds too much, since the bias
-    /// grows by less than a square and more than in proportion.
+    /// Returns the bias of the first of the damages that are counted with once, twice and three times the noise ([`NOISE`]). The curve
+    /// `L(q) = L(0) + a rise(q x)` goes through their logarithms (Cook and Stefanski's simulation extrapolation). `x` is the noise relative to the
+    /// curvature of the peaks that do the damage, `a` their weight. A parabola, or a line, through the logarithms removes a fifth to two thirds
+    /// too much. The bias grows by less than a square and more than in proportion.
     ///
     /// # Reference
     /// J.R. Cook, L.A. Stefanski, Simulation-extrapolation estimation in parametric measurement error models, JASA 89 (1994) 1314-1328.

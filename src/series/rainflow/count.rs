@@ -32,16 +32,16 @@ impl Cycle {
     }
 }
 
-/// A reversal and what belongs to it: what other signals were then, say.
+/// A reversal and its tag, such as the values of other signals at that time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reversal<T> {
     /// The sample.
     pub point: Point,
-    /// What belongs to it.
+    /// Tag of the reversal.
     pub tag: T,
 }
 
-/// A count under way. It remembers the reversals that no cycle has closed yet (the residue, in time order), and nothing else.
+/// A rainflow count in progress. Its state is the reversals that no cycle has closed yet (the residue, in time order).
 ///
 /// A cycle from B to C closes when the reversal A before it and the one after it, D, reach at least as far. Of reversals of equal value the
 /// later counts as the higher, which makes the cycles of a history one set whatever the order in which they are found: the residues
@@ -55,19 +55,19 @@ pub struct Reversal<T> {
 #[derive(Clone, Debug)]
 pub struct Rainflow<T = ()> {
     open: Vec<Reversal<T>>,
-    /// The latest sample, which is a reversal where the next one turns back.
+    /// The latest sample; it is a reversal if the next sample changes direction.
     latest: Option<Point>,
 }
 
-/// Who hears of a count under way.
+/// Receiver of the reversals and cycles of a count in progress.
 pub(super) trait Listener<T> {
-    /// What belongs to a sample that has become a reversal.
+    /// Returns the tag of a sample that is now a reversal.
     fn tag(&mut self, point: Point) -> T;
-    /// A cycle has closed: its two reversals, which are not seen again.
+    /// Receives a closed cycle by its two reversals, which the count then drops.
     fn closed(&mut self, from: &Reversal<T>, to: &Reversal<T>);
 }
 
-/// Two functions that hear.
+/// Listener from two functions: tag of a reversal, closed cycle.
 struct Both<F, G>(F, G);
 
 impl<T, F: FnMut(Point) -> T, G: FnMut(&Reversal<T>, &Reversal<T>)> Listener<T> for Both<F, G> {

@@ -8,7 +8,7 @@ use super::tally::{Extreme, Left, NOISE, Sums, Tally, class, extremes, risen};
 /// Samples handled together: their numbers stay in the processor's first cache.
 const BLOCK: usize = 512;
 
-/// A tally under way.
+/// A tally in progress.
 pub struct Counter {
     load: usize,
     seed: u64,
@@ -18,7 +18,7 @@ pub struct Counter {
     noisy: [Rainflow; 2],
     /// Loads of the latest sample of the plain count.
     carried: Vec<f64>,
-    /// What the plain count has closed.
+    /// Sums over the cycles that the plain count has closed.
     closed: ClosedCycles,
     levels: Counts<i32>,
     max: Option<Extreme>,
@@ -27,7 +27,7 @@ pub struct Counter {
     missing: usize,
 }
 
-/// What belongs to a reversal of the plain count: its class, and where all loads of that time are kept.
+/// Tag of a reversal of the plain count: its class, and the slot of all loads at that time.
 #[derive(Clone, Copy)]
 struct Tag {
     class: i32,
@@ -43,13 +43,13 @@ struct ClosedCycles {
     sums: Sums,
 }
 
-/// Rows of loads, kept as long as their reversals are open.
+/// Rows of loads, stored while their reversals are open.
 struct Slots {
     values: Vec<f64>,
     free: Vec<u32>,
 }
 
-/// Hears of the plain count during a push.
+/// Listener of the plain count during a push.
 struct Plain<'a> {
     closed: &'a mut ClosedCycles,
     rows: &'a [f64],

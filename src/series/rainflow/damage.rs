@@ -33,14 +33,14 @@ pub struct Damage {
     pub largest: f64,
     /// Damage of the ranges as they are.
     pub value: f64,
-    /// Damage with every range at the low end of its 95 % interval, all together; no range falls below zero.
+    /// Damage with all ranges at the lower ends of their 95 % intervals; no range falls below zero.
     pub low: f64,
-    /// The same at the high end.
+    /// Damage with all ranges at the upper ends of their 95 % intervals.
     pub high: f64,
 }
 
 impl Damage {
-    /// Nothing yet; `limit` is the difference of the record's extremes.
+    /// Returns an empty damage sum; `limit` is the difference of the record's extremes.
     pub fn new(slope: f64, limit: f64) -> Self {
         Self {
             slope,

@@ -5,52 +5,51 @@ use super::tally::Tally;
 use crate::estimate::NORMAL_95;
 use serde::Serialize;
 
-/// Damage of one load over a time, and the errors that make its interval, each by its own law: the error of S is one and the same in every
-/// cycle and stays what it is however long one measures; the scatter of noise averages out; its bias (noise widens every range) does
-/// not, and is taken off.
+/// Damage of one load over a time, with its 95 % interval. Each kind of error follows its own law. The error of S is equal in all cycles and
+/// does not average out. The scatter of noise averages out. The bias of noise does not (noise widens every range), and is subtracted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DamageInterval {
-    /// Damage, the bias of noise taken off.
+    /// Damage, the bias of noise subtracted.
     pub value: f64,
     /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: f64,
     /// Damage as counted.
     pub counted: f64,
-    /// What noise added to it, in the mean.
+    /// Mean damage that noise added to [`Self::counted`].
     pub noise_bias: f64,
-    /// Standard deviation from errors of S, of the damage.
+    /// Standard deviation of the damage from errors of S.
     pub sigma_s: f64,
-    /// Standard deviation from the scatter of noise.
+    /// Standard deviation of the damage from the scatter of noise.
     pub sigma_noise: f64,
-    /// Standard deviation of the bias that was taken off.
+    /// Standard deviation of the subtracted bias.
     pub sigma_bias: f64,
 }
 
-/// Damage, or a weighted sum of damages, with its errors apart: what two of them have in common is known by its kind.
+/// Damage, or a weighted sum of damages, with its errors by kind, so that the errors that two of them share are known.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DamageParts {
-    /// Damage, the bias of noise taken off; less than none where noise makes all of it.
+    /// Damage, the bias of noise subtracted; negative where noise makes all of it.
     pub value: f64,
     /// Damage as counted.
     pub counted: f64,
-    /// Change of the damage with the error of scale of each load.
+    /// Change of the damage with the scale error of each load.
     pub by_load: Vec<f64>,
-    /// Covariance of these errors, row-major, `n_loads x n_loads`.
+    /// Covariance of these scale errors, row-major, `n_loads x n_loads`.
     pub scale: Vec<f64>,
     /// Variance from the scatter of noise.
     pub noise: f64,
-    /// Standard deviation of the bias that was taken off.
+    /// Standard deviation of the subtracted bias.
     pub sigma_bias: f64,
 }
 
-/// What two damages have in common beside the bias of noise.
+/// Errors that two damages share, in addition to the bias of noise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shared {
-    /// Share of the first whose errors of S are those of the second.
+    /// Share of the first damage whose errors of S are also errors of the second.
     pub scale: f64,
-    /// Whether the cycles of the second are among those of the first.
+    /// Whether the first damage includes the cycles of the second.
     pub cycles: bool,
 }
 
@@ -62,13 +61,13 @@ const OFF: f64 = 0.15;
 pub struct Ratio {
     /// The number.
     pub value: f64,
-    /// Lower end.
+    /// Lower end of the 95 % interval.
     pub low: f64,
-    /// Upper end.
+    /// Upper end of the 95 % interval.
     pub high: f64,
 }
 
-/// The damage of a tally with its interval: [`DamageParts::of`] and [`DamageParts::interval`].
+/// Returns the damage of a tally with its interval: [`DamageParts::of`] and [`DamageParts::interval`].
 pub fn damage_interval(tally: &Tally, scale: &[f64], noise: f64) -> DamageInterval {
     DamageParts::of(tally, scale, noise).interval()
 }
@@ -83,13 +82,13 @@ fn product(a: &[f64], b: &[f64], c: impl Fn(usize, usize) -> f64) -> f64 {
 }
 
 impl DamageParts {
-    /// Those of a tally; `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`, row-major,
-    /// `n_loads x n_loads`; `noise` is the standard deviation of a sample.
+    /// Computes the parts of a tally. `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`. It is row-major,
+    /// `n_loads x n_loads`. `noise` is the standard deviation of a sample.
     ///
-    /// The bias is found by counting with more noise ([`Bias`]). The straight line through the first two counts bounds what it may err, and [`OFF`]
-    /// of the bias: on sines of 16 to 200 samples a period and on Gaussian loads, slopes 3 to 9, what was taken off was that of counts without
-    /// noise within a fifth (a third at slope 3) up to a noise of 2 % of the range, and within two fifths at 5 %, where noise made up to four times
-    /// the damage.
+    /// Counts with more noise give the bias ([`Bias`]). Its error is at most the distance to the straight line through the first two counts, and
+    /// at least [`OFF`] of the bias. The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on
+    /// Gaussian loads, slopes 3 to 9. Both agree within a fifth (a third at slope 3) up to a noise of 2 % of the range. At 5 %, where noise makes up
+    /// to four times the damage, they agree within two fifths.
     pub fn of(tally: &Tally, scale: &[f64], noise: f64) -> Self {
         let sums = tally.sums_with_residue();
         let [once, ..] = sums.damage;
@@ -108,8 +107,8 @@ impl DamageParts {
         }
     }
 
-    /// Adds `weight` times another: errors of S and the bias of noise are the same in both, their scatter is not. Where the covariances of S
-    /// differ (a gauge that died), each counts by its share of the damage.
+    /// Adds `weight` times another damage: both share the errors of S and the bias of noise, not their scatter. If the covariances of S
+    /// differ (a gauge that died), each is weighted with its share of the damage.
     pub fn add(&mut self, weight: f64, other: &Self) {
         let [own, new] = [self.counted, weight * other.counted];
         let share = if own + new > 0.0 {

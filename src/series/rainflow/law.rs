@@ -1,24 +1,24 @@
-//! The harm that a cycle does.
+//! Damage of one cycle.
 
 use serde::{Deserialize, Serialize};
 
-/// What lies below a knee.
+/// Bend of an S-N line: the range at the bend, and the slope below it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Knee {
-    /// Ranges below this one do less harm than the power would say.
+    /// Range at the bend: smaller ranges do less damage than the power gives.
     pub range: f64,
-    /// The power below; infinite for no harm at all.
+    /// The power below; infinite for no damage at all.
     #[serde(deserialize_with = "super::absent::infinite")]
     pub slope: f64,
 }
 
-/// Pseudo-damage of a cycle as a power of its range, but for a factor that belongs to the part: `R^m`, and below a knee
+/// Pseudo-damage of a cycle as a power of its range, without a factor that depends on the part: `R^m`, and below a knee
 /// `R_k^m (R / R_k)^(m_2)`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Law {
     /// The power m: the slope of the S-N line.
     pub slope: f64,
-    /// Where the line bends, if it does.
+    /// Bend of the line, if it has one.
     pub knee: Option<Knee>,
 }
 

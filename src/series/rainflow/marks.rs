@@ -1,12 +1,12 @@
-//! What tells one sample from another wherever a record is cut: its loads.
+//! Marks that identify a sample by its loads, wherever a record is cut.
 
 use super::counter::mixed;
 
-/// Parts of the noise of a load in which samples are told apart: what rounding makes of loads moves none into another part, and samples that noise
-/// itself tells apart stand in parts of their own.
+/// Parts of a load's noise that distinguish samples. Rounding of loads moves no sample into another part. Samples whose loads differ by
+/// noise are in different parts.
 const FINE: f64 = 1024.0;
 
-/// A number for each sample by its loads, by which the noise that is added to it is drawn.
+/// Computes a number for each sample from its loads, which seeds the noise that is added to it.
 pub struct Marks {
     per_noise: Vec<f64>,
     /// An odd factor for each load.
@@ -21,7 +21,7 @@ struct Put<'a> {
 }
 
 impl Marks {
-    /// Of samples whose loads carry noise of these standard deviations; a load without noise tells none apart.
+    /// Returns the marks for loads with noise of these standard deviations; a load without noise distinguishes no samples.
     pub fn new(noise: &[f64]) -> Self {
         let per_noise = noise.iter().map(|n| if *n > 0.0 { FINE / n } else { 0.0 });
         Self {
@@ -30,7 +30,7 @@ impl Marks {
         }
     }
 
-    /// Appends the marks of rows, all loads of a sample each.
+    /// Appends the marks of rows; each row is all loads of a sample.
     pub fn put(&self, rows: &[f64], out: &mut Vec<u64>) {
         pulp::Arch::new().dispatch(Put {
             marks: self,

@@ -1,13 +1,13 @@
-//! What is kept of one load over a record: its cycles by class, its residue, the sums its damage needs. Tallies of parts join to that of
-//! the whole.
+//! Tally of one load over a record: its cycles by class, its residue, and the sums that its damage needs. Tallies of parts join to the
+//! tally of the whole record.
 
 use super::count::{Point, Rainflow, Reversal, half_cycles};
 use super::law::Law;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Standard deviations of the noise that histories are counted with, in units of the noise that is in them: as they are, and with as
-/// much noise added as makes it twice and three times.
+/// Standard deviations of the noise in the counted histories, in units of the noise of the loads. The first is without added noise; added
+/// noise doubles and triples it.
 pub const NOISE: [f64; 3] = [1.0, 2.0, 3.0];
 
 /// An extreme value.
@@ -19,14 +19,14 @@ pub struct Extreme {
     pub at: usize,
 }
 
-/// A reversal of a residue: its sample, its value, all loads at that time (empty where they don't matter).
+/// A reversal of a residue: its sample, its value, all loads at that time (empty if they are not needed).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Left {
     /// Sample.
     pub at: usize,
     /// Value.
     pub value: f64,
-    /// All loads then.
+    /// All loads at that time.
     #[serde(deserialize_with = "super::absent::numbers")]
     pub loads: Vec<f64>,
 }

@@ -100,12 +100,12 @@ impl Clock {
     }
 }
 
-/// What is remembered of stored times to put samples on even steps.
+/// Steps of stored times, which place samples on even steps.
 #[derive(Clone, Debug)]
 pub(super) struct Steps {
-    /// A piece each.
+    /// Steps and gaps of each piece.
     pub spans: Vec<Span>,
-    /// What they are held against; infinite where there is one time alone.
+    /// Steps for comparison; infinite if the record has a single time.
     pub scale: Scale,
 }
 
@@ -120,7 +120,7 @@ impl Steps {
     }
 }
 
-/// The clock of a reader, and the steps of its stored times.
+/// Returns the clock of a reader, and the steps of its stored times.
 ///
 /// # Errors
 /// No samples, no rate, a rate other than the declared one, times that are missing or do not ascend.

@@ -1,4 +1,4 @@
-//! What a channel is called and what its numbers are in: headers such as `P01 [um/m]`, rows of units below them, units of a whole file.
+//! Names and units of channels: headers such as `P01 [um/m]`, rows of units below them, units of a whole file.
 
 use super::time_unit::DAY;
 use crate::units::{Quantity, find_unit, microstrain_in};
@@ -10,34 +10,34 @@ pub struct Column {
     pub name: String,
     /// Unit as the file states it; empty where it doesn't.
     pub unit: String,
-    /// What the file calls it.
+    /// Header of the channel in the file.
     pub header: Header,
-    /// The unit that the file states elsewhere than in brackets beside the name: in a row below, for the channel, for all of its numbers.
-    /// Empty where it states none. It is the column's where the brackets are part of a name.
+    /// The unit that the file states outside the brackets after the name: in a row below, for the channel, or for all of its numbers. Empty if it
+    /// states none. It is the column's unit if the brackets are part of a name.
     pub stated: String,
 }
 
-/// What a file calls a channel.
+/// Header of a channel in a file, split at its last bracket.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
-    /// All of it: `SG1 (left)`.
+    /// The whole header: `SG1 (left)`.
     pub whole: String,
-    /// What stands before the last bracket: `SG1`.
+    /// Text before the last bracket: `SG1`.
     pub name: String,
-    /// What stands in it, a unit or a label: `left`. Empty where there is none, or the format keeps units apart from names.
+    /// Text in the last bracket, a unit or a label: `left`. Empty without a bracket, or if the format separates units from names.
     pub bracket: String,
 }
 
 /// Two units of a column that can't both be right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Clash {
-    /// Of one quantity and different size: `SG1 [m/m]` above `um/m`.
+    /// Units of one quantity and different size: `SG1 [m/m]` above `um/m`.
     Size,
-    /// Of different quantities: `SG1 [mV/V]` above `um/m`.
+    /// Units of different quantities: `SG1 [mV/V]` above `um/m`.
     Quantity,
 }
 
-/// Other units than those of time, strain and what a job may name, that tables of strain hold, and strain before it is scaled.
+/// Further units in tables of strain, and of strain before scaling: not units of time, of strain, or of a job.
 const OTHER_UNITS: &[&str] = &[
     "mv/v", "v/v", "uv/v", "µv/v", "mv", "volt", "volts", "kn", "mn", "lbf", "kip", "kgf", "kg",
     "mm", "cm", "pa", "kpa", "mpa", "gpa", "psi", "n/mm2", "n/mm²", "m/s2", "m/s²", "deg", "°",
@@ -151,7 +151,7 @@ impl Column {
         self.name.eq_ignore_ascii_case("run")
     }
 
-    /// What can't be right of the unit in brackets beside the name and the one stated elsewhere.
+    /// Returns the contradiction between the unit in brackets after the name and the unit stated elsewhere, if there is one.
     pub fn clash(&self) -> Option<Clash> {
         if states_no_unit(&self.header.bracket) || states_no_unit(&self.stated) {
             return None;
@@ -163,7 +163,7 @@ impl Column {
         }
     }
 
-    /// What is wrong with a column whose units clash.
+    /// Returns the message about a column whose units clash.
     pub fn clash_words(&self) -> String {
         format!(
             "`{}` after the name, and `{}` as the unit of the column",
@@ -172,8 +172,8 @@ impl Column {
     }
 }
 
-/// Gives a column the unit in the row below its header. The same unit beside the name goes before it; anything else in brackets there is part
-/// of the name, `SG1 (left)`, or a unit that clashes with the one below ([`Column::clash`]).
+/// Gives a column the unit in the row below its header. If the brackets after the name contain an equal unit, the column keeps it. Any other text
+/// in these brackets is part of the name, `SG1 (left)`, or a unit that clashes with the one below ([`Column::clash`]).
 pub fn take_unit_below(column: &mut Column, below: &str) {
     if states_no_unit(below) {
         return;
@@ -189,7 +189,7 @@ pub fn take_unit_below(column: &mut Column, below: &str) {
     below.clone_into(&mut column.unit);
 }
 
-/// Whether a field of a row of units states none: blank, `-`, or what such a row is called.
+/// Whether a field of a row of units states no unit: blank, `-`, or a title of such a row.
 pub(super) fn states_no_unit(field: &str) -> bool {
     let word = field.trim().trim_matches(['[', ']', '(', ')']);
     matches!(
@@ -198,7 +198,7 @@ pub(super) fn states_no_unit(field: &str) -> bool {
     )
 }
 
-/// What stands before and after the bracket that a bracket at the end would close; `N/(mm)` is one unit.
+/// Returns the text before and after the bracket that a final bracket would close; `N/(mm)` is one unit.
 fn split_at_bracket(body: &str, open: char, close: char) -> Option<(&str, &str)> {
     let mut depth = 0_usize;
     for (at, c) in body.char_indices().rev() {
@@ -215,14 +215,14 @@ fn split_at_bracket(body: &str, open: char, close: char) -> Option<(&str, &str)>
     None
 }
 
-/// What two words for units have in common.
+/// Relation of two texts for units.
 #[derive(PartialEq)]
 enum Likeness {
-    /// They mean one unit, as `m/m` and `strain` do.
+    /// Both texts are one unit, such as `m/m` and `strain`.
     Same,
-    /// They measure one quantity in different sizes, as `MN` and `mN` do.
+    /// Both units measure one quantity in different sizes, such as `MN` and `mN`.
     Size,
-    /// Nothing that is known.
+    /// No known relation.
     None,
 }
 
@@ -245,7 +245,7 @@ fn likeness(a: &str, b: &str) -> Likeness {
     }
 }
 
-/// What a word measures as a unit, and its size among the units of that quantity: some words mean several, `us` microstrain and microseconds.
+/// Returns the quantities that a text measures as a unit, each with its size; some texts mean several, `us` microstrain and microseconds.
 fn sizes(word: &str) -> Vec<(&'static str, f64)> {
     if states_no_unit(word) {
         return Vec::new();
@@ -261,7 +261,7 @@ fn is_other_unit(word: &str) -> bool {
     OTHER_UNITS.contains(&word.to_lowercase().as_str())
 }
 
-/// Seconds in one of a unit of time; none stated means seconds.
+/// Returns the seconds in a unit of time; no unit means seconds.
 pub fn seconds_in(unit: &str) -> Option<f64> {
     match unit.trim().to_lowercase().as_str() {
         "" | "s" | "sec" | "secs" | "second" | "seconds" | "sek" => Some(1.0),

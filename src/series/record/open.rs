@@ -25,7 +25,7 @@ pub struct Options {
     pub wanted: Vec<String>,
 }
 
-/// A record of any format that is read, told by its first bytes; what is none of the others is a table of text.
+/// Opens a record of any supported format, which its first bytes determine; a file of no other format is a table of text.
 ///
 /// # Errors
 /// A format that this build leaves out, a file that can't be read, times that can't be (see [`Record::new`]).
@@ -34,10 +34,11 @@ pub fn open_record(bytes: Bytes, options: &Options) -> Result<Record, SeriesErro
     Record::new(reader, options.declared_hz, options.time_unit_s)
 }
 
-/// As [`open_record`], of bytes that need not be in memory: of a file that is [read in parts](is_read_in_parts) what is decoded alone is read.
+/// Opens a record like [`open_record`], from bytes that need not be in memory. Of a file that is [read in parts](is_read_in_parts) it reads only
+/// the bytes that it decodes.
 ///
 /// # Errors
-/// As [`open_record`]; a file that can't be read.
+/// Every error of [`open_record`], and a file that can't be read.
 pub fn open_source(source: Source, options: &Options) -> Result<Record, SeriesError> {
     let unreadable = |e: std::io::Error| SeriesError::Broken {
         wrong: format!("it can't be read ({e})"),

@@ -23,7 +23,7 @@ fn damaged(what: &str) -> ParquetError {
 }
 
 impl<P: PageReader> Pages<P> {
-    /// Those of a column that is not repeated.
+    /// Returns the pages of a column that is not repeated.
     pub fn of(inner: P, column: &ColumnDescriptor) -> Self {
         let levels = column.max_def_level().max(0).cast_unsigned();
         Self {
@@ -40,7 +40,7 @@ impl<P: PageReader> Pages<P> {
         }
     }
 
-    /// Where the values of a page begin that states nothing of its levels' length.
+    /// Returns the start of the values of a page that does not state the length of its levels.
     fn after_levels(&self, buf: &[u8], values: u32, encoding: Encoding) -> Result<usize> {
         if self.level_bits == 0 {
             return Ok(0);
@@ -118,7 +118,7 @@ impl<P: PageReader> Pages<P> {
         }
     }
 
-    /// The same page, its streams of bytes joined to values; those that are missing are missed when they are read.
+    /// Returns the page with its streams of bytes joined to values; missing bytes cause an error when the values are read.
     fn joined(&self, mut page: Page, values_at: usize) -> Page {
         let (Page::DataPage { buf, encoding, .. } | Page::DataPageV2 { buf, encoding, .. }) =
             &mut page
@@ -189,7 +189,7 @@ mod tests {
         written(n, properties)
     }
 
-    /// The same with these properties.
+    /// Writes even samples of one channel, every seventh missing, with these properties.
     fn written(n: i16, properties: WriterPropertiesBuilder) -> Vec<u8> {
         let schema = "message m { required double time; optional float g; }";
         let schema = Arc::new(parse_message_type(schema).unwrap());

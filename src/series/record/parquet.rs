@@ -30,16 +30,16 @@ pub struct Parquet {
     whole: Arc<Whole>,
     metadata: ParquetMetaData,
     columns: Vec<Column>,
-    /// Leaf of the file and the worth of one stored unit, a column each.
+    /// Leaf in the file and value of one stored unit, for each column.
     leaves: Vec<(usize, f64)>,
     time: Option<(usize, f64)>,
     times: Times,
-    /// What is taken off stored times, s.
+    /// Time that is subtracted from stored times, s.
     epoch: f64,
     pieces: Vec<Part>,
-    /// What pieces decode together.
+    /// Units of pieces that are decoded together.
     units: Vec<Unit>,
-    /// Decoded rows, and memory of those before: given back and taken anew it costs as much as decoding.
+    /// Decoded rows, and reused memory of earlier rows: to free and allocate it again costs as much as decoding.
     shared: Shared,
 }
 
@@ -50,7 +50,7 @@ struct Part {
     /// First row of the part in its group.
     from: usize,
     rows: usize,
-    /// The unit that it belongs to.
+    /// Unit of the part.
     unit: usize,
 }
 
@@ -384,7 +384,7 @@ fn type_words(c: &ColumnDescriptor) -> String {
     }
 }
 
-/// What a stored value is; `None` for what is no number.
+/// Returns the meaning of a stored value; `None` if it is not a number.
 fn meaning(c: &ColumnDescriptor) -> Option<Meaning> {
     let of_unit = |unit: &TimeUnit| match unit {
         TimeUnit::MILLIS => 1e-3,

@@ -1,4 +1,4 @@
-//! What every format gives.
+//! Interface of the readers of all formats.
 
 use super::column::Column;
 use crate::series::error::SeriesError;
@@ -29,19 +29,19 @@ pub enum Times {
     Stored {
         /// Largest error of a stored time by the digits or the unit it is stored in, s.
         rounding_s: f64,
-        /// What the file's absolute times begin with, s since 1970; stored times count from there.
+        /// Origin of the file's absolute times, s since 1970; stored times count from it.
         epoch_s: Option<f64>,
         /// Whether the file states the unit of its times.
         unit_stated: bool,
     },
     /// None: the rate must be stated elsewhere.
     None {
-        /// Samples, where they are counted.
+        /// Number of samples, if known.
         samples: Option<usize>,
     },
 }
 
-/// What is asked of each row.
+/// Value that a caller picks from each row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pick {
     /// Time of the row, s.
@@ -55,11 +55,11 @@ pub enum Pick {
 /// Consecutive rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Block<'a> {
-    /// Number of the first within the piece.
+    /// Number of the first row within the piece.
     pub first: usize,
-    /// How many.
+    /// Number of rows.
     pub rows: usize,
-    /// Row-major, as many numbers a row as were picked; NaN where nothing was measured.
+    /// Values, row-major, one for each pick; NaN where nothing was measured.
     pub values: &'a [f64],
 }
 

@@ -190,7 +190,7 @@ mod tests {
         Pick::Column(3),
     ];
 
-    /// What each of two pieces gets on a thread of its own.
+    /// Returns the strips of two pieces, each decoded on its own thread.
     fn of_two(
         shared: &Shared,
         decode: &(dyn Fn(usize) -> bool + Sync),

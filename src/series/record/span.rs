@@ -1,4 +1,4 @@
-//! What a pass over the times of one piece tells.
+//! Steps, gaps and rates of the stored times of one piece.
 
 use super::reader::{Pick, RecordReader};
 use crate::series::error::SeriesError;
@@ -32,7 +32,7 @@ pub struct Stretch {
 }
 
 impl Stretch {
-    /// The first of those that pieces have, which follow each other, with what goes on of it in the next pieces.
+    /// Returns the first stretch of consecutive pieces, with its continuation in the next pieces.
     pub(super) fn joined(mut list: impl Iterator<Item = Self>) -> Option<Self> {
         let mut first = list.next()?;
         for next in list {
@@ -46,21 +46,21 @@ impl Stretch {
     }
 }
 
-/// What the steps of a record are held against.
+/// Typical and longest steps of a record, for comparison with its steps.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scale {
-    /// The typical step, s: that of the fastest rate, where there are several.
+    /// The typical step, s; with several rates, the step of the fastest.
     pub typical: f64,
-    /// The longest step of any rate, s: what is longer by half is a gap.
+    /// The longest step of any rate, s: a step half as long again is a gap.
     pub longest: f64,
-    /// The mean of [`WINDOW`] steps as the first rows have it, s.
+    /// The mean of [`WINDOW`] steps in the first rows, s.
     pub usual: f64,
     /// Largest error of a time by its rounding, s.
     pub rounding: f64,
 }
 
 impl Scale {
-    /// Of a record of one time alone: nothing is a gap.
+    /// Returns the scale of a record with a single time: no step is a gap.
     pub(super) fn endless() -> Self {
         Self {
             typical: f64::INFINITY,
@@ -70,7 +70,7 @@ impl Scale {
         }
     }
 
-    /// The same with the steps of further rates.
+    /// Returns this scale with the steps of further rates.
     pub(super) fn with_rates(self, others: impl Iterator<Item = f64>) -> Self {
         let [low, high] = others.fold([self.usual; 2], |[low, high], step| {
             [low.min(step), high.max(step)]
@@ -101,22 +101,22 @@ pub struct Gap {
     pub missing: usize,
 }
 
-/// What a pass over the times of a piece tells.
+/// Steps, gaps and rates of the times of a piece.
 #[derive(Clone, Debug)]
 pub(super) struct Span {
     /// Rows.
     pub rows: usize,
     /// Time of the first row, s.
     pub first: f64,
-    /// Time of the last, s.
+    /// Time of the last row, s.
     pub last: f64,
     /// The first gaps within.
     pub gaps: Vec<Gap>,
-    /// How many there are.
+    /// Number of gaps.
     pub n_gaps: usize,
-    /// Samples missing within.
+    /// Samples missing in the gaps.
     pub missing: f64,
-    /// Sum and number of the steps that are no gaps.
+    /// Sum and number of the steps that are not gaps.
     pub steps: (f64, usize),
     /// Largest departure beyond rounding of a step, or of a gap from whole steps, s, and the rows before it.
     pub largest: (f64, usize),
@@ -179,7 +179,7 @@ pub(super) enum Wrong {
 }
 
 impl Wrong {
-    /// As an error at a line.
+    /// Returns the error at a line.
     pub(super) fn at(self, line: usize) -> SeriesError {
         match self {
             Self::Missing => SeriesError::NoTime { line },

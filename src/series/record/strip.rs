@@ -218,7 +218,7 @@ pub(super) fn of_half(bits: u16) -> f64 {
     }
 }
 
-/// What is wrong with a file, and what to do.
+/// Returns the error of a Parquet file, with its remedy.
 pub(super) fn broken(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
         wrong: format!("it can't be read as Parquet ({e})"),

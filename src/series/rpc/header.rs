@@ -39,7 +39,7 @@ impl Numbers {
     }
 }
 
-/// What stands before the samples, checked against the size of the file.
+/// Header before the samples, checked against the size of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Header {
     /// Channels in file order.
@@ -54,23 +54,23 @@ pub struct Header {
     pub(super) big_endian: bool,
 }
 
-/// What is wrong with a file.
+/// Errors of an RPC file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RpcError {
     /// The bytes end too early.
     Cut {
-        /// Bytes there.
+        /// Bytes in the file.
         found: usize,
         /// Bytes needed.
         expected: usize,
     },
-    /// A key that can't be done without is missing, or its value can't be.
+    /// A required key is missing, or its value is impossible.
     Value {
         /// The key.
         key: String,
         /// Value, or `absent`.
         found: String,
-        /// What it should be.
+        /// Description of a valid value.
         expected: &'static str,
     },
     /// A kind of file that is not read.
@@ -83,7 +83,7 @@ pub enum RpcError {
 }
 
 impl RpcError {
-    /// What is wrong, and what to do.
+    /// Returns the message and the remedy.
     pub fn parts(&self) -> (String, &'static str) {
         match self {
             Self::Cut { found, expected } => (

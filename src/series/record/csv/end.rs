@@ -131,7 +131,7 @@ fn last_lines(bytes: &[u8]) -> (usize, Vec<Vec<u8>>) {
     (last, lines.collect())
 }
 
-/// What divides the fields of a line: commas may stand in numbers beside the others.
+/// Returns the delimiter of a line; semicolon and tab precede the comma, which numbers may contain.
 fn delimiter_of(line: &[u8]) -> u8 {
     let divides = |d: &u8| line.contains(d);
     [b';', b'\t'].into_iter().find(divides).unwrap_or(b',')

@@ -14,27 +14,27 @@ const MOST_LINES: usize = 200;
 /// Bytes looked at for it: a million names of some length.
 const MOST_BYTES: usize = 64 << 20;
 
-/// What a time field holds.
+/// Content of a time field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeKind {
-    /// A number, seconds in one of it.
+    /// A number.
     Number {
-        /// Seconds.
+        /// Seconds in one unit of the number.
         factor: f64,
     },
     /// Date and time.
     Date {
-        /// Those of the first row, s since 1970.
+        /// Date and time of the first row, s since 1970.
         epoch_s: f64,
     },
-    /// One of date and time of day; the next field holds the other.
+    /// Date or time of day; the next field contains the second of them.
     DateBeside {
-        /// Those of the first row, s since 1970.
+        /// Date and time of the first row, s since 1970.
         epoch_s: f64,
     },
     /// Time of day.
     OfDay {
-        /// That of the first row, s.
+        /// Time of day of the first row, s.
         first_s: f64,
     },
 }
@@ -42,15 +42,15 @@ pub enum TimeKind {
 /// The layout of a table.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// How it is coded.
+    /// Encoding of the text.
     pub encoding: Encoding,
-    /// What divides fields.
+    /// Delimiter of fields.
     pub delimiter: u8,
     /// The mark between whole and fraction.
     pub mark: DecimalMark,
-    /// A name and unit a field.
+    /// Name and unit of each field.
     pub columns: Vec<Column>,
-    /// Which field is time, and what it holds.
+    /// Field of the time, and its content.
     pub time: Option<(usize, TimeKind)>,
     /// Whether the unit of time is stated.
     pub unit_stated: bool,
@@ -271,7 +271,7 @@ fn first_lines(encoding: Encoding, bytes: &[u8], begin: usize) -> Vec<Line> {
     lines
 }
 
-/// What divides the fields of most lines into most parts; beside equals semicolon and tab come before comma, which may be decimal.
+/// Returns the delimiter that divides most lines, into most parts. If equal, semicolon and tab precede comma, which may be a decimal mark.
 fn delimiter_of(lines: &[Line]) -> u8 {
     let score = |d: u8| {
         let counts = lines

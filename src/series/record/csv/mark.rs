@@ -1,15 +1,15 @@
-//! Whether commas or points mark the fractions of a table whose fields are divided by semicolons or tabs, and what divides thousands.
+//! Determines whether commas or points are the decimal marks of a table with semicolons or tabs as delimiters, and the mark between thousands.
 
 use super::text::shown;
 use crate::series::number::{DecimalMark, number};
 
-/// What to do where nobody knows.
+/// Remedy for an ambiguous decimal mark.
 pub const REMEDY: &str = "write numbers without marks between thousands, and all with a decimal point or all with a decimal comma";
 
-/// Numbers of a column of each kind from which on those with a mark are judged by those without.
+/// Numbers of each kind in a column that are enough to test numbers with a mark against numbers without.
 const SEVERAL: usize = 2;
 
-/// The decimal mark that the first rows tell; `mark` where none of their numbers has one. Else the row that is wrong, and what is.
+/// Returns the decimal mark of the first rows; `mark` if none of their numbers has one. Error: the wrong row, and the message about it.
 pub fn settled(rows: &[Vec<&[u8]>], mark: DecimalMark) -> Result<DecimalMark, (usize, String)> {
     if mark == DecimalMark::Point {
         return Ok(mark);
@@ -54,7 +54,7 @@ pub fn settled(rows: &[Vec<&[u8]>], mark: DecimalMark) -> Result<DecimalMark, (u
     })
 }
 
-/// What is wrong with such a number.
+/// Returns the message about a number with an ambiguous mark.
 pub fn in_words(field: &[u8]) -> String {
     format!(
         "`{}` may be a fraction, or a whole number with a mark between thousands",
@@ -62,7 +62,7 @@ pub fn in_words(field: &[u8]) -> String {
     )
 }
 
-/// Whether a number has the form of one with a mark between thousands: one to three digits that begin with none of 0, a mark, three digits.
+/// Whether a number may have a mark between thousands: one to three digits, the first not 0, a mark, three digits.
 pub fn may_be_thousands(field: &[u8]) -> bool {
     let bare = field
         .strip_prefix(b"-")

@@ -234,7 +234,7 @@ fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wr
     }
 }
 
-/// What is wrong with a row, and what to do.
+/// Message about a wrong row, and its remedy.
 type Wrong = (String, &'static str);
 
 /// Reads rows of one table.
@@ -246,7 +246,7 @@ struct Parser<'a> {
 }
 
 impl Parser<'_> {
-    /// Reads the row that begins at `at` into `slots`; where the next line begins.
+    /// Reads the row that begins at `at` into `slots`, and returns the beginning of the next line.
     fn row(&self, text: &[u8], mut at: usize, slots: &mut [f64]) -> Result<usize, Wrong> {
         let n = self.layout.columns.len();
         let delimiter = self.layout.delimiter;

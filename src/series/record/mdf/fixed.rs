@@ -200,7 +200,7 @@ impl Group {
     }
 }
 
-/// How many records a group states, from its block; `None` where that can't be read.
+/// Returns the number of records that the block of a group states; `None` if it can't be read.
 fn stated_cycles(file: &[u8], at: u64) -> Option<u64> {
     let word = |from: u64| {
         let from = usize::try_from(from).ok()?;
@@ -212,7 +212,7 @@ fn stated_cycles(file: &[u8], at: u64) -> Option<u64> {
     word(at.checked_add(HEAD + 8 * links.min(64) + 8)?)
 }
 
-/// What a block holds.
+/// Returns the content of a data block, decompressed.
 fn content<'a>(file: &'a [u8], block: &DataBlockInfo) -> Result<Cow<'a, [u8]>, SeriesError> {
     let part = |from: u64, len: u64| {
         let from = usize::try_from(from).ok()?;

@@ -41,11 +41,11 @@ pub(super) struct Tdms {
     others: Vec<OtherChannel>,
 }
 
-/// What turns stored numbers into values: coefficients of a polynomial.
+/// Coefficients of the polynomial that scales stored numbers to values.
 type Scale = Vec<f64>;
 
 impl Tdms {
-    /// The channels sampled at the same times: those of `wanted` (of most numbers, where none is named) and all others sampled with them.
+    /// Returns the channels sampled at equal times: the `wanted` channels (without any, the group with most numbers) and all sampled with them.
     ///
     /// # Errors
     /// A file that can't be read, channels of a kind that is not read, wanted channels that were sampled at other times.

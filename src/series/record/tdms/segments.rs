@@ -223,7 +223,7 @@ impl<'a> Cursor<'a> {
     }
 }
 
-/// What a segment says of an object's samples.
+/// Type and size of an object's samples in a segment.
 #[derive(Clone, Copy)]
 struct Index {
     kind: Kind,

@@ -49,19 +49,19 @@ pub enum Samples {
 pub struct Dataset {
     /// Name and unit.
     pub column: Column,
-    /// As the file states it.
+    /// Unit as the file states it.
     unit: String,
-    /// What may be its name: the first line of its head, the label of its numbers, grid and direction.
+    /// Texts that may be the name: the first line of the head, the label of the numbers, grid and direction.
     titles: [String; 3],
-    /// Name that several data sets have: [`Self::column`] adds a number to it.
+    /// Name that several data sets share: [`Self::column`] adds a number to it.
     pub twice: Option<String>,
     /// Time of the first sample, s.
     pub start_s: f64,
-    /// Between samples, s.
+    /// Time between samples, s.
     pub step_s: f64,
     /// Whether the file states the unit of its times.
     pub unit_stated: bool,
-    /// How many.
+    /// Number of samples.
     pub samples: usize,
     /// The numbers.
     pub data: Samples,

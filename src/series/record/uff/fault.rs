@@ -1,8 +1,8 @@
-//! What is wrong with a file.
+//! Errors of a universal file.
 
 use crate::series::error::SeriesError;
 
-/// The error of a file that can't be read.
+/// Returns the error of a file that can't be read.
 pub(super) fn broken(what: impl std::fmt::Display) -> SeriesError {
     SeriesError::Broken {
         wrong: format!("it can't be read as a universal file ({what})"),
