@@ -24,7 +24,7 @@ use std::sync::LazyLock;
                   `strainbridge COMMAND --help` shows an example of each."
 )]
 pub struct Arguments {
-    /// What to do.
+    /// Command to run.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -185,7 +185,7 @@ pub struct FleetArguments {
     /// Output of `sha256sum` for the records. A listed record with a stored result is not read again if its size and time are unchanged
     #[arg(long, value_name = "FILE", value_parser = digests)]
     pub digests: Option<BTreeMap<String, String>>,
-    /// What every command is asked
+    /// Options of every command
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -213,7 +213,7 @@ pub struct ManArguments {
     /// Folder for the pages
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -230,18 +230,18 @@ pub struct ExplainArguments {
     /// Write the reference of job keys, fields, columns, findings and exit codes into this folder
     #[arg(long, value_name = "DIR")]
     pub reference: Option<PathBuf>,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: CommonArguments,
 }
 
-/// What is verified.
+/// Arguments of `verify`: the folder to verify.
 #[derive(clap::Args, Debug)]
 pub struct VerifyArguments {
     /// The folder that a command wrote
     #[arg(value_name = "FOLDER")]
     pub folder: PathBuf,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -254,7 +254,7 @@ pub struct CacheArguments {
     pub task: CacheTask,
 }
 
-/// Tasks on kept solutions.
+/// Commands on the cache of stored solutions.
 #[derive(clap::Subcommand, Debug)]
 pub enum CacheTask {
     /// Remove stored solutions of the built-in solver
@@ -262,7 +262,7 @@ pub enum CacheTask {
     Clean(CleanArguments),
 }
 
-/// What is removed.
+/// Arguments of `cache clean`: the folder whose stored solutions it removes.
 #[derive(clap::Args, Debug)]
 pub struct CleanArguments {
     /// Folder with stored solutions (default: the user's folder for caches)
@@ -271,7 +271,7 @@ pub struct CleanArguments {
     /// Remove them without asking
     #[arg(short, long)]
     pub yes: bool,
-    /// What every command takes.
+    /// Options of every command.
     #[command(flatten)]
     pub common: CommonArguments,
 }
@@ -332,7 +332,7 @@ impl SolveArguments {
         extension.is_some_and(|e| e.eq_ignore_ascii_case("toml"))
     }
 
-    /// What is asked of the solver.
+    /// Returns the options of the solver.
     pub fn options(&self) -> SolveOptions {
         SolveOptions {
             heated: match self.total_strain {
@@ -388,7 +388,7 @@ impl FilesArguments {
     }
 }
 
-/// What a job is written from, and for.
+/// Arguments of `init`: the deck and result files that the job is written from, and the command that it is for.
 #[derive(clap::Args, Debug)]
 pub struct InitArguments {
     /// The deck, or an OP2 that contains the mesh; `--for identify` and `--for calibrate` need no deck

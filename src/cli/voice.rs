@@ -22,7 +22,7 @@ enum Level {
     Verbose,
 }
 
-/// How a command speaks.
+/// Settings of the text that a command prints.
 #[derive(Clone, Copy)]
 pub(super) struct Voice {
     level: Level,
@@ -32,7 +32,7 @@ pub(super) struct Voice {
 }
 
 impl Voice {
-    /// As the arguments ask; in colour on a terminal where `NO_COLOR` isn't set.
+    /// Returns the settings of printed text that the arguments ask for; in colour if stderr is a terminal and `NO_COLOR` is not set.
     pub fn of(common: &CommonArguments) -> Self {
         let level = match (common.quiet, common.verbose) {
             (true, _) => Level::Quiet,

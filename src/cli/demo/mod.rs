@@ -27,9 +27,9 @@ use page::Figures;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What the story writes for its commands to read is listed under this.
+/// Command name under which the manifest of the folder lists the input files that the demo writes.
 const INPUTS: &str = "demo inputs";
-/// Their names.
+/// Names of these input files.
 const INPUT_NAMES: [&str; 10] = [
     "truck.bdf",
     "solve.toml",
@@ -43,10 +43,10 @@ const INPUT_NAMES: [&str; 10] = [
     "respond.toml",
 ];
 
-/// Where the story goes if nobody says.
+/// Default folder of the demo.
 pub(super) const FOLDER: &str = "strainbridge-demo";
 
-/// What was hidden in the story, what of it was found, and what that is worth.
+/// Result of the demo: the hidden effect, the effects found, and the errors of loads and payload before and after.
 #[derive(Serialize)]
 pub struct Story {
     /// Chapters of the story.
@@ -420,7 +420,7 @@ where
     }
 }
 
-/// What the story asks of the solver.
+/// Returns the options of the solver for the demo.
 fn solving() -> SolveOptions {
     SolveOptions {
         modes: workflow::solve::MODES,

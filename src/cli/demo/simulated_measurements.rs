@@ -51,7 +51,7 @@ impl Glued {
     }
 }
 
-/// What was measured, and the truth that is hidden from whoever recovers the loads.
+/// Simulated measurements, with the true loads that recovery does not see.
 pub(super) struct Simulated {
     pub strain_csv: String,
     pub runs_csv: String,
@@ -111,7 +111,7 @@ impl Simulated {
         figure
     }
 
-    /// The same for the payload.
+    /// Root mean square over the runs of the relative error of the recovered payload.
     pub(super) fn payload_error_of(&self, result: &Value) -> f64 {
         let (mut off, mut n) = (0.0, 0.0);
         for p in result["payload"].as_array().into_iter().flatten() {
