@@ -19,11 +19,11 @@ pub struct MeshArrays<'a> {
 /// Numbers on every point or every cell, by rows of `columns`.
 #[derive(Clone, Copy, Debug)]
 pub struct NamedArray<'a> {
-    /// What they are called.
+    /// Name of the array.
     pub name: &'a str,
-    /// How many a point or cell.
+    /// Numbers per point or cell.
     pub columns: usize,
-    /// All of them.
+    /// Numbers, by rows of `columns`.
     pub values: Numbers<'a>,
 }
 

@@ -275,7 +275,7 @@ fn mission(m: &MissionAnswer) -> Section {
     )
 }
 
-/// What each day of a vehicle did, with the record it comes from.
+/// Table of the days of a vehicle: record, hours, and damage by load with S-N exponent `slope`.
 fn days(v: &VehicleAnswer, slope: f64) -> Section {
     let mut head = vec![
         "day".to_owned(),

@@ -28,7 +28,7 @@ impl Report for Outcome<Proposal> {
         Ok(out.write_bytes(self.job, self.text.as_bytes())?)
     }
 
-    /// What a notebook shows; no file is written of it, for a job is read where it stands.
+    /// Returns the page for a notebook. `init` writes no report file: the job that it proposes is the only file.
     fn page(&self) -> Option<Page> {
         let next = self.console().next.map(Block::Text);
         let mut proposed: Vec<Block> = next.into_iter().collect();

@@ -51,7 +51,7 @@ pub trait Report {
     /// The first file that can't be written.
     fn write(&self, out: &mut Output) -> Result<(), Faults>;
 
-    /// Its report; `None` where it has none.
+    /// Report of the outcome; `None` for an outcome without a report.
     fn page(&self) -> Option<Page>;
 
     /// Numbers that answer the question of the command, for the first screen of its page.

@@ -16,7 +16,7 @@ use crate::workflow::modes::{ModeRow, Modes};
 use nastran::op2::{EncodedBlock, Op2Writer};
 use std::io::Write;
 
-/// What a column counts in.
+/// Quantity of a column.
 #[derive(Clone, Copy)]
 enum In {
     Numbers,
@@ -26,7 +26,7 @@ enum In {
 }
 
 impl In {
-    /// Its unit in words, by the job's units; the deck's own where no job states them.
+    /// Returns the name of the unit in the job's units; in the deck's units if `names` is `None`.
     fn unit(self, names: Option<&UnitNames>) -> String {
         let of = |q: Quantity, otherwise: &str| names.map_or(otherwise.into(), |n| n.of(q));
         match self {
@@ -38,7 +38,7 @@ impl In {
     }
 }
 
-/// Columns of modes.csv before those of the gauges, with what they count in.
+/// Columns of modes.csv before the columns of the gauges, with their quantities.
 const COLUMNS: [(&str, In); 12] = [
     ("mode", In::Numbers),
     ("hz", In::Hertz),

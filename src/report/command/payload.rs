@@ -328,7 +328,7 @@ fn gauge_sections(weighing: &Weighing, force: &str) -> [Section; 2] {
     [alone, together]
 }
 
-/// What each gauge in use says of a run, and all of them.
+/// Returns the estimate of each gauge in use, and of all gauges together, with 95 % intervals. Gauges whose sigma exceeds the payload are left out.
 fn bars(r: &WeighedRun, weighing: &Weighing) -> Vec<IntervalRow> {
     let used = weighing.gauges.iter().enumerate().filter(|(_, v)| v.used);
     used.filter_map(|(g, v)| {

@@ -136,7 +136,7 @@ fn confidence(found: &Reconciled) -> Option<String> {
     (!parts.is_empty()).then(|| parts.join("; "))
 }
 
-/// What the gap was judged on.
+/// Returns the data on which the gap was tested: number of runs, or kind of data of a record (held out, cross-validated, fitted).
 fn judged_on(gap: &GapFound) -> String {
     let runs = gap.strain.map(|s| format!("{} runs", s.basis));
     let record = gap.judged_by.map(|p| p.words().to_owned());

@@ -94,7 +94,7 @@ fn payload_csv(job: &Job, frame: &StrainFrame, influence: &[f64]) -> String {
     out
 }
 
-/// What is noted of the runs of the extended model, as a runs file.
+/// Returns the loads and payload of the runs, with the effects in the model, as text of a runs file.
 fn runs_csv(frame: &StrainFrame, noted: &ExtendedRuns) -> String {
     let [at_x, at_y] = frame.payload_origin;
     let names: Vec<_> = frame.load_names.iter().map(|n| csv_cell(n)).collect();

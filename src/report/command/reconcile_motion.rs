@@ -269,7 +269,7 @@ fn gap_section(outcome: &MotionOutcome) -> Section {
     )
 }
 
-/// What simulation and measured wheel forces leave, before and after.
+/// Section with the errors of the simulation and of measured wheel forces, before and after the correction.
 fn scatter_section(found: &MotionPart) -> Option<Section> {
     let mut blocks = Vec::new();
     if let Some(s) = simulation(found) {

@@ -74,7 +74,7 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
     })
 }
 
-/// What is said of a gauge where a smooth error of the model is drawn.
+/// Returns the note on a gauge in the scene: the factors on its strain from a smooth model error, with 95 % half widths.
 fn smooth_note(found: &StrainPart, gauge: &str) -> String {
     let own = found.smooth.iter().filter(|s| s.gauge == gauge);
     own.map(|s| {
@@ -117,7 +117,7 @@ fn field_of_place(m: &MarkedStiffness, n_shells: usize) -> Field<'static> {
     }
 }
 
-/// What was added to the model: effect, path, old and new value.
+/// Returns a row for each change of the model: effect, path, old and new value.
 pub(super) fn added_rows(found: &Reconciled) -> Vec<Vec<String>> {
     let row = |a: &Added| {
         let cells = [&a.effect, &a.path, &a.old, &a.new];

@@ -49,18 +49,18 @@ pub(in crate::report) enum Shape {
     Word(Word),
 }
 
-/// Words at a point.
+/// Text at a point.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::report) struct Word {
-    /// Where.
+    /// Position.
     pub(in crate::report) at: [f64; 2],
-    /// Which part of the words stands there, of their width and height: 0 the beginning, 1 the end.
+    /// Anchor: fraction of the width and height of the text that is at the position, 0 the beginning, 1 the end.
     pub(in crate::report) anchor: [f64; 2],
-    /// What.
+    /// Text.
     pub(in crate::report) text: String,
     /// Size of type, points.
     pub(in crate::report) size: f64,
-    /// Whether they run upwards.
+    /// Whether the text runs upwards.
     pub(in crate::report) upwards: bool,
 }
 
@@ -100,7 +100,7 @@ impl Picture {
         });
     }
 
-    /// Words of 7 points.
+    /// Adds text of 7 points.
     pub(in crate::report) fn word(&mut self, at: [f64; 2], anchor: [f64; 2], text: &str) {
         self.shapes.push(Shape::Word(Word {
             at,
@@ -111,7 +111,7 @@ impl Picture {
         }));
     }
 
-    /// The same, running upwards.
+    /// Adds text of 7 points that runs upwards.
     pub(in crate::report) fn word_upwards(&mut self, at: [f64; 2], anchor: [f64; 2], text: &str) {
         self.word(at, anchor, text);
         if let Some(Shape::Word(w)) = self.shapes.last_mut() {

@@ -19,7 +19,7 @@ const MESH: &str = "#b4bec9";
 const STROKE: f64 = 2.2;
 const LARGEST: f64 = 5.0;
 
-/// What is said under a drawing of gauges.
+/// Caption of a drawing of gauges.
 pub(in crate::report) const STROKES: &str = "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
 
 /// A direction to look along: which axes run right and up, by sign, and its name.

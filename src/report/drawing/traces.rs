@@ -55,7 +55,7 @@ impl Series {
         Some([v - below.get(i)?.as_f64()?, v + above.get(i)?.as_f64()?])
     }
 
-    /// What an axis must hold of it: its values, their intervals, the foot of its bars.
+    /// Returns the values that axis `k` must cover: values of the series, their intervals, and 0 for bars.
     pub(in crate::report) fn reach(&self, k: usize) -> Vec<f64> {
         let mut out: Vec<f64> = self.values[k].iter().filter_map(Value::as_f64).collect();
         if k == 0 {

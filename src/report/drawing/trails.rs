@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 type Point = [i64; 2];
 
-/// The same lines: those of two points are joined end to end, straight on where that goes; longer ones stay as they are.
+/// Joins lines of two points end to end into longer lines, straight on where possible. Longer lines are unchanged.
 pub(super) fn trails(lines: Vec<Vec<Point>>) -> Vec<Vec<Point>> {
     let (short, mut out): (Vec<_>, Vec<_>) = lines.into_iter().partition(|l| l.len() == 2);
     let ends: Vec<[Point; 2]> = short.iter().map(|l| [l[0], l[1]]).collect();

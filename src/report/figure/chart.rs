@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 /// Traces and axes, in words of their own that `page/chart.js` draws as SVG and `report::pdf` on paper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What it shows, for screen readers and tests.
+    /// Description of the figure for screen readers and tests.
     pub label: String,
     /// By choice: name and traces. A single one is drawn without asking. `ytitle` of a trace says what its axis is where that differs by choice.
     pub choices: Vec<(String, Vec<Value>)>,

@@ -1,19 +1,19 @@
-//! What each number of gauges gives.
+//! Figure of efficiency and load sigmas against the number of gauges.
 
 use super::chart::Figure;
 use super::packed::{short, shorts};
 use serde_json::{Value, json};
 
-/// One number of gauges.
+/// Results with one number of gauges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CountPoint {
-    /// How many.
+    /// Number of gauges.
     pub gauges: usize,
     /// Certified efficiency, 0..1.
     pub efficiency: f64,
-    /// Efficiency left after the worst loss of a gauge, 0..1.
+    /// Efficiency after the worst loss of a gauge, 0..1.
     pub after_loss: f64,
-    /// By load, one standard deviation.
+    /// One standard deviation by load.
     pub sigma: Vec<f64>,
 }
 

@@ -54,7 +54,7 @@ pub fn steps_of(values: impl Iterator<Item = f64>, most: f64) -> Vec<i64> {
     values.map(step).collect()
 }
 
-/// Six significant digits; null where there is no number.
+/// Rounds a number to six significant digits; null for a number that is not finite.
 pub fn short(x: f64) -> Value {
     if !x.is_finite() {
         return Value::Null;
@@ -64,7 +64,7 @@ pub fn short(x: f64) -> Value {
         .map_or(Value::Null, |v| json!(v))
 }
 
-/// The same for a list.
+/// Rounds a list of numbers to six significant digits each; null for numbers that are not finite.
 pub fn shorts(values: impl IntoIterator<Item = f64>) -> Vec<Value> {
     values.into_iter().map(short).collect()
 }

@@ -55,7 +55,7 @@ fn piece_of(page: &Page) -> String {
     .into_string()
 }
 
-/// What is left for pictures.
+/// Bytes left for pictures.
 struct Room {
     bytes: usize,
 }

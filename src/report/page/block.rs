@@ -1,4 +1,4 @@
-//! What a page is made of. Plain text throughout: each rendering escapes it in its own way.
+//! Blocks of a page. All text is plain; each rendering escapes it for its own format.
 
 use super::key_number::KeyNumber;
 use crate::finding::Finding;
@@ -12,11 +12,11 @@ use std::path::Path;
 /// A report: title, findings, then the sections.
 #[derive(Clone, Debug)]
 pub struct Page {
-    /// What it is about, as the user calls it.
+    /// Title: subject of the report in the user's words.
     pub title: String,
     /// Sentence that states the result.
     pub summary: String,
-    /// What kind of report it is.
+    /// Kind of report.
     pub lead: String,
     /// In any order: the worst are shown first.
     pub findings: Vec<Finding>,
@@ -28,7 +28,7 @@ pub struct Page {
     pub paper: Paper,
 }
 
-/// What of a report goes onto paper.
+/// Extent of a report on paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Paper {
     /// Nothing.
@@ -53,7 +53,7 @@ impl Page {
         }
     }
 
-    /// The same page, for paper too.
+    /// Sets the extent of the page on paper.
     pub fn on_paper(self, paper: Paper) -> Self {
         Self { paper, ..self }
     }
@@ -149,7 +149,7 @@ pub enum Block {
     Cards(Vec<Card>),
     /// Links of a page to files beside it: words, path.
     Links(Vec<(String, String)>),
-    /// What only some look for: folded away under `summary` on a screen, in full on paper.
+    /// Content for some readers only: collapsed under `summary` on a screen, in full on paper.
     Folded {
         /// Words to open it.
         summary: String,
@@ -168,7 +168,7 @@ impl Block {
         })
     }
 
-    /// The same table with cells that lead to files; another block as it is.
+    /// Adds links to files to the cells of a table; returns any other block unchanged.
     pub fn linked(self, links: Vec<CellLink>) -> Self {
         match self {
             Self::Table(t) => Self::Table(Table { links, ..t }),
@@ -268,7 +268,7 @@ pub struct CellLink {
     pub column: usize,
     /// Path of the file, from the working folder; [`Page::beside`] makes it one from the folder of the page.
     pub path: String,
-    /// What is shown where the cell is pointed at.
+    /// Text shown when the pointer is on the cell.
     pub title: String,
 }
 

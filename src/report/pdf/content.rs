@@ -1,4 +1,4 @@
-//! What the template is given: the page as JSON, every text made printable.
+//! Input of the PDF template: the page as JSON, with printable text only.
 
 use super::columns::{Fitted, LONGEST_WORD, fitted, is_numeric};
 use super::glyphs::{breakable, printable, short_printable};
@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 pub struct Origin<'a> {
     /// Program and version.
     pub program: &'a str,
-    /// Its command.
+    /// Command that wrote the report.
     pub command: &'a str,
     /// Files read: path and SHA-256, hexadecimal.
     pub inputs: &'a [(String, String)],

@@ -4,7 +4,7 @@ use crate::report::figure::{GaugePoints, agreement, gap_by_channel, heat_map, in
 use crate::report::page::{Block, Page, Paper, Section, figure_section, table_section};
 
 const HASH: &str = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08";
-/// What a template language, JSON, XML or a page could trip over.
+/// Characters with a special meaning in the template language, JSON, XML or a page.
 const NASTY: &str = "#panic(1) *b* $x$ _u_ <a href=\"x\"> `c` \\ @ref ~ [ ] { } // /* \"q\" 'q' = - + / \u{202e}evil µε Δ Ж 中 🚚 \t\n";
 
 fn origin<'a>(inputs: &'a [(String, String)], units: &'a [(String, String)]) -> Origin<'a> {

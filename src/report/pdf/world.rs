@@ -52,7 +52,7 @@ fn sentences(faults: &[SourceDiagnostic]) -> String {
     list.join("; ")
 }
 
-/// What Typst may see.
+/// Files, fonts and library that Typst can read.
 struct Paper {
     library: LazyHash<Library>,
     book: LazyHash<FontBook>,

@@ -104,7 +104,7 @@ fn switches(scene: &Scene, parts: &[Part]) -> Markup {
     }
 }
 
-/// What the colours are.
+/// Returns the quantity that the colours show.
 fn coloured(scene: &Scene) -> &'static str {
     let mut signed = scene.fields.iter().map(|f| f.values.is_signed());
     let first = signed.next();

@@ -112,7 +112,7 @@ fn placed(job: &Job, model: &Model, name: &str) -> Option<(Vec3, Vec3, Twist)> {
     Some((at, frame.vector_to_basic(v, at), twist))
 }
 
-/// What the three numbers of a recovered load are.
+/// Meaning of the three numbers of a recovered load.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shown {
     /// Lower end of the interval, value, upper end: a set of arrows a run.

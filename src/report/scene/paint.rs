@@ -13,7 +13,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    /// Of a field.
+    /// Returns the values of a field, in the order of the model's shells and solids.
     pub(super) fn of_field(model: &Model, values: &FieldValues) -> Self {
         match values {
             FieldValues::Strain(case) => Self::of(model, case),
@@ -26,7 +26,7 @@ impl Values {
         }
     }
 
-    /// Of a load case: shells in their plane, solids at their centre (both sides alike).
+    /// Returns the strain of a load case: in the plane for shells, at the centre for solids (equal on both sides).
     pub(super) fn of(model: &Model, case: &CaseResult) -> Self {
         let mut shells = vec![[f64::NAN; 2]; model.shells.len()];
         for (ix, strain) in case.shells.elements.iter().zip(&case.shells.centre) {

@@ -16,13 +16,13 @@ pub(super) enum Owner {
 /// Faces of one property.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Part {
-    /// What it is called.
+    /// Name of the part.
     pub name: String,
     /// Grids of its faces.
     pub grids: Vec<GridIx>,
     /// Faces: owner, indices into `grids`; triangles repeat the third.
     pub faces: Vec<(Owner, [u32; 4])>,
-    /// What is drawn of them.
+    /// Drawn geometry of these faces.
     pub drawn: Drawn,
 }
 
@@ -34,7 +34,7 @@ impl Part {
     }
 }
 
-/// What is drawn of a part.
+/// Drawn geometry of a part: its own faces, or a coarser version of them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Drawn {
     /// By grid of the part: its vertex.

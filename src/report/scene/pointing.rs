@@ -4,7 +4,7 @@ use super::types::Pointing;
 use maud::{Markup, html};
 use serde_json::{Map, Value, json};
 
-/// What the page's script is told of it.
+/// Returns the data for the page's script: null without pointing, else the lists and the file of picked places.
 pub(super) fn said(pointing: &Pointing) -> Value {
     match pointing {
         Pointing::Nothing => Value::Null,

@@ -1,4 +1,4 @@
-//! What a scene shows.
+//! Content of a scene.
 
 use crate::fe::CaseResult;
 use crate::fe::strain_tensor::Surface;
@@ -6,7 +6,7 @@ use crate::gauge::Gauge;
 use crate::job::{Candidates, Clearances, Ids, PropertyIds};
 use crate::model::{Model, Vec3};
 
-/// All of it.
+/// Model, gauges, strain fields and loads that are drawn together.
 #[derive(Clone, Debug)]
 pub struct Scene<'a> {
     /// Structure.
@@ -19,30 +19,30 @@ pub struct Scene<'a> {
     pub arrows: Vec<ArrowSet>,
     /// Unit of length; empty where the deck does not say.
     pub length: &'static str,
-    /// What can be planned on it by pointing.
+    /// Planning by pointing that the scene allows.
     pub pointing: Pointing,
 }
 
-/// What can be planned on a scene by pointing at it.
+/// Planning by pointing at a scene.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub enum Pointing {
     /// Nothing.
     #[default]
     Nothing,
-    /// Where gauges really are.
+    /// Installed positions of gauges.
     Gauges,
-    /// Where they are, and where others may go.
+    /// Installed positions of gauges, and places for new gauges.
     Places(Places),
 }
 
-/// Where gauges may go, to begin with.
+/// Places where gauges may go, before any pointing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     /// The file of picked lists, as the job names it.
     pub file: String,
     /// Keys of `[candidates]` with the ids that the job states, from and to.
     pub lists: Vec<(&'static str, Vec<[u32; 2]>)>,
-    /// Whether the job limits them further: by sets, boxes, distances.
+    /// Whether the job limits the places further: by sets, boxes, distances.
     pub also: bool,
 }
 
@@ -58,7 +58,7 @@ impl Default for Places {
 }
 
 impl Places {
-    /// What a job says of its candidates.
+    /// Returns the places that `[candidates]` of a job states.
     pub fn of(candidates: &Candidates) -> Self {
         let properties = |list: &Option<PropertyIds>| list.as_ref().map(|p| p.ids.clone());
         let lists = [
@@ -97,7 +97,7 @@ pub struct Mark {
     pub axes: Option<[Vec3; 2]>,
     /// Side, where known.
     pub surface: Option<Surface>,
-    /// What else is said of it when it is picked.
+    /// Further text shown when the gauge is picked.
     pub note: String,
     /// Gap at it, before and after; drawn as the area of circles.
     pub gap: Option<[f64; 2]>,
@@ -123,7 +123,7 @@ impl Mark {
     }
 }
 
-/// What colours the model: `values * scale` in `unit`.
+/// Field that colours the model: `values * scale` in `unit`.
 #[derive(Clone, Debug)]
 pub struct Field<'a> {
     /// Name.
@@ -172,7 +172,7 @@ pub struct Arrow {
     pub twist: Twist,
     /// Size, signed; lengths compare within a kind.
     pub value: f64,
-    /// What is said of it.
+    /// Text of the load's label.
     pub label: String,
 }
 

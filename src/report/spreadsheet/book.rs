@@ -41,7 +41,7 @@ impl From<u32> for Cell {
 /// A sheet: a header line, then rows.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Sheet {
-    /// Its name, at most 31 characters.
+    /// Name of the sheet, at most 31 characters.
     pub name: String,
     /// Names of the columns, with the unit where they have one.
     pub columns: Vec<String>,
@@ -63,13 +63,13 @@ impl Sheet {
 /// The unit of one quantity.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnitOf {
-    /// What is measured, such as `force`.
+    /// Quantity, such as `force`.
     pub quantity: &'static str,
-    /// In which unit, such as `kN`.
+    /// Unit, such as `kN`.
     pub unit: String,
 }
 
-/// What every workbook says of itself.
+/// Description of the job in every workbook.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About<'a> {
     /// Title of the job.
@@ -135,7 +135,7 @@ fn fill(out: &mut Worksheet, sheet: &Sheet) -> Result<(), XlsxError> {
     Ok(())
 }
 
-/// As much of a text as a cell of a spreadsheet holds; what is cut off ends in two points.
+/// Shortens text to the limit of a spreadsheet cell; shortened text ends in two points.
 fn fitting(text: &str) -> std::borrow::Cow<'_, str> {
     // The limit counts UTF-16 units; a character has at most two of them.
     if text.len() <= MOST_TEXT || text.encode_utf16().count() <= MOST_TEXT {

@@ -12,26 +12,26 @@ use crate::report::scene::{Scene, scene_section};
 /// Heading over what was added to the model.
 pub const ADDED: &str = "What was added";
 
-/// Strain of the runs as the model predicts it, as it was given and with the effects in.
+/// Strain of the runs predicted by the model, without and with the effects.
 #[derive(Default)]
 pub struct RunStrain {
-    /// By gauge: runs used, runs held out; the model as it was given.
+    /// Readings and predictions of the given model by gauge: runs used, runs held out.
     pub before: Vec<GaugePoints>,
-    /// The same with the effects in.
+    /// Readings and predictions of the model with the effects by gauge: runs used, runs held out.
     pub after: Vec<GaugePoints>,
     /// Names of the runs used.
     pub used: Vec<String>,
-    /// Names of those held out.
+    /// Names of the runs held out.
     pub held_out: Vec<String>,
 }
 
-/// What the page is made of.
+/// Content of the page.
 pub struct GapReport<'a> {
     /// Title of the job.
     pub title: &'a str,
-    /// What was found.
+    /// Outcome of `reconcile` on strain.
     pub outcome: &'a Outcome,
-    /// What was added: effect, path, old and new value; empty where there is no extended model.
+    /// Changes of the model: effect, path, old and new value; empty without an extended model.
     pub added: Vec<Vec<String>>,
     /// The gap on the model.
     pub scene: Option<&'a Scene<'a>>,

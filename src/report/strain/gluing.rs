@@ -1,4 +1,4 @@
-//! What the technician takes to the structure, to print: as markdown, and as a part of the plan's report.
+//! Gluing sheet for the technician, to print: as markdown, and as a section of the plan's report.
 
 use super::tables::corner_distances;
 use crate::fe::strain_tensor::Surface;
@@ -15,7 +15,7 @@ const BUDGETS: &str =
     "Budgets are the errors of angle and place that move some load by 5 % of its expected size.";
 const CORNERS: &str = "Distance of each gauge from the corners of its element (grid: distance):";
 
-/// What a column holds, with the unit of length where the deck says it.
+/// Returns the heading of a column with the unit of length; without a unit if the deck states none.
 pub(super) fn in_length(word: &str, length: &str) -> String {
     match length {
         "" => word.to_owned(),
@@ -59,7 +59,7 @@ pub fn gluing_sheet_md(title: &str, placed: &[PlacedGauge], model: &Model, lengt
     t
 }
 
-/// The same as a part of a report.
+/// Gluing sheet as a section of a report; `length` is the model's unit.
 pub(super) fn gluing_section(placed: &[PlacedGauge], model: &Model, length: &str) -> Section {
     let head = head(length);
     let head: Vec<&str> = head.iter().map(String::as_str).collect();

@@ -128,10 +128,10 @@ fn placed_row(p: &PlacedGauge) -> Vec<String> {
     ]
 }
 
-/// What each number of gauges gives, and the loads (name, unit) that its sigmas belong to.
+/// Results by number of gauges, and the loads (name, unit) of their sigmas.
 #[derive(Default)]
 pub struct HowMany {
-    /// By number.
+    /// Results by number of gauges.
     pub points: Vec<CountPoint>,
     /// Loads.
     pub loads: Vec<(String, String)>,
@@ -145,7 +145,7 @@ pub struct RecoveredRun {
     pub loads: Vec<(String, [f64; 3], String)>,
 }
 
-/// What `recover` found.
+/// Result of `recover`.
 pub struct Recovered<'a> {
     /// S.
     pub sensitivity: &'a Sensitivity,

@@ -106,12 +106,12 @@ struct Units {
     length: String,
     /// Forces, then moments.
     loads: String,
-    /// Of a translation, then of a rotation.
+    /// Units of accelerations: of a translation, then of a rotation.
     acceleration: String,
 }
 
 impl Units {
-    /// Of a system; the deck's own where none is stated.
+    /// Returns the names of the units of a system; the deck's own units if none is stated.
     fn of(system: Option<UnitSystem>) -> Self {
         let Some(system) = system else {
             return Self {

@@ -10,7 +10,7 @@ use crate::vehicle::chassis::ChassisForce;
 use crate::vehicle::identify::{Estimate, Identification};
 use crate::vehicle::term::UnitNames;
 
-/// What the page draws.
+/// Curves on the page.
 pub struct Curves {
     /// Wheel forces over time.
     pub histories: Vec<Curve>,

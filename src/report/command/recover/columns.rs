@@ -10,7 +10,7 @@ pub(super) fn columns(key: &str, names: &[String]) -> Vec<String> {
     std::iter::once(key.to_owned()).chain(loads).collect()
 }
 
-/// The same with their units.
+/// Columns of `loads.csv` ([`columns`]) with their units; `key` is the name and unit of the first column.
 pub(super) fn columns_with_units(
     key: [&str; 2],
     names: &[String],

@@ -145,9 +145,9 @@ fn points(runs: &RecoveredRuns) -> Vec<GaugePoints> {
         .collect()
 }
 
-/// What all other gauges predict of this one, from its own prediction and leverage; NaN where the others say nothing of it.
+/// Returns the reading of a gauge predicted from the other gauges, by its own prediction and leverage. NaN if the other gauges do not determine it.
 fn held_out(predicted: f64, measured: f64, leverage: f64) -> f64 {
-    /// Leverage from which the others say next to nothing.
+    /// Leverage from which the other gauges practically do not determine a gauge.
     const ALONE: f64 = 0.999;
     if leverage < ALONE {
         measured - (measured - predicted) / (1.0 - leverage)

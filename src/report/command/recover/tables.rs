@@ -28,7 +28,7 @@ pub(super) struct LoadTables {
     writer: Option<JoinHandle<Result<Tables, WriteError>>>,
 }
 
-/// What goes into the files: rows of `loads.csv`, numbers of `loads.bin`.
+/// Content for the files: rows of `loads.csv`, numbers of `loads.bin`.
 struct Text {
     rows: Vec<u8>,
     numbers: Vec<u8>,
@@ -37,7 +37,7 @@ struct Text {
 /// The open files.
 struct Tables {
     csv: OpenFile,
-    /// Where anything is made of all samples.
+    /// `loads.bin` with all samples; `None` if no output needs all of them.
     bin: Option<OpenFile>,
 }
 
@@ -211,12 +211,12 @@ fn text(head: &RecordHead, block: &Block) -> Text {
 /// `loads.bin` as written.
 pub(super) struct LoadsFile {
     bytes: FileBytes,
-    /// What stands before its samples.
+    /// Header of `loads.bin`.
     pub header: Header,
 }
 
 impl LoadsFile {
-    /// Of an output folder whose `loads.bin` is complete.
+    /// Reads back the complete `loads.bin` of an output folder.
     ///
     /// # Errors
     /// A file that can't be read.
