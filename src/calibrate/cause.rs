@@ -1,4 +1,4 @@
-//! What the change of one gauge's row looks like: a gain, an angle, a place, or nothing that can be told.
+//! Cause of the change of one gauge's row: a gain, an angle, a place, or undetermined.
 
 use super::evidence::RowEvidence;
 use super::model_error::ErrorEvidence;
@@ -6,10 +6,11 @@ use super::prior::rows;
 use super::types::{ModelError, ModelPrior, OffDrawing, ShiftWord};
 use crate::linalg::{Matrix, spd};
 
-/// Natural log of the odds over every rival from which a turned or displaced gauge is named: 150 to 1, "very strong" on the scale of R. E. Kass and
-/// A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773. A false name costs more than none.
+/// Natural log of the odds over every alternative explanation from which a turned or displaced gauge is reported: 150 to 1.
+/// This is "very strong" on the scale of R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995) 773. A wrong cause costs more than no cause.
 const CLEAR: f64 = 5.0;
-/// The same from which a gain is said rather than an angle or a place: 7 to 1, "positive" there. A gain is what most often is wrong.
+/// Natural log of the odds over angle and place from which a gain is reported: 7 to 1, "positive" on this scale. A wrong gain is the most usual
+/// fault.
 const GAIN_RATHER: f64 = 2.0;
 /// Sd of a gain that nobody stated: half or double, or reversed.
 const GAIN_SD: f64 = 1.0;
@@ -19,7 +20,7 @@ const ANGLE_SD: f64 = 30.0;
 const ANGLE_STEP: f64 = 0.05;
 const ANGLES: i32 = 1800;
 
-/// Log marginal likelihoods of a gauge's readings, each with the ordinary error of the model besides.
+/// Log marginal likelihoods of a gauge's readings under each cause, in addition to the ordinary error of the model.
 struct Rivals {
     /// Every load by the same factor.
     gain: f64,
@@ -31,8 +32,9 @@ struct Rivals {
     other: f64,
 }
 
-/// `Angle` or `Place` where the readings clearly prefer that to a gain, to each other and to any other row, `Gain` where they prefer that to both,
-/// else `Undetermined`; `None` where the model does not say how the row changes. `error`: that of the model as other gauges show it.
+/// Returns `Angle` or `Place` if the readings clearly prefer it to a gain, to each other and to any other row.
+/// Returns `Gain` if they prefer a gain to angle and place, else `Undetermined`; `None` if the model has no `off_drawing` changes.
+/// `error`: the error of the model as determined from the other gauges.
 pub(super) fn off_drawing(
     model: &ModelPrior,
     scales: &[f64],

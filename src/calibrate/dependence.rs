@@ -10,9 +10,9 @@ use crate::linalg::{Matrix, dense};
 pub struct Dependence {
     /// Relative change of the loads' sum per unit of the column.
     pub slope_rel: f64,
-    /// Its standard deviation.
+    /// Standard deviation of `slope_rel`.
     pub sigma: f64,
-    /// Chance of such a slope where there is none.
+    /// Chance of a slope at least as clear if the loads do not depend on the column.
     pub chance: f64,
     /// Degrees of freedom behind `sigma`.
     pub dof: f64,

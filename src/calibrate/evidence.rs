@@ -4,7 +4,7 @@ use super::given_others::ByGauge;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 
-/// What the runs say of one row, in loads of unit size: `A = sum phi phi' / v` and `b = sum phi y / v`.
+/// Normal equations of one row from the runs, in loads of unit size: `A = sum phi phi' / v` and `b = sum phi y / v`.
 #[derive(Clone, Debug)]
 pub(super) struct Normal {
     matrix: Vec<f64>,
@@ -12,7 +12,7 @@ pub(super) struct Normal {
 }
 
 impl Normal {
-    /// Of gauge `g`.
+    /// Sums the normal equations of gauge `g` over the runs with a reading of it.
     pub fn of(g: usize, k: usize, runs: &[ByGauge]) -> Self {
         let mut out = Self {
             matrix: vec![0.0; k * k],
@@ -27,7 +27,7 @@ impl Normal {
         out
     }
 
-    /// The same without a reading `y` at loads `phi`; a blank one is not in it.
+    /// Returns the normal equations without a reading `y` at loads `phi`; unchanged if `y` is not finite.
     pub fn without(&self, phi: &[f64], y: f64, variance: f64) -> Self {
         let mut out = self.clone();
         if y.is_finite() {

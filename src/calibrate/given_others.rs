@@ -1,4 +1,4 @@
-//! What each gauge reads in a run whose loads are known with an error: given what the others read.
+//! Reading of each gauge in a run with uncertain loads, conditional on the readings of the other gauges.
 
 use super::posterior::Equation;
 use crate::linalg::precision::Precision;
@@ -11,13 +11,13 @@ pub(super) struct ByGauge {
     pub phi: Vec<f64>,
     /// Reading by gauge at these loads; NaN where there is none.
     pub y: Vec<f64>,
-    /// Its variance, S aside.
+    /// Variance of the reading by gauge, without the uncertainty of S.
     pub variance: Vec<f64>,
 }
 
-/// A run's readings by gauge. `spread`: the part of the covariance of `e` that the loads' own error makes, which is common to the gauges. Of a
-/// lorry whose sum alone is known each gauge by itself says next to nothing; with the others, which say where it stands, nearly as much as
-/// of known loads:
+/// Returns a run's readings by gauge. `spread`: the part of the covariance of `e` from the error of the loads, which is common to the gauges.
+/// If only the sum of a lorry's loads is known, one gauge alone determines its row hardly at all. Together with the other gauges, which determine
+/// the distribution of the load, it determines the row nearly as well as known loads:
 ///
 /// `y_g + sum_h P_gh (y_h - s_h phi) / P_gg` over the other gauges, variance `1 / P_gg`, `P` the inverse of spread and own variances.
 ///

@@ -162,11 +162,11 @@ fn recovered(task: &Task, run: &KnownRun, s: &Sensitivity, zero: &[f64]) -> RunE
     estimate(s, &readings, errors)
 }
 
-/// What is known of a run's wanted loads.
+/// Known part of a run's wanted loads.
 struct Told {
-    /// Independent combinations.
+    /// Number of independent combinations that are known.
     combinations: usize,
-    /// Loads by themselves, by number among the wanted.
+    /// Loads that are known individually, by number among the wanted loads.
     alone: Vec<usize>,
 }
 
@@ -190,7 +190,7 @@ impl Told {
 /// Rounds between the scatter of the others and the posterior that it gives.
 const ROUNDS: usize = 2;
 
-/// What the runs other than `out` leave.
+/// Returns the residuals of the runs other than `out` under this posterior.
 fn others_left(task: &Task, state: &State, out: &[usize], posterior: &Posterior) -> Vec<Left> {
     let others = (0..state.used.len()).filter(|j| !out.contains(j));
     let one = |j: usize| {

@@ -1,4 +1,4 @@
-//! What strain says of loads that are known with an error: errors in variables.
+//! Correction of uncertain known loads by the strain (errors in variables).
 
 use super::types::KnownLoads;
 use super::unknown::{Free, project_out};

@@ -29,7 +29,7 @@ fn factor(step: i32) -> f64 {
 #[derive(Clone, Debug)]
 pub(super) struct ErrorEvidence {
     stated: ModelError,
-    /// What the runs say of each gauge's row.
+    /// Normal equations of each gauge's row from the runs.
     pub normals: Vec<Normal>,
     /// By run, gauge by gauge.
     by_run: Vec<ByGauge>,
@@ -50,7 +50,7 @@ struct Tried {
 struct Own {
     /// Log marginal likelihood of its readings.
     log: f64,
-    /// Its error: mean variance over all that it may be, each as probable as the readings make it.
+    /// Error of the gauge's row: mean variance over all errors tried, weighted by their probability given the readings.
     error: RowError,
 }
 
@@ -71,7 +71,8 @@ impl ErrorEvidence {
         (0..self.normals.len()).map(one).collect()
     }
 
-    /// As [`ErrorEvidence::by_gauge`] without run number `left` of those that this was made of; the error of all gauges stays.
+    /// Returns the errors as [`ErrorEvidence::by_gauge`], computed without run number `left` of the evidence. The common error of all gauges is
+    /// unchanged.
     pub fn by_gauge_without(
         &self,
         left: usize,
@@ -280,7 +281,7 @@ impl Table {
         Self { logs, gauges: n }
     }
 
-    /// That of gauge `g`.
+    /// Returns the log marginal likelihood of gauge `g` at these steps of the errors; negative infinity outside the table.
     fn log(&self, common: i32, entry: i32, g: usize) -> f64 {
         let place = |step: i32| (step - Self::LEAST) as usize;
         let tries = place(Self::MOST) + 1;

@@ -1,17 +1,18 @@
-//! What a shrunk scatter says too well of itself: recovered loads are corrected by what gauges read that no loads make, with factors that were
-//! learnt of as few runs as the scatter.
+//! Correction of a shrunk scatter that is too small. Recovered loads are corrected by the readings outside the span of S. The factors of this
+//! correction come from the few runs that gave the scatter.
 //!
 //! With an orthonormal basis `U` of the columns of S, loads in these coordinates are `u = H U' C^-1 eps`, `H = (U' C^-1 U)^-1` their covariance,
-//! `C` the scatter. As a regression of `U' eps` on the other directions it is a ridge: shrinking keeps `1 - w` of the sample among these and adds
-//! `w` times their mean variance. What it leaves in the runs that taught it is less than what it leaves in others.
+//! `C` the scatter. As a regression of `U' eps` on the other directions this is a ridge: shrinking keeps `1 - w` of the sample in these directions
+//! and adds `w` times their mean variance. The residuals of the calibration runs are smaller than those of other runs.
 
 use crate::linalg::{Matrix, dense, spd};
 
-/// What is to be added to the scatter, `n x n` by rows, so that intervals of loads are as wide as other runs scatter; `None` where they are.
+/// Returns the addition to the scatter, `n x n` by rows, that widens the intervals of loads to the scatter of other runs; `None` if they are wide
+/// enough.
 ///
-/// `(k - 1) U H U'`, which changes no estimate: it lies in the span of S. `k = tr(H^-1 V) / rank`, `V = H U' C^-1 A C^-1 U H / (1 - p / dof)^2`
-/// with the sample `A`, no more than `U' A U`, what loads scatter by without any correction; `p = sum (1 - w) d / ((1 - w) d + w mean(d))` over
-/// the variances `d` of the other directions.
+/// The addition is `(k - 1) U H U'`. It changes no estimate, because it is in the span of S.
+/// `k = tr(H^-1 V) / rank`, `V = H U' C^-1 A C^-1 U H / (1 - p / dof)^2` with the sample `A`. `V` is at most `U' A U`, the scatter of loads without
+/// any correction. `p = sum (1 - w) d / ((1 - w) d + w mean(d))` over the variances `d` of the other directions.
 ///
 /// # Reference
 /// G. H. Golub, M. Heath, G. Wahba, Technometrics 21 (1979) 215: generalised cross-validation of a ridge.

@@ -80,7 +80,7 @@ pub(super) fn solve(prior: &[RowPrior], equations: &[Equation]) -> Option<Poster
     })
 }
 
-/// As [`solve`] where no errors go across gauges: each row by itself.
+/// Computes the posterior of [`solve`] row by row, for errors that are independent between gauges.
 fn solve_by_gauge(prior: &[RowPrior], equations: &[Equation]) -> Option<Posterior> {
     let n = prior.len();
     let k = prior.first().map_or(0, |p| p.mean.len());

@@ -47,7 +47,7 @@ fn refusal(task: &Task, l: &LeftOut) -> Finding {
     .with_numbers(far, 1.0)
 }
 
-/// What the strain says of the run's loads, beside what is known.
+/// Describes how the loads determined by the strain differ from the known loads of the run.
 fn words(task: &Task, l: &LeftOut) -> String {
     let main = |f: &[f64]| -> Option<usize> {
         let all: f64 = f.iter().map(|v| v.abs()).sum();

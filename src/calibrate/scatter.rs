@@ -11,23 +11,23 @@ use std::collections::BTreeMap;
 pub(super) struct Scatter {
     /// `n x n` by rows; zeros where noise explains everything.
     pub covariance: Vec<f64>,
-    /// Degrees of freedom behind it; infinite where it is zero.
+    /// Degrees of freedom behind `covariance`; infinite where it is zero.
     pub dof: f64,
-    /// Those behind it in a pattern that no loads make: shrunk towards what all such patterns have in common.
+    /// Degrees of freedom of a pattern outside the span of S. Shrinking such patterns towards their common mean raises them.
     pub dof_outside: f64,
-    /// Share of its variance that repeats of one loading have in common: what S does not make of that loading, or what is peculiar to it (a
-    /// truck's axles, a lane's place). Zero where repeats differ from each other as much as from S.
+    /// Share of the variance that repeats of one loading have in common: the error of S for that loading, or a property of that loading (a truck's
+    /// axles, the position in a lane). Zero if repeats differ from each other as much as from S.
     pub common: f64,
 }
 
-/// What one run leaves.
+/// Residuals of one run.
 #[derive(Clone, Debug)]
 pub(super) struct Left {
     /// Reading less prediction by gauge, strain; NaN without reading.
     pub residual: Vec<f64>,
     /// Mean square of the predicted strain.
     pub q2: f64,
-    /// Variance of each reading that is explained otherwise: noise, errors of the loads.
+    /// Variance of each reading from other known sources: noise, errors of the loads.
     pub explained: Vec<f64>,
     /// Runs with the same number are repeats of each other.
     pub group: usize,
@@ -78,7 +78,8 @@ impl Scatter {
         Self::at_most(runs, fitted, columns)
     }
 
-    /// As [`Scatter::of`], even where noise alone explains what the runs leave: the scatter that they may have, with its degrees of freedom.
+    /// Returns the scatter as [`Scatter::of`], but without the test against noise: the largest scatter that the residuals allow, with its degrees of
+    /// freedom.
     pub fn at_most(runs: &[Left], fitted: f64, columns: &Matrix) -> Self {
         let n = runs.first().map_or(0, |r| r.residual.len());
         let dof = runs.len() as f64 - fitted;
@@ -121,15 +122,15 @@ impl Scatter {
     }
 }
 
-/// What runs leave, in units of their root mean square strain.
+/// Covariance of the residuals of runs, in units of their root mean square strain.
 struct Sample {
-    /// Covariance over gauges of what one run leaves, `n x n`.
+    /// Covariance over gauges of the residuals of one run, `n x n`.
     covariance: Vec<f64>,
     /// Degrees of freedom behind it.
     dof: f64,
     /// Share of it that repeats have in common.
     common: f64,
-    /// Mean of the variance that is explained otherwise.
+    /// Mean of the variance from other known sources.
     explained: f64,
 }
 

@@ -66,7 +66,7 @@ impl Row {
         (size > 0.0 && sd < TOLD * size && off < SAME * size).then_some(off)
     }
 
-    /// As [`Row::explained_by`] the model's row with its sign turned.
+    /// Returns the distance of the calibrated row from the model's row with reversed sign, if [`Row::explained_by`] accepts it.
     fn turned(&self) -> Option<f64> {
         let turned: Vec<f64> = self.model.iter().map(|v| -v).collect();
         self.explained_by(&turned)
@@ -213,8 +213,8 @@ fn exchanged(rows: &[Row]) -> Vec<(usize, usize)> {
     out.into_iter().map(|(_, a, b)| (a, b)).collect()
 }
 
-/// What the change of a row that is far off looks like; `off_drawing`: what the readings say of an angle or a place, where the model knows
-/// what these make. Neither is said by anything else.
+/// Returns the cause of the change of a row that is far off. `off_drawing`: the cause from the readings if the model contains the changes by an angle
+/// or a place. `Angle` and `Place` come from `off_drawing` only.
 fn cause(row: &Row, off_drawing: Option<ShiftWord>) -> ShiftWord {
     if let Some(word @ (ShiftWord::Angle | ShiftWord::Place)) = off_drawing {
         return word;

@@ -27,11 +27,11 @@ pub(super) struct State {
     pub posterior: Posterior,
     /// One a used run.
     pub equations: Vec<Equation>,
-    /// What each used run leaves.
+    /// Residuals of each used run.
     pub lefts: Vec<Left>,
     /// Scatter of repeats.
     pub scatter: Scatter,
-    /// Scatter and mean squares that the equations were made with: those of the round before.
+    /// Scatter and mean squares of the previous round, which the equations use.
     pub scatter_used: Scatter,
     /// See `scatter_used`.
     pub q2_used: Vec<f64>,
@@ -41,16 +41,16 @@ pub(super) struct State {
     pub fitted: f64,
     /// Error of the model in each gauge's row, as learnt; empty without a model.
     pub row_errors: Vec<RowError>,
-    /// What it was learnt from, gauge by gauge.
+    /// Evidence for the model's error, gauge by gauge.
     pub error_evidence: Option<ErrorEvidence>,
-    /// Gauges that are wired wrongly: they say nothing of the model.
+    /// Gauges that are wired wrongly, which are excluded from the estimate of the model's error.
     pub wrongly_wired: Vec<usize>,
     /// Covariance of readings at any load from terms that the model lacks, `n x n` by rows; empty where none is found.
     pub lack: Vec<f64>,
 }
 
 impl State {
-    /// The fit, in which gauges that are `wrongly_wired` say nothing of the model's error; `None` where numbers are not finite.
+    /// Fits all used runs. Gauges that are `wrongly_wired` do not count for the model's error. `None` if numbers are not finite.
     pub fn of(task: &Task, used: &[usize], wrongly_wired: &[usize]) -> Option<Self> {
         let runs: Vec<&KnownRun> = used.iter().filter_map(|&r| task.runs.get(r)).collect();
         let (n, k) = (task.gauges.len(), task.loads.len());
@@ -237,11 +237,11 @@ fn drawn(model: &ModelPrior, scales: &[f64]) -> Vec<Vec<f64>> {
     all.into_iter().map(|row| row.mean).collect()
 }
 
-/// What a fit without a model begins with.
+/// Start values of a fit without a model.
 struct Begun {
     /// Rows of S; empty with a model.
     rows: Vec<Vec<f64>>,
-    /// What the runs leave unknown, where no run tells it.
+    /// Directions of the loads that no run determines; `None` if there are no such directions.
     unknown: Option<Unknown>,
 }
 
@@ -264,7 +264,7 @@ impl Begun {
         }
     }
 
-    /// Prior of the rows. Along what no run tells it alone decides where S lies: where it began.
+    /// Returns the prior of the rows. Along directions that no run determines, S keeps its start value.
     fn prior(&self, without_model: &[RowPrior]) -> Vec<RowPrior> {
         let mut out = without_model.to_vec();
         if self.unknown.is_some() {
@@ -276,7 +276,7 @@ impl Begun {
     }
 }
 
-/// What a run says of S.
+/// Equation of a run for S.
 struct Made {
     equation: Equation,
     /// Readings' worth of freedom that the correction of its loads takes.
@@ -323,7 +323,7 @@ fn equation(
     })
 }
 
-/// What a run leaves at loads `phi`.
+/// Returns the residuals of a run at loads `phi`.
 pub(super) fn left(task: &Task, run: &KnownRun, posterior: &Posterior, phi: &[f64]) -> Left {
     let predicted = posterior.predict(phi);
     let of_loads = less_zero(&predicted, &zero_of(task, posterior));

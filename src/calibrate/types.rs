@@ -1,11 +1,11 @@
-//! What calibration takes and gives.
+//! Input and result of a calibration.
 
 use crate::estimate::LoadEstimate;
 use crate::finding::Finding;
 use crate::linalg::Matrix;
 use crate::sensitivity::{GaugeNoise, Load, Sensitivity};
 
-/// What is known of the loads of one run: Gaussian, job units.
+/// Known loads of one run: Gaussian, job units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownLoads {
     /// Mean by load.
@@ -25,7 +25,7 @@ impl KnownLoads {
     }
 }
 
-/// One run of known load.
+/// Run with known loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KnownRun {
     /// Name.
@@ -34,7 +34,7 @@ pub struct KnownRun {
     pub strain: Vec<f64>,
     /// Noise variance of these readings in units of that of a single one.
     pub noise_factor: f64,
-    /// Its loads.
+    /// Known loads.
     pub loads: KnownLoads,
     /// Runs with the same number are repeats of each other.
     pub group: usize,
@@ -106,7 +106,7 @@ pub enum CommonZero {
     Column,
 }
 
-/// What to calibrate.
+/// Input of a calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Task {
     /// Row names.
@@ -247,7 +247,7 @@ pub struct Calibration {
     pub range: CalibratedRange,
     /// Combinations of loads that no run determines.
     pub undetermined: Vec<Undetermined>,
-    /// What was noticed.
+    /// Findings on runs, gauges and model.
     pub findings: Vec<Finding>,
 }
 
@@ -256,46 +256,46 @@ pub struct Calibration {
 pub struct LeftOut {
     /// Number of the run.
     pub number: usize,
-    /// Its loads as the other runs teach them, with covariance.
+    /// Loads recovered with the calibration from the other runs, with covariance.
     pub estimate: LoadEstimate,
-    /// What was known of them.
+    /// Known loads of the run.
     pub known: Vec<f64>,
-    /// Squared distance between the two in units of their covariance.
+    /// Squared distance between `estimate` and `known` in units of the sum of their covariances.
     pub distance: f64,
-    /// Independent combinations of loads that are known of it, and compared.
+    /// Number of independent combinations of loads that are known and compared.
     pub loads: usize,
     /// Degrees of freedom behind the covariance.
     pub dof: f64,
-    /// Mean over the loads that are known by themselves of the squared distance of each, in units of its variance.
+    /// Mean squared distance of the individually known loads, each in units of its variance.
     pub each: f64,
-    /// Number of these.
+    /// Number of individually known loads.
     pub alone: usize,
     /// Squared distance of each sum of loads that the task names, in units of its variance.
     pub sums: Vec<f64>,
-    /// What is left of the strain over what is expected: chi2 over its degrees of freedom.
+    /// Residual strain over the expected residual: chi2 over its degrees of freedom.
     pub misfit: f64,
 }
 
-/// What a change of a row looks like.
+/// Cause of a change of a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShiftWord {
-    /// Within what the model's error makes.
+    /// No change beyond the model's error.
     None,
-    /// It reads nothing.
+    /// Dead gauge: no signal.
     Dead,
-    /// Its sign is turned.
+    /// Reversed polarity.
     Sign,
-    /// Every load by the same factor.
+    /// Wrong gain: the readings of all loads have one factor.
     Gain,
-    /// Turned by an angle.
+    /// Gauge turned by an angle.
     Angle,
-    /// It sits elsewhere.
+    /// Gauge at another place.
     Place,
-    /// Neither gain, angle nor place is clearly it.
+    /// Undetermined: not clearly a gain, an angle or a place.
     Undetermined,
-    /// It reads what the model says of another gauge, and that one what it says of this.
+    /// Exchanged with another gauge: the rows of the two gauges match each other's row of the model.
     Exchanged {
-        /// Number of the other.
+        /// Number of the other gauge.
         with: usize,
     },
 }
@@ -326,7 +326,7 @@ pub struct GaugeShift {
     pub shift: f64,
     /// Calibrated row along the model's: 1 where its size was right; 1 without a model.
     pub scale: f64,
-    /// What it looks like.
+    /// Cause of the change.
     pub word: ShiftWord,
 }
 
@@ -361,7 +361,7 @@ pub struct AsGlued {
 }
 
 impl AsGlued {
-    /// What the runs say of a move; `None` where it was not asked for.
+    /// Returns the size of a move from the runs; `None` if the task has no such move.
     pub fn of(&self, kind: MoveKind) -> Option<Glue> {
         self.moves.iter().find(|m| m.0 == kind).map(|m| m.1)
     }

@@ -1,9 +1,9 @@
-//! What runs leave unknown of their loads: a lorry on a scale tells the sum of its bays, not what each of them carries.
+//! Directions of the loads that the runs do not determine. A lorry on a scale gives the sum of its bays, not the load of each bay.
 //!
-//! Where no run tells the loads along some directions `Z`, `S` and `S (1 + Z B)` explain all runs alike for any `B`: the columns along `Z` are known
-//! up to size and mixture, and what is known is the sum, a functional of strain that these columns don't reach. So they begin with patterns of
-//! strain that the known sums leave (`start.rs`), the loads along `Z` are free in each run ([`Free`]), and the covariance of S along `S Z B`
-//! stays as wide as beforehand: recovered loads along `Z` are unknown, their sums are not.
+//! Let `Z` be directions along which no run determines the loads. Then `S` and `S (1 + Z B)` explain all runs equally well for any `B`: the columns
+//! along `Z` are known up to size and mixture. Only the sum is known, a functional of strain that these columns do not affect. The columns therefore
+//! start from patterns of strain that the known sums leave (`start.rs`), and the loads along `Z` are free in each run ([`Free`]). The covariance of S
+//! along `S Z B` keeps its prior width: recovered loads along `Z` are unknown, their sums are known.
 
 use super::types::{KnownLoads, KnownRun, Task};
 use crate::linalg::{Matrix, dense, spd};
@@ -18,13 +18,13 @@ const FREE: f64 = 25.0;
 /// Square of a sine under which two directions are one.
 const SAME: f64 = 1e-6;
 
-/// What some runs tell of their loads, all in loads of unit size.
+/// Known and unknown part of the loads of some runs, in loads of unit size.
 pub(super) struct Unknown {
-    /// By run: its loads without what is unknown of them.
+    /// Known part of the loads by run: the loads without their unknown directions.
     pub parts: Vec<Vec<f64>>,
-    /// Orthonormal directions along which no run's loads are known to be anything but zero.
+    /// Orthonormal directions along which the known part of the loads is zero in every run.
     pub untold: Vec<Vec<f64>>,
-    /// By run: orthonormal directions among these along which its loads are unknown.
+    /// Orthonormal directions among `untold` along which the loads are unknown, by run.
     pub free: Vec<Vec<Vec<f64>>>,
     /// See [`FREE`].
     variance: f64,
@@ -40,7 +40,7 @@ pub(super) struct Free<'a> {
 }
 
 impl Unknown {
-    /// What these runs tell.
+    /// Finds the unknown directions of these runs.
     pub fn of(runs: &[&KnownRun], scales: &[f64]) -> Self {
         let k = scales.len();
         let mut gram = vec![0.0; k * k];
@@ -65,12 +65,12 @@ impl Unknown {
         }
     }
 
-    /// Whether some run's loads are unknown along what no run tells.
+    /// Whether the loads of any run are unknown along a direction that no run determines.
     pub fn is_any(&self) -> bool {
         self.free.iter().any(|f| !f.is_empty())
     }
 
-    /// What is free in run number `i` of these.
+    /// Returns the free directions of run number `i`.
     pub fn free(&self, i: usize) -> Free<'_> {
         Free {
             directions: self.free.get(i).map_or(&[], Vec::as_slice),
@@ -110,8 +110,8 @@ pub(super) fn wide_directions(loads: &KnownLoads, scales: &[f64]) -> Vec<Vec<f64
         .collect()
 }
 
-/// What is known of a sum of loads (their numbers and factors) in a run of the task; `None` where its sd is more than [`UNKNOWN`] of the largest
-/// that any run has.
+/// Returns the known value of a sum of loads (their numbers and factors) in a run of the task; `None` if its sd exceeds [`UNKNOWN`] times the largest
+/// value of the sum in any run.
 pub fn known_of(task: &Task, run: usize, terms: &[(usize, f64)]) -> Option<f64> {
     let k = task.loads.len();
     let value = |r: &KnownRun| -> f64 { terms.iter().map(|(l, c)| c * r.loads.mean[*l]).sum() };

@@ -1,4 +1,4 @@
-//! What the model of the strain assumes: proportional to the loads, through zero, known loads whose errors are independent, runs that repeat.
+//! Assumptions of the strain model: proportional to the loads, through zero, known loads with independent errors, runs that repeat.
 
 use super::glued::normal;
 use super::repeats::{lanes, task, weighed};

@@ -114,7 +114,7 @@ fn task(b: &Bridge, teach: &[usize]) -> Task {
     }
 }
 
-/// What weighing the other half of the runs came to.
+/// Results of weighing the other half of the runs.
 #[derive(Default)]
 struct Weighed {
     /// Error over the true total.
@@ -122,15 +122,15 @@ struct Weighed {
     /// Half width of the 95 % interval over the true total.
     halves: Vec<f64>,
     held: usize,
-    /// Runs whose largest load is not that of their lane.
+    /// Runs whose largest recovered load is not the load of their lane.
     wrong_lanes: Vec<String>,
-    /// Those of them that no finding names, with intervals of which one does not hold its load.
+    /// Runs among `wrong_lanes` without a finding, with at least one interval that does not contain its load.
     unsaid: Vec<String>,
-    /// Others of which it is said that they tell several loads at once.
+    /// Runs in the right lane with a finding that they have several loads at once.
     alarms: usize,
 }
 
-/// Half of the runs teach, drawn at random within each lane by the seeds given.
+/// Weighs half of the runs by a calibration with the other half, which is drawn at random within each lane by these seeds.
 fn weigh(name: &str, seeds: std::ops::Range<u64>) -> Option<Weighed> {
     let b = bridge(name, |_, fit| fit == "1")?;
     let k = b.lanes.len();
@@ -375,15 +375,15 @@ fn planted_faults_of_gauges_are_named_and_controls_stay_clean() {
     }
 }
 
-/// A fault of one gauge or two, in the readings of runs one after the other.
+/// Fault of one or two gauges in the readings of consecutive runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Planted {
     Nothing,
     Exchanged,
     Turned,
-    /// It reads .7 of what it should.
+    /// The gauge reads 0.7 of the true strain.
     Weak,
-    /// Its zero creeps by 20 microstrain from the first run to the last.
+    /// The zero of the gauge drifts by 20 microstrain from the first run to the last.
     Drifting,
     /// Noise alone from the middle run on.
     Dead,

@@ -1,4 +1,4 @@
-//! What known runs contradict or do not tell: labels exchanged between two runs, loads shared out by chance, one loading in several sizes.
+//! Contradictions and gaps of calibration runs: labels exchanged between two runs, loads shared out by chance, one loading in several sizes.
 
 use super::severe;
 use crate::calibrate::*;

@@ -1,4 +1,4 @@
-//! What the scatter of few runs over many gauges says too well of itself.
+//! Scatter of few runs over many gauges, which is too small without the correction.
 
 use super::glued::normal;
 use super::repeats::{lanes, task, weighed};

@@ -54,10 +54,10 @@ pub(super) fn weighed(s: &Sensitivity, strain: Vec<f64>, noise: f64) -> Vec<[f64
     out
 }
 
-/// What weighing came to, by load and sum.
+/// Results of weighing, for one load or sum.
 #[derive(Debug)]
 struct Tally {
-    /// Share of the 95 % intervals that held.
+    /// Share of the 95 % intervals that contain the true value.
     held: f64,
     /// Sd of the error over the stated sigma, both root mean squares.
     ratio: f64,
@@ -164,7 +164,7 @@ fn by_sum(total: f64, sd: f64) -> KnownLoads {
     }
 }
 
-/// What tells the loads of runs apart that are weighed by their sum alone.
+/// Information that separates the loads of runs of which only the sum is known.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Apart {
     /// A model.

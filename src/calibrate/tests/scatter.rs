@@ -2,8 +2,8 @@
 
 use crate::calibrate::scatter::dof_of_shrunk;
 
-/// Of a weighted sum of independent variances of one size, `v` each, the relative variance is `2 / v` times the sum of the squares of the
-/// weights: one's own is `1 - w + w / n`, that of each other `w / n`.
+/// Checks the degrees of freedom of a weighted sum of independent variances of equal size, `v` degrees of freedom each. The relative variance of the
+/// sum is `2 / v` times the sum of the squared weights: `1 - w + w / n` for its own variance, `w / n` for each other variance.
 #[test]
 fn a_shrunk_variance_has_the_degrees_of_freedom_of_its_weights() {
     for (n, w) in [(1_u32, 0.3), (5, 0.0), (5, 0.4), (37, 0.9), (37, 1.0)] {

@@ -1,4 +1,4 @@
-//! What a calibration notes of the runs that taught it: whether each had one load alone.
+//! Record of a calibration on its runs: whether each run had one load alone.
 
 use super::glued::normal;
 use super::repeats::lanes;
