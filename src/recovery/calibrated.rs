@@ -21,12 +21,12 @@ pub fn estimate(
     estimate_with(s, r, (errors, Excess::NONE), known).0
 }
 
-/// Error of readings beyond what is known, in units of it.
+/// Excess error of readings, relative to the known errors.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Excess {
-    /// Of each reading by itself, times its variance.
+    /// Independent excess variance of each reading, over its known variance.
     pub each: f64,
-    /// Of all together, times their covariance.
+    /// Excess covariance of all readings, over their known covariance.
     pub all: f64,
 }
 
@@ -37,7 +37,7 @@ impl Excess {
     };
 }
 
-/// The same where readings err more than is known; beside it the log of the restricted likelihood of the readings, which holds no loads:
+/// Returns the estimate of readings with an excess error, and the log of their restricted likelihood. It does not depend on the loads:
 /// `-1/2 (ln |V| + ln |S' V^-1 S| + r' V^-1 r)`.
 ///
 /// # Reference

@@ -11,11 +11,11 @@ const WIDE: f64 = 0.5;
 const HOPELESS: f64 = 10.0;
 /// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
 const FAR_BEYOND: f64 = 10.0;
-/// The same from which it is an error: between units that are mistaken for each other lies a factor of 1000, and who states a size knows it
-/// to better than a tenth of that.
+/// Ratio to `expected` (1 sd) from which the finding is an error. Units that are confused with each other differ by a factor of 1000, and a stated
+/// size is known to better than a tenth of this factor.
 const OTHER_UNIT: f64 = 100.0;
 
-/// Findings on loads that the gauges don't tell, and on loads much larger than expected.
+/// Returns findings on loads that the gauges don't determine, and on loads much larger than expected.
 pub fn check(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
     let values = move |l: usize| {
         runs.iter()
@@ -118,9 +118,9 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     )
 }
 
-/// The same of gauges that are planned: `sigma` by load, in the unit of S, against the largest `expected` load of the kind. Both are one standard
-/// deviation: runs will have loads of twice that, and intervals are as much wider than `sigma`. A kind for which no size is stated is left alone.
-/// An error from [`HOPELESS`] on: a guessed size may be too small by some times, not by more.
+/// Returns the finding on loads that planned gauges don't determine. It compares `sigma`, by load in the unit of S, with the largest `expected` load
+/// of the kind. Both are one standard deviation: runs will have loads of twice `expected`, and intervals of twice `sigma`. A kind without a stated
+/// size is not tested. The finding is an error from [`HOPELESS`] on: a guessed size may be too small by some times, not by more.
 pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
     let mut out: Vec<(&str, f64)> = Vec::new();
     for (load, sigma) in s.loads.iter().zip(sigma).filter(|(l, _)| l.wanted) {

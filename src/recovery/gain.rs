@@ -129,7 +129,7 @@ impl Gain {
         })
     }
 
-    /// The same with a covariance of the readings it uses beyond these errors, `n_used x n_used`, strain^2.
+    /// Returns this gain with a covariance of its readings in addition to these errors, `n_used x n_used`, strain^2.
     pub fn with_noise(&self, of_readings: &Matrix) -> Self {
         Self {
             base: &self.base + &self.gain * of_readings * self.gain.transpose(),
@@ -137,12 +137,12 @@ impl Gain {
         }
     }
 
-    /// What load `l`, or a sum of loads, takes of each used gauge.
+    /// Returns the weights of the used gauges in load `l`, or in a sum of loads.
     pub fn weights(&self, l: usize) -> Vec<f64> {
         self.gain.row(l).iter().copied().collect()
     }
 
-    /// The same with a row for each sum of loads (loads and factors), so that sums have intervals of their own.
+    /// Returns this gain with a row for each sum of loads (loads and factors), so that sums have their own intervals.
     pub fn with_sums(&self, sums: &[Vec<(usize, f64)>]) -> Self {
         let (k, n) = self.gain.shape();
         let own = (0..k).map(|l| vec![(l, 1.0)]);
@@ -302,7 +302,7 @@ impl Gain {
         self.shifts_of(f, widening, |_| true)
     }
 
-    /// What the errors of single gauges put into every load.
+    /// Returns the change of every load by the errors of single gauges.
     fn shifts_of(
         &self,
         f: &[f64],
@@ -313,7 +313,7 @@ impl Gain {
         list.filter_map(|s| self.shift(f, s)).collect()
     }
 
-    /// What the error of one gauge puts into every load at loads `f`; `None` where it does not read.
+    /// Returns the change of every load by the error of one gauge, at loads `f`; `None` if the gauge does not read.
     pub fn shift(&self, f: &[f64], shift: &Shift) -> Option<Vec<f64>> {
         let i = self.used.binary_search(&shift.gauge).ok()?;
         let strain = match shift.kind {

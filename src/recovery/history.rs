@@ -32,20 +32,20 @@ pub struct Filter {
     noise_factor: f64,
     typical: Vec<f64>,
     widening: Widening,
-    /// What readings are off by beyond these errors, sample by sample.
+    /// Error of the readings in addition to these errors, sample by sample.
     doubt: Option<Doubt>,
-    /// Sums of loads that are listed beside them.
+    /// Sums of loads that are listed after the loads.
     sums: Vec<Vec<(usize, f64)>>,
-    /// Estimates by the gauges that read.
+    /// Estimates by the set of gauges that read.
     others: RwLock<HashMap<Vec<usize>, Option<Arc<Gain>>>>,
 }
 
 /// Loads of samples.
 #[derive(Clone, Debug, Default)]
 pub struct SampleLoads {
-    /// `n_loads` a sample; NaN where the gauges that read don't tell a load.
+    /// `n_loads` a sample; NaN for a load that the gauges that read don't determine.
     pub values: Vec<f64>,
-    /// Samples in which a gauge gave nothing, and the estimate that was taken; ascending.
+    /// Samples in which a gauge gave nothing, and the estimate used for each; ascending.
     pub gaps: Vec<(usize, Option<Arc<Gain>>)>,
 }
 
@@ -267,17 +267,17 @@ impl Filter {
         ends.windows(2).filter_map(of_stretch).collect()
     }
 
-    /// Standard deviation of each load of a sample with loads `f`, all gauges reading; doubt of the readings in the mean over the record.
+    /// Returns the standard deviation of each load of a sample with loads `f`, if all gauges read. The readings' error is its mean over the record.
     pub fn sigma(&self, f: &[f64]) -> Vec<f64> {
         self.sigma_of((&self.whole, None), f)
     }
 
-    /// The same for a sample in which only the gauges of `gain` read.
+    /// Returns the standard deviation of each load of a sample in which only the gauges of `gain` read.
     pub fn sigma_with(&self, gain: &Gain, f: &[f64]) -> Vec<f64> {
         self.sigma_of((gain, None), f)
     }
 
-    /// The same for one sample of the record by its number; `gain` is `None` where all gauges read.
+    /// Returns the standard deviation of each load of one sample of the record, by its number; `gain` is `None` if all gauges read.
     pub fn sigma_at(&self, sample: usize, gain: Option<&Gain>, f: &[f64]) -> Vec<f64> {
         self.sigma_of((gain.unwrap_or(&self.whole), Some(sample)), f)
     }
@@ -295,7 +295,7 @@ impl Filter {
         sigma
     }
 
-    /// Variance that motion leaves in load `l`; that which residuals widen is none of it.
+    /// Returns the variance that motion leaves in load `l`; the widening by residuals does not change it.
     fn of_motion(&self, gain: &Gain, sample: Option<usize>, l: usize) -> f64 {
         let doubt = self.doubt.as_ref();
         doubt.map_or(0.0, |d| d.of_motion(sample, &gain.used, &gain.weights(l)))

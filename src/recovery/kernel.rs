@@ -16,17 +16,17 @@ pub(super) struct Samples<'a> {
     pub gain: &'a [f64],
     /// `n x k`, by rows.
     pub s: &'a [f64],
-    /// Subtracted, strain by gauge.
+    /// Zero reading to subtract, strain by gauge.
     pub zero: &'a [f64],
     /// Readings, `n` a sample.
     pub samples: &'a [f64],
-    /// Strain of one unit of them.
+    /// Strain of one unit of the readings.
     pub to_strain: f64,
     /// Loads are appended, `k` a sample; NaN where a reading is missing or too large to be strain.
     pub out: &'a mut Vec<f64>,
-    /// Those samples are appended by number; the sums leave them out.
+    /// Numbers of the samples with a NaN are appended; the sums exclude these samples.
     pub gaps: &'a mut Vec<usize>,
-    /// Sums to add to, where they are wanted.
+    /// Sums to add to, if wanted.
     pub sums: Option<&'a mut Sums>,
 }
 

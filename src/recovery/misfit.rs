@@ -13,14 +13,14 @@ use crate::linalg::Matrix;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// Asked for the rows of S that gauges would have if they were installed otherwise, where the readings are not explained.
+/// Returns the rows of S that gauges would have if they were installed otherwise; called if the loads do not explain the readings.
 pub type Alternatives<'a> = dyn FnMut() -> Vec<AlternativeRows> + 'a;
 
-/// Runs that are tried at most, spread over all: more say no more of a gauge.
+/// Largest number of runs to try, spread over all: more runs add no information on a gauge.
 const TRIED: usize = 200;
-/// The same with a calibrated S, whose covariance is solved run by run.
+/// Largest number of runs to try with a calibrated S, whose covariance is solved run by run.
 const TRIED_CALIBRATED: usize = 50;
-/// Chance that a gauge is named where all are sound.
+/// Probability that a gauge is identified although all are sound.
 const FALSE_ALARM: f64 = 0.01;
 
 /// Returns every so many readings, `most` at most.

@@ -1,20 +1,20 @@
-//! What is missing in the samples of a record.
+//! Counts the missing readings in the samples of a record.
 
-/// Samples of a record in which something is missing.
+/// Numbers of samples of a record with and without missing readings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Missing {
-    /// Samples in which every gauge read.
+    /// Samples in which every gauge gave a reading.
     pub whole: u64,
     /// Samples in which some gauge gave nothing.
     pub gaps: u64,
-    /// Readings too large to be strain, taken for none.
+    /// Readings too large to be strain, which count as missing.
     pub impossible: u64,
-    /// Samples with a gap in which a load is known all the same, by load.
+    /// Samples with a gap in which a load is known nevertheless, by load.
     pub known_in_gaps: Vec<u64>,
 }
 
 impl Missing {
-    /// None of no samples, for `k` loads.
+    /// Returns the counts of an empty record, for `k` loads.
     pub fn new(k: usize) -> Self {
         Self {
             known_in_gaps: vec![0; k],

@@ -1,11 +1,11 @@
-//! Net readings: a run's mean less the unloaded run's, with the noise of both, and whether a gauge says anything.
+//! Net readings: a run's mean less the unloaded run's mean, with the noise of both, and whether a gauge gives a signal.
 
 /// A net reading, strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Net {
-    /// Mean of the run less mean of the zero.
+    /// Mean of the run less mean of the zero, strain.
     pub value: f64,
-    /// Its standard deviation.
+    /// Standard deviation of the value, strain.
     pub sigma: f64,
 }
 
@@ -16,7 +16,7 @@ impl Net {
     }
 }
 
-/// Sums over readings one after the other, as of a record that is never whole in memory.
+/// Sums over consecutive readings, for a record that is never whole in memory.
 ///
 /// Readings count from the first of them, so that a large mean takes no digits from a small scatter.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -49,12 +49,12 @@ impl Series {
         self.last = reading;
     }
 
-    /// Their mean; `None` without readings.
+    /// Returns the mean of the readings; `None` without readings.
     pub fn mean(&self) -> Option<f64> {
         (self.n > 0).then(|| self.first + self.sum / self.n as f64)
     }
 
-    /// As [`effective_samples`] of the same readings.
+    /// Returns the number of effective samples, like [`effective_samples`] of all readings.
     pub fn effective_samples(&self) -> f64 {
         let n = self.n as f64;
         let mean = self.sum / n;
@@ -65,7 +65,7 @@ impl Series {
         effective(n, var, lag)
     }
 
-    /// As [`mean_of`] of the same readings.
+    /// Returns the net reading, like [`mean_of`] of all readings.
     pub fn net(&self, noise: f64) -> Net {
         let n = self.n as f64;
         let Some(value) = self.mean() else {

@@ -13,35 +13,35 @@ use crate::sensitivity::Sensitivity;
 use crate::units::MICROSTRAIN;
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// Chance, over all gauges of a job, under which the largest of their errors counts as real: half of the 1 % of right jobs that may be
+/// Probability, over all gauges of a job, below which the largest of their errors counts as real: half of the 1 % of right jobs that may be
 /// stopped.
 pub const ALARM: f64 = 0.005;
-/// The same chance under which it is said, and the intervals are widened: one right job in twenty is so noted.
+/// Probability, over all gauges of a job, below which a finding reports the error and the intervals widen: it affects one right job in twenty.
 const NOTE: f64 = 0.05;
-/// Share of what the residuals have too much that one gauge must account for, where the rest is more than stated errors make: with less,
-/// something else is wrong as well, and the gauge nearest to it would be blamed.
+/// Share of the excess of the residuals that one gauge must account for, if the remaining residual exceeds stated errors. With less, there is a
+/// further fault, and the gauge nearest to it would be blamed.
 const ACCOUNTS_FOR: f64 = 0.5;
-/// Chance under which the rest counts as more than stated errors make.
+/// Probability below which the remaining residual counts as larger than stated errors.
 const REST: f64 = 0.05;
-/// Gauges that are tried with the loads that the others and their corrected readings give, the largest errors first.
+/// Number of gauges, largest errors first, that are tried with the loads from the other gauges and their corrected readings.
 const TRIED: usize = 3;
 /// Loads and the size of a gauge's error depend on each other; the second round moves t by a tenth or less.
 const ROUNDS: usize = 2;
 /// |t| under which no gauge is tried: the loads' own error hides a part of an error, not most of it.
 const WORTH_TRYING: f64 = 2.0;
-/// Part of its strain that a gauge reads at least, where its reading is put right by its gain.
+/// Least share of its strain that a gauge reads, if its gain corrects its reading.
 const LEAST_GAIN: f64 = 0.5;
 
-/// What stands out.
+/// Findings and widening of suspected gauges.
 pub(super) struct Suspects {
     pub findings: Vec<Finding>,
     pub shifts: Vec<Shift>,
 }
 
-/// Returns the gauge whose gain or zero error stands out most, where chance doesn't make it so.
+/// Returns the gauge with the most significant gain or zero error, if chance does not explain it.
 ///
-/// It is an error where the interval of its size does not contain zero and where it shifts a wanted load by more than the half width of its
-/// interval. Else it is a warning, or a note where chance is not quite ruled out. Either way the intervals are widened by what it does.
+/// The finding is an error if the interval of the gauge error does not contain zero, and the error exceeds the half width of a wanted load's
+/// interval. Otherwise it is a warning, or a note if chance remains possible. In all cases the error widens the intervals.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
@@ -208,7 +208,7 @@ fn by_others(
     Some([factor - 1.0, (by_noise + factor * factor * model).sqrt()])
 }
 
-/// The error of one gauge, and what the residuals of all runs are beside it.
+/// Error of one gauge, with the residuals of all runs.
 struct Suspect {
     test: GaugeTest,
     chi2: f64,
@@ -216,7 +216,7 @@ struct Suspect {
 }
 
 impl Suspect {
-    /// What is left without the gauge, over its degrees of freedom, where that is more than stated errors make.
+    /// Returns the residual chi-square without the gauge, over its degrees of freedom, if it exceeds stated errors.
     fn excess_of_rest(&self) -> Option<f64> {
         let free = self.dof - 1;
         let rest = self.chi2 - self.test.t * self.test.t;
@@ -228,8 +228,7 @@ impl Suspect {
         self.excess_of_rest().is_none() || share > ACCOUNTS_FOR
     }
 
-    /// Half width of a 95 % interval over the standard deviation that stated errors make: by the scale of what is left without the gauge, where
-    /// that is larger.
+    /// Returns the half width of a 95 % interval over the standard deviation from stated errors. A larger residual without the gauge gives the scale.
     fn half_width(&self) -> f64 {
         self.excess_of_rest().map_or(NORMAL_95, |rest| {
             student_95((self.dof - 1) as f64) * rest.sqrt()

@@ -1,9 +1,8 @@
-//! What the readings of runs say beyond the loads: their part that no load can make, with its covariance across the runs.
+//! Residuals of runs: the part of their readings that no load can make, with its covariance across the runs.
 //!
-//! The model's error is the same in every run, so residuals of runs are not independent: with `r_i = T (e_i + D f_i)`, `T` the
-//! projection that no load passes, `e_i` noise and `D` the errors of the influence coefficients,
-//! `cov(r_i, r_j) = T (d_ij N + M(f_i, f_j)) T'`. Turned over the runs by the left singular vectors of the loads, all of `M` stands in
-//! the first few turned runs; the others hold noise alone.
+//! The model's error is equal in every run, so residuals of runs are not independent. `r_i = T (e_i + D f_i)`, with the projection `T` that
+//! removes all loads, the noise `e_i` and the errors `D` of the influence coefficients. Then `cov(r_i, r_j) = T (d_ij N + M(f_i, f_j)) T'`.
+//! If the left singular vectors of the loads rotate the runs, only the first few rotated runs contain `M`, all further runs noise alone.
 
 use super::errors::ErrorModel;
 use super::gain::Gain;
@@ -11,14 +10,14 @@ use super::types::ShiftKind;
 use crate::linalg::{Matrix, SymmetricEigen, dense, spd};
 use crate::sensitivity::Sensitivity;
 
-/// Unknowns of one covariance of turned runs at most: a second of work. Turned runs beyond it are taken one by one, the strongest first.
+/// Largest number of unknowns of one covariance of rotated runs: a second of work. Further rotated runs are solved one by one, the strongest first.
 const TOGETHER: usize = 1200;
-/// Share of the largest loads under which a turned run holds no load: rounding.
+/// Share of the largest loads below which a rotated run has no load: rounding.
 const EMPTY: f64 = 1e-9;
-/// Squared length of a gauge's part that no load can make, under which nothing checks the gauge: rounding.
+/// Squared length of the part of a gauge's reading that no load can make, below which the gauge is unchecked: rounding.
 const UNCHECKED: f64 = 1e-9;
 
-/// Runs in which the same gauges read.
+/// Runs in which one set of gauges reads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pattern {
     /// Gauges of S that read.
@@ -29,33 +28,33 @@ pub struct Pattern {
     pub runs: Vec<usize>,
 }
 
-/// The error of one gauge, as the residuals of all runs suggest it.
+/// Error of one gauge, estimated from the residuals of all runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaugeTest {
     /// Gauge of S.
     pub gauge: usize,
-    /// What the error is like.
+    /// Kind of the error.
     pub kind: ShiftKind,
-    /// Its size over its standard deviation: normal with variance 1 where all gauges are right.
+    /// Size of the error over its standard deviation: normal with variance 1 if all gauges are right.
     pub t: f64,
-    /// Its size: a share, or strain.
+    /// Size of the error: a share of the reading, or strain.
     pub size: f64,
 }
 
-/// What residuals of runs say together.
+/// Statistics of the residuals of all runs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Joint {
     /// Sum of squares over their covariance.
     pub chi2: f64,
     /// Degrees of freedom.
     pub dof: usize,
-    /// Samples of independent error behind them.
+    /// Effective number of independent errors in the sum.
     pub effective: f64,
-    /// Errors of single gauges.
+    /// Estimated errors of single gauges.
     pub gauges: Vec<GaugeTest>,
 }
 
-/// Runs in which the same gauges read, judged together.
+/// Runs in which one set of gauges reads, with their joint test.
 pub(super) struct Judged<'a> {
     pub pattern: &'a Pattern,
     pub gain: &'a Gain,
@@ -81,12 +80,12 @@ pub(super) struct Projection {
     share: f64,
 }
 
-/// Which loads a projection takes out.
+/// Loads that a projection removes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Out {
-    /// All of them, whatever is stated of their size.
+    /// All loads, whatever their stated size.
     All,
-    /// Those without a stated size; the others count as scatter of that size.
+    /// Loads without a stated size; loads with one count as scatter of that size.
     Unstated,
 }
 
@@ -155,7 +154,7 @@ impl Projection {
         self.share
     }
 
-    /// The same with a covariance of the readings beyond noise, by gauge of S; `None` where it is none.
+    /// Returns the projection with a covariance of the readings beyond noise, by gauge of S; `None` if the sum is not a covariance.
     pub fn beyond(mut self, pattern: &Pattern, of_readings: &Matrix) -> Option<Self> {
         let m = self.m();
         let added = self.of_readings(pattern, of_readings);
@@ -436,27 +435,27 @@ pub(super) struct Together {
     turned: Vec<Block>,
 }
 
-/// Turned runs whose residuals depend on each other.
+/// Rotated runs with correlated residuals.
 struct Block {
     /// Unit vectors over the runs.
     over_runs: Vec<Vec<f64>>,
     /// Cholesky factor of the covariance.
     factor: Vec<f64>,
-    /// Their residuals over it.
+    /// Residuals divided by the Cholesky factor.
     white: Vec<f64>,
     chi2: f64,
-    /// The same were there noise alone.
+    /// Sum of squares of the residuals for a covariance of noise alone.
     chi2_of_noise: f64,
 }
 
 impl Block {
-    /// A vector over the runs in the turned ones.
+    /// Returns the components of a vector over the runs in the rotated runs.
     fn shares(&self, along: &[f64]) -> Vec<f64> {
         self.over_runs.iter().map(|u| spd::dot(u, along)).collect()
     }
 }
 
-/// Orthonormal columns that no column of `a` has a part in, `n x (n - rank)`; `None` where there is none or numbers are not finite.
+/// Returns orthonormal columns orthogonal to all columns of `a`, `n x (n - rank)`; `None` without such columns or if numbers are not finite.
 pub(super) fn complement(a: &Matrix) -> Option<Matrix> {
     let n = a.nrows();
     let d = dense::svd(a)?;

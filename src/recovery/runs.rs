@@ -43,8 +43,8 @@ pub(super) enum Order {
     Samples,
 }
 
-/// The same where readings have errors beyond noise, by run, which the judge of the residuals then knows of; none where `beyond` is empty.
-/// `handling` says what becomes of gauges that contradict the others by a calibrated S.
+/// Recovers the loads of readings with errors beyond noise, by run; `beyond` is empty without such errors. The test of the residuals includes them.
+/// `handling` decides on gauges that contradict the other gauges by a calibrated S.
 pub(super) fn recover_beyond(
     s: &Sensitivity,
     readings: &[Readings],
@@ -120,7 +120,7 @@ pub(super) fn recover_beyond(
     }
 }
 
-/// As [`recover`] by a calibrated S, whose uncertainty and scatter stand for all errors but noise.
+/// Recovers the loads by a calibrated S like [`recover`]; its uncertainty and scatter replace all errors except noise.
 fn recover_calibrated(
     s: &Sensitivity,
     readings: &[Readings],

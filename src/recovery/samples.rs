@@ -1,4 +1,4 @@
-//! What samples of a record say together: runs, but for gaps. A gap blanks what it touches and no more.
+//! Recovers loads from the samples of a record. Each sample is a run, except for gaps: a missing reading affects only its own sample.
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
@@ -13,16 +13,16 @@ use crate::finding::{Finding, Severity, few};
 use crate::input_faults::Handling;
 use crate::sensitivity::Sensitivity;
 
-/// What recovery makes of samples of a record; samples in which no gauge gave anything say nothing, unless there are no others.
+/// Recovers the loads of samples of a record. Samples without any reading are dropped, unless all samples lack readings.
 ///
-/// A sample whose gauges don't tell a load is blank there. Whether a load can be had is asked of the whole record ([`check_gaps`]), not of
-/// the samples that happen to be looked at: `run-not-solvable` stays only where all gauges together don't tell a load, which is no gap.
+/// The loads that the gauges of a sample don't determine are blank in that sample. Whether a load can be recovered depends on the whole record
+/// ([`check_gaps`]), not on the selected samples. `run-not-solvable` remains only if all gauges together don't determine a load: this is no gap.
 pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorModel) -> Recovery {
     recover_samples_with_alternatives(s, samples, errors, (Vec::new(), &mut Vec::new))
 }
 
-/// The same where readings have errors beyond noise, by sample (none where `beyond` is empty), and gauges may be installed otherwise. The record is
-/// recovered from all gauges, whatever contradicts the others.
+/// Recovers the loads of samples whose readings have errors beyond noise, and whose gauges may be installed otherwise. `beyond` is by sample, or
+/// empty. All gauges contribute to the record's loads, even if some contradict the others.
 pub fn recover_samples_with_alternatives(
     s: &Sensitivity,
     samples: Vec<Readings>,
@@ -48,7 +48,7 @@ pub fn recover_samples_with_alternatives(
     recovery
 }
 
-/// Whether all gauges together tell the loads that are asked for.
+/// Whether all gauges together determine the wanted loads.
 fn all_tell(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
     let all: Vec<usize> = (0..s.gauges.len()).collect();
     let wanted = (0..s.loads.len()).filter(|&l| s.loads[l].wanted);
@@ -56,7 +56,7 @@ fn all_tell(s: &Sensitivity, errors: ErrorModel, recovery: &Recovery) -> bool {
         .is_some_and(|gain| wanted.into_iter().all(|l| gain.is_seen(l)))
 }
 
-/// What is to be said of a record's gaps: that there are some, readings that are none, and loads that no sample tells, which is an error.
+/// Returns the findings on gaps of a record: their number, impossible readings, and, as an error, loads that no sample determines.
 pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Finding> {
     let mut out = Vec::new();
     if missing.gaps > 0 {

@@ -49,12 +49,12 @@ pub(super) fn patterns(n: usize, readings: &[Readings]) -> Vec<Pattern> {
     list
 }
 
-/// Loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
+/// Computes the loads of every run: weights depend on typical loads through the model's error, so solution and weights alternate.
 pub(super) fn solve(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Solved {
     solve_beyond(s, readings, errors, &[])
 }
 
-/// The same where readings have errors beyond noise, by run; none where `beyond` is empty. They are no weights.
+/// Computes the loads of readings with errors beyond noise, by run; `beyond` is empty without such errors. They do not change the weights.
 pub(super) fn solve_beyond(
     s: &Sensitivity,
     readings: &[Readings],

@@ -14,7 +14,7 @@ const LEAST: usize = 10;
 /// Standard deviations of noise and model error by which the strain that the others expect must change: a reading that is rounded, coarsely as it
 /// may be, stands still within less.
 const CHANGES: f64 = 3.0;
-/// Share of the samples of a part in which a gauge reads that is asked what it says of it.
+/// Share of the samples of a part in which another gauge must read to test this gauge.
 const READS: f64 = 0.9;
 
 /// A part of a record in which a gauge is dead.
@@ -22,15 +22,15 @@ const READS: f64 = 0.9;
 pub struct Stuck {
     /// Gauge of S.
     pub gauge: usize,
-    /// What it gives there.
+    /// Content of the gauge's column in that part.
     pub gives: Gives,
-    /// First and last of the samples looked at in that part.
+    /// First and last of the examined samples in that part.
     pub span: [usize; 2],
-    /// The samples looked at before and after it: from these on it is alive.
+    /// Examined samples before and after the part: the gauge is active up to the first and from the second.
     pub within: [usize; 2],
 }
 
-/// Dead parts of gauges by samples spread over a record: number of the sample, strain less zero by gauge (NaN where one gave nothing).
+/// Returns the dead parts of gauges from samples spread over a record: number of the sample, strain less zero by gauge (NaN for no reading).
 pub fn check(
     s: &Sensitivity,
     samples: &[(usize, &[f64])],
@@ -151,21 +151,21 @@ fn any_changes(used: &[usize], rows: &[&Vec<f64>], noise: f64) -> bool {
     used.iter().any(|h| of(h) > CHANGES * CHANGES * noise)
 }
 
-/// What some gauges tell of the strain at another one.
+/// Prediction of the strain at one gauge from some other gauges.
 struct Others<'a> {
     s: &'a Sensitivity,
     used: &'a [usize],
     errors: ErrorModel,
     noise: f64,
-    /// Its row of S.
+    /// Row of S of the predicted gauge.
     own: Vec<f64>,
     gain: Gain,
-    /// Covariance that noise alone gives the loads.
+    /// Covariance of the loads from noise alone.
     of_noise: Vec<f64>,
 }
 
 impl<'a> Others<'a> {
-    /// `None` where they don't tell a load that strains it.
+    /// Returns the prediction; `None` if the other gauges don't determine a load that strains the gauge.
     fn new(
         s: &'a Sensitivity,
         used: &'a [usize],
@@ -208,18 +208,18 @@ impl<'a> Others<'a> {
         off * off > CHANGES * CHANGES * self.variance(&loads)
     }
 
-    /// Loads that strain it.
+    /// Returns the loads that strain the gauge.
     fn acts(&self) -> impl Iterator<Item = (usize, f64)> {
         let all = self.own.iter().copied().enumerate();
         all.filter(|(_, s)| *s != 0.0)
     }
 
-    /// Its strain at these loads.
+    /// Returns the strain of the gauge at these loads.
     fn strain(&self, loads: &[f64]) -> f64 {
         self.acts().map(|(l, s)| s * loads[l]).sum()
     }
 
-    /// Variance of a reading of it about what they expect, at loads of these sizes: its noise and theirs, and the model's error at all of them.
+    /// Returns the variance of a reading about its prediction, at loads of these sizes. It includes the noise of all gauges and their model error.
     fn variance(&self, sizes: &[f64]) -> f64 {
         let k = sizes.len();
         let noise = self.acts().flat_map(|(l, a)| {

@@ -33,16 +33,16 @@ fn distance(run: &RunEstimate) -> Option<f64> {
     Some((spd::dot(&z, &weighed) - alone.fold(0.0, f64::max)).max(0.0))
 }
 
-/// A load alone, of the size that comes nearest to the strain of all loads `f` of a run.
+/// A single load, of the size that comes nearest to the strain of all loads `f` of a run.
 struct Alone {
     load: usize,
-    /// Its part of their mean square strain: the more, the nearer.
+    /// Share of this load in the mean square strain: the larger, the nearer.
     part: f64,
-    /// `f` less that load alone.
+    /// Loads `f` minus this single load.
     apart: Vec<f64>,
 }
 
-/// Each load alone, the nearest first: with `M = S' S / n` load `l` is `(M f)_l / M_ll`, its part `(M f)_l^2 / M_ll`.
+/// Returns each single load, the nearest first: with `M = S' S / n` load `l` is `(M f)_l / M_ll`, its part `(M f)_l^2 / M_ll`.
 fn each_alone(f: &[f64], known: &Uncertainty) -> Vec<Alone> {
     let k = f.len();
     let mut strain = vec![0.0; k];

@@ -1,4 +1,4 @@
-//! What goes in and what comes out.
+//! Inputs and results of a recovery.
 
 use crate::estimate::LoadEstimate;
 use crate::estimate::NORMAL_95;
@@ -15,7 +15,7 @@ pub struct Readings {
     pub run: String,
     /// Strain by gauge, zero and reference taken into account; NaN where a gauge gave nothing.
     pub strain: Vec<f64>,
-    /// Noise variance of these readings in units of that of a single one: `1/n_run + 1/n_zero` for means of `n` effective samples.
+    /// Noise variance of these readings, relative to a single reading: `1/n_run + 1/n_zero` for means of `n` effective samples.
     pub noise_factor: f64,
 }
 
@@ -29,7 +29,7 @@ impl Readings {
         }
     }
 
-    /// Those of a sample of a record at `time_s`.
+    /// Returns the readings of a sample of a record at `time_s`.
     pub fn of_sample(time_s: f64, strain: Vec<f64>, noise_factor: f64) -> Self {
         Self {
             // To the nanosecond: what start plus number over rate leaves behind it is no time.
@@ -51,28 +51,28 @@ pub struct RunEstimate {
     pub residual: Vec<f64>,
     /// 1 sd of each reading, stated noise and model error together; NaN where a gauge gave nothing.
     pub sd: Vec<f64>,
-    /// Least sum of squares of residuals (and of nuisance loads over their stated sizes) over their own covariance.
+    /// Least sum of squares of residuals over their covariance, plus nuisance loads over their stated sizes.
     pub chi2: f64,
-    /// Its degrees of freedom: readings less loads without a stated size.
+    /// Degrees of freedom of `chi2`: readings less loads without a stated size.
     pub dof: usize,
     /// Leverage by gauge.
     pub leverage: Vec<f64>,
-    /// Rank of the system; under the number of loads, some of the values are arbitrary.
+    /// Rank of the system; if it is below the number of loads, some of the values are arbitrary.
     pub rank: usize,
 }
 
 impl RunEstimate {
-    /// Whether the readings tell load `l`; its value is blank or arbitrary where they don't.
+    /// Whether the readings determine load `l`; if not, its value is blank or arbitrary.
     pub fn tells(&self, l: usize) -> bool {
         let value = self.estimate.values.get(l);
         value.is_some_and(|v| v.is_finite()) && self.estimate.sigma(l).is_finite()
     }
 }
 
-/// All runs.
+/// Estimates of all runs, with the statistics of their residuals.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recovery {
-    /// In the order given.
+    /// Estimates in the order of the readings.
     pub runs: Vec<RunEstimate>,
     /// Root mean square of all residuals, strain, over the degrees of freedom.
     pub residual_rms: f64,
@@ -80,12 +80,11 @@ pub struct Recovery {
     pub gauge_residual_rms: Vec<f64>,
     /// Mean leverage by gauge.
     pub gauge_leverage: Vec<f64>,
-    /// What was noticed.
+    /// Findings of the recovery.
     pub findings: Vec<Finding>,
-    /// What the residuals do to the intervals.
+    /// Widening of the intervals by the residuals.
     pub widening: Widening,
-    /// Root mean square of each load over the runs that tell it, 0 where none does: the weights of a stated model error are those at these
-    /// loads.
+    /// Root mean square of each load over the runs that determine it, 0 if none does: a stated model error is weighted at these loads.
     pub typical: Vec<f64>,
     /// Noise that the residuals show where they contradict equal and independent noise, by gauge of S.
     pub noise: Option<GaugeNoise>,
@@ -102,39 +101,39 @@ impl Recovery {
     }
 }
 
-/// How much wider than stated errors make them the intervals are.
+/// Widening of the intervals relative to stated errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Widening {
     /// Factor on every covariance (Birge); 1 where the residuals are as small as stated.
     pub variance_factor: f64,
-    /// Factor on sigma of a 95 % interval: normal, or Student's where the scale was judged from residuals.
+    /// Factor on sigma of a 95 % interval: normal, or Student's if the residuals determine the scale.
     pub coverage_factor: f64,
-    /// Errors of single gauges that stand out.
+    /// Significant errors of single gauges.
     pub shifts: Vec<Shift>,
 }
 
-/// What the error of one gauge does to the loads.
+/// Error of one gauge that shifts the loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shift {
     /// Gauge of S.
     pub gauge: usize,
-    /// What its error is like.
+    /// Kind of the error.
     pub kind: ShiftKind,
-    /// Its size: a share of the reading, or strain.
+    /// Size of the error: a share of the reading, or strain.
     pub size: f64,
 }
 
 /// Kinds of error of a gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShiftKind {
-    /// The same share of the strain in every run.
+    /// One share of the strain in every run.
     Gain,
-    /// The same strain in every run.
+    /// One strain in every run.
     Offset,
 }
 
 impl Widening {
-    /// Intervals as stated errors make them.
+    /// Returns the intervals of stated errors, without widening.
     pub fn none() -> Self {
         Self {
             variance_factor: 1.0,

@@ -59,7 +59,7 @@ pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Ve
         .collect()
 }
 
-/// What is to be said where the errors of S are those of a model and its mesh.
+/// Returns the finding on residuals above stated errors, if the errors of S are errors of a model and its mesh.
 fn above_stated(gauges: &[String], unlike: &[&RunEstimate], of: usize) -> Option<Finding> {
     let worst_run = (unlike.iter()).max_by(|a, b| birge(a).total_cmp(&birge(b)))?;
     let most = birge(worst_run);

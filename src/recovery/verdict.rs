@@ -1,4 +1,4 @@
-//! What the residual says: do stated noise and model error explain it, and if not, can the loads be trusted?
+//! Tests whether stated noise and model error explain the residual, and if not, whether the loads are usable.
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
@@ -13,54 +13,54 @@ use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::{MICROSTRAIN, number};
 
-/// Code of strain that the loads don't explain, beyond doubt.
+/// Code of strain that the loads certainly do not explain.
 pub const UNEXPLAINED: &str = "strain-not-explained";
-/// Code of runs whose gauges don't tell some of the loads.
+/// Code of runs whose gauges don't determine some of the loads.
 pub const NOT_SOLVABLE: &str = "run-not-solvable";
-/// Chance under which a sum of squares counts as larger than stated errors or scatter make it.
+/// Probability below which a sum of squares counts as larger than stated errors or scatter.
 pub(super) const SIGNIFICANT: f64 = 1e-3;
-/// Chance from which it is beyond doubt.
+/// Probability below which it is certainly larger.
 pub(super) const BEYOND_DOUBT: f64 = 1e-6;
-/// Residual over readings (root mean squares): a right model with the wrong mesh stays under this, a missing load does not.
+/// Residual over readings (root mean squares): a right model with the wrong mesh is below this limit, a missing load is above.
 const EXPLAINED_LIMIT: f64 = 0.05;
-/// `sqrt(chi2 / dof)` under which a misfit is small next to stated errors whatever its share.
+/// `sqrt(chi2 / dof)` below which a misfit is small relative to stated errors, whatever its share.
 const BIRGE_LIMIT: f64 = 3.0;
-/// Sets of runs with the same silent gauges that are judged together; what is left are a few runs each.
+/// Sets of runs with one set of missing gauges that are tested together; further sets contain a few runs each.
 const PATTERNS: usize = 4;
-/// Degrees of freedom from which residuals can be called too small.
+/// Degrees of freedom from which residuals may be reported as too small.
 const ENOUGH: usize = 10;
 
-/// Findings, and what they do to the intervals.
+/// Findings on residuals, and the widening of the intervals.
 pub(super) struct Verdict {
     pub findings: Vec<Finding>,
-    /// Whether stated errors don't explain the residuals.
+    /// Whether the residuals exceed stated errors.
     pub misfit: bool,
-    /// Of all runs.
+    /// Widening for all runs.
     pub widening: Widening,
-    /// Of each run.
+    /// Widening of each run.
     pub by_run: Vec<Widening>,
 }
 
-/// Chance of a sum of squares at least as large, where the stated errors are right.
+/// Returns the probability of a sum of squares at least as large, if the stated errors are right.
 pub fn chance(chi2: f64, dof: usize) -> f64 {
     chi_square_tail(chi2, dof as f64)
 }
 
-/// How far residuals exceed stated errors.
+/// Evidence that residuals exceed stated errors.
 struct Evidence {
-    /// Chance of residuals as large, and as small.
+    /// Probability of residuals at least as large; `low` is the probability of residuals as small.
     high: f64,
     low: f64,
-    /// `sqrt(chi2 / dof)` of the test that says so.
+    /// `sqrt(chi2 / dof)` of the test with this evidence.
     excess: f64,
-    /// The same of the runs by themselves, over which the intervals are taken.
+    /// `sqrt(chi2 / dof)` of the runs without their correlation, which widens the intervals.
     pooled: f64,
-    /// Independent errors behind it.
+    /// Effective number of independent errors in the evidence.
     effective: f64,
 }
 
-/// Findings on rank, redundancy and the size of the residuals; `beyond` are errors of the readings beyond noise, by run, empty for none, and
-/// `share` is the share of independent runs in the runs.
+/// Returns findings on rank, redundancy and the size of the residuals. `beyond` are errors of the readings beyond noise, by run, or empty; `share`
+/// is the share of independent runs in the runs.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
@@ -212,7 +212,7 @@ fn together(pattern: &Pattern, beyond: &[Beyond]) -> Option<Matrix> {
     Some(runs.fold(own, |sum, b| sum + &b.shared))
 }
 
-/// All tests together, each held against its share of the chance (Bonferroni).
+/// Combines all tests, each against its share of the probability (Bonferroni).
 fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[&Joint]) -> Evidence {
     let ratio = |chi2: f64, dof: usize| (chi2 / dof.max(1) as f64).sqrt();
     let (chi2, dof) = runs

@@ -21,20 +21,20 @@ pub struct AtRest {
     pub readings: Vec<Vec<f64>>,
     /// Samples of which something was read.
     pub read: usize,
-    /// Samples of which a reading at rest is known.
+    /// Samples with a known quasi-static reading.
     pub known: usize,
-    /// Samples at the ends of stretches, and in stretches too short to say anything, of which no gauge is known though those that read tell the
-    /// loads.
+    /// Samples without a known gauge although the gauges that read determine the loads. They are at the ends of stretches,
+    /// and in stretches that are too short.
     pub blank: usize,
-    /// Samples to either side that a sample at rest hangs on, all gauges reading.
+    /// Samples to either side that a quasi-static sample depends on, if all gauges read.
     pub reach: usize,
-    /// Variance of the noise of a reading at rest over that of a reading, mean of the gauges, all reading.
+    /// Variance of the noise of a quasi-static reading over the variance of a reading's noise, mean of the gauges, if all gauges read.
     pub noise_share: f64,
-    /// What readings at rest are off by beyond that.
+    /// Further error of quasi-static readings, beyond this noise.
     pub doubt: Doubt,
-    /// By load of S: mean square of what loads recovered as if at rest are off by; NaN where no sample is known.
+    /// Mean square error of loads recovered without this correction, by load of S; NaN where no sample is known.
     pub motion: Vec<f64>,
-    /// By load of S: mean square, mean left out; NaN where no sample is known.
+    /// Mean square of the loads about their mean, by load of S; NaN where no sample is known.
     pub load: Vec<f64>,
 }
 

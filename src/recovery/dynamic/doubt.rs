@@ -1,40 +1,40 @@
-//! What readings at rest are off by, over a record.
+//! Error of quasi-static readings over a record.
 
 use super::block::Block;
 use crate::linalg::Matrix;
 
-/// Covariance of readings at rest beyond that of noise of one variance at every gauge, strain^2.
+/// Covariance of quasi-static readings beyond noise of one variance at every gauge, strain^2.
 ///
-/// `N - v 1` of the noise as the filter passes it, by the gauges that read, and of the motion `sum_j e_j e_j'`: what one standard deviation of
-/// each mode's frequency and of its damping, and modes that are not told, put into the readings, a mean square for every window of time. The
-/// errors of one mode stand in all gauges and loads together, and in all samples.
+/// It is the sum of two parts. The first is `N - v 1` of the filtered noise, by the gauges that read. The second is the motion `sum_j e_j e_j'`, a
+/// mean square for every window of time. Its sources are one standard deviation of each mode's frequency and damping, and modes outside the model.
+/// The errors of one mode are common to all gauges, loads and samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// Gauges.
+    /// Number of gauges.
     n: usize,
     /// Samples of a window.
     window: usize,
     /// Lower triangle by rows, by window.
     motion: Vec<f64>,
-    /// Samples behind each window.
+    /// Number of samples in the mean of each window.
     told: Vec<f64>,
-    /// The same of all windows.
+    /// Lower triangle by rows, mean of all windows.
     mean: Vec<f64>,
-    /// Gauges that read, and their noise, `n_used x n_used`; the gauges that read most often first.
+    /// Gauges that read, and their noise, `n_used x n_used`; the set that reads most often is first.
     noise: Vec<(Vec<usize>, Matrix)>,
 }
 
 /// Covariance of the readings of one sample beyond that of independent noise, by gauge of S, `n x n`, strain^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
-    /// Of noise, anew in every sample.
+    /// Covariance of noise, independent in every sample.
     pub noise: Matrix,
-    /// Of errors that all samples share.
+    /// Covariance of errors that all samples share.
     pub shared: Matrix,
 }
 
 impl Beyond {
-    /// All of it, of the gauges `used`.
+    /// Returns the total covariance of the gauges `used`.
     pub fn of(&self, used: &[usize]) -> Matrix {
         let n = used.len();
         let at = |a: usize, b: usize| (used[a], used[b]);
@@ -42,7 +42,7 @@ impl Beyond {
     }
 }
 
-/// Numbers of the lower triangle of `n` rows.
+/// Returns the count of numbers in the lower triangle of `n` rows.
 pub fn triangle(n: usize) -> usize {
     n * (n + 1) / 2
 }

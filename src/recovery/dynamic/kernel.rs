@@ -35,24 +35,23 @@ pub(super) struct Kernel {
     pub at_rest: Matrix,
     /// Covariance of readings at rest for noise of variance 1, `n x n`.
     pub noise: Matrix,
-    /// Numbers that it holds.
+    /// Count of numbers that the filter stores.
     pub numbers: usize,
 }
 
-/// A frequency.
+/// Filter at one frequency.
 pub(super) struct Bin {
     /// B.
     pub band: f64,
     /// G, `k x n`.
     pub gain: ComplexMatrix,
-    /// What motion adds to the strain of unit loads, B Psi a C, `n x k`.
+    /// Strain that motion adds to the strain of unit loads, B Psi a C, `n x k`.
     pub added: ComplexMatrix,
-    /// By mode that errs: what readings at rest are off by where it answers 1 more than is taken, `T psi`.
+    /// Error of quasi-static readings by uncertain mode, `T psi`, if the response of the mode exceeds the assumed response by 1.
     pub spread: Vec<Vec<Complex<f64>>>,
-    /// By mode that errs: what it answers more where its frequency, and its damping, is one standard deviation higher.
+    /// Increase of the response by uncertain mode, for one standard deviation more of its frequency and of its damping.
     pub errors: Vec<[Complex<f64>; 2]>,
-    /// What readings at rest are off by for unit loads where the modes that are not told answer, `T (S - Psi C) a`, `n x k`; none where there are
-    /// none.
+    /// Error of quasi-static readings for unit loads from modes outside the model, `T (S - Psi C) a`, `n x k`; `None` without such modes.
     pub further: Option<ComplexMatrix>,
 }
 
@@ -120,7 +119,7 @@ impl Kernel {
         }
     }
 
-    /// What it does to white noise.
+    /// Returns the covariance of quasi-static readings for white noise of variance 1, `n x n`.
     fn noise_of(&self) -> Matrix {
         let n = self.at_rest.ncols();
         let sides = |b: usize| if b == 0 { 1.0 } else { 2.0 } / self.length as f64;
@@ -137,7 +136,7 @@ impl Kernel {
         groups.iter().fold(Matrix::zeros(n, n), |sum, m| sum + m)
     }
 
-    /// Adds what frequencies and damping that are not known exactly, and modes that are not told, make of the readings at rest.
+    /// Adds the errors of quasi-static readings from uncertain frequencies and damping, and from modes outside the model.
     fn err(&mut self, plant: &Plant<'_>, hz: impl Fn(usize) -> f64 + Sync) {
         let erring = erring(plant, &self.bins, &hz);
         let d = plant.dynamics();
@@ -161,13 +160,13 @@ impl Kernel {
     }
 }
 
-/// What mode `j` answers more where its frequency, and its damping, is one standard deviation higher.
+/// Returns the increase of the response of mode `j` for one standard deviation more of its frequency and of its damping.
 fn errors_of(plant: &Plant<'_>, j: usize, hz: f64, d: &Dynamics) -> [Complex<f64>; 2] {
     let a = plant.answer(j, hz);
     [a.by_frequency * d.frequency_sd, a.by_damping * d.damping_sd]
 }
 
-/// The modes whose errors are worth their time.
+/// Returns the modes whose errors are large enough to compute.
 fn erring(plant: &Plant<'_>, bins: &[Bin], hz: &(impl Fn(usize) -> f64 + Sync)) -> Vec<usize> {
     let moved: Vec<Vec<f64>> = (0..plant.n_modes()).map(|j| plant.moved(j)).collect();
     let of_bin = |(b, bin): (usize, &Bin)| -> Vec<bool> {
@@ -228,7 +227,7 @@ fn bin(plant: &Plant<'_>, hz: f64) -> Result<Bin, Unfit> {
     })
 }
 
-/// What the filter and the static gain after it make of readings, `k x n` a frequency.
+/// Returns the loads by the filter and the static gain after it, per unit reading, `k x n` for each frequency.
 fn of_loads(at_rest: &Matrix, bins: &[Bin]) -> Vec<ComplexMatrix> {
     let gain = at_rest.map(|v| Complex::new(v, 0.0));
     bins.par_iter()

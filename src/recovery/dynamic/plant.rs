@@ -6,22 +6,22 @@ use crate::linalg::{Complex, Matrix};
 use crate::sensitivity::Sensitivity;
 use std::f64::consts::PI;
 
-/// Loads, modes and the gauges that read.
+/// Loads, modes and the gauges that read, with the gains at a frequency.
 pub(super) struct Plant<'a> {
     dynamics: &'a Dynamics,
     /// `n x k`.
     s: ComplexMatrix,
     /// Strain of the modes' shapes, `n x m`.
     pub shapes: ComplexMatrix,
-    /// What a unit load moves each mode by at rest, `C`, `m x k`.
+    /// Static displacement of each mode by a unit of each load, `C`, `m x k`.
     moved: ComplexMatrix,
-    /// Strain of unit loads at rest that these modes don't hold, `S - Psi C`, `n x k`.
+    /// Static strain of unit loads beyond the strain by these modes, `S - Psi C`, `n x k`.
     pub rest: ComplexMatrix,
     /// Variance of the noise over that of each load, 0 for loads without a stated size.
     ridge: Vec<f64>,
 }
 
-/// What a mode adds to its answer at rest, and how that changes with the logarithms of frequency and damping.
+/// Dynamic response of a mode beyond its static response, with its derivatives by the logarithms of frequency and damping.
 pub(super) struct Answer {
     /// `a = 1 / x - 1`, `x = 1 - r^2 + 2 i zeta r`.
     pub added: Complex<f64>,
@@ -32,7 +32,7 @@ pub(super) struct Answer {
 }
 
 impl<'a> Plant<'a> {
-    /// Of the gauges `used` of `s`, whose readings have the noise `noise`, strain.
+    /// Returns the plant of the gauges `used` of `s`, whose readings have the noise `noise`, strain.
     pub fn new(s: &Sensitivity, used: &[usize], dynamics: &'a Dynamics, noise: f64) -> Self {
         let (n, k, modes) = (used.len(), s.loads.len(), &dynamics.modes);
         let real = |v: f64| Complex::new(v, 0.0);
@@ -52,14 +52,14 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// How much of a frequency is let through, 0 to 1.
+    /// Returns the share of a frequency that the filter passes, 0 to 1.
     pub fn band(&self, hz: f64) -> f64 {
         let from = self.dynamics.up_to_hz;
         let share = ((hz - from) / ((BAND_END - 1.0) * from)).clamp(0.0, 1.0);
         0.5 * (1.0 + (PI * share).cos())
     }
 
-    /// What a mode of the frequency `own_hz` answers at a frequency.
+    /// Returns the response at `hz` of a mode of the frequency `own_hz`, both Hz.
     fn answer_of(&self, own_hz: f64, hz: f64) -> Answer {
         let r = hz / own_hz;
         let damped = Complex::new(0.0, 2.0 * self.dynamics.damping * r);
@@ -71,18 +71,18 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// What mode `j` answers at a frequency.
+    /// Returns the response of mode `j` at `hz`, Hz.
     pub fn answer(&self, j: usize, hz: f64) -> Answer {
         self.answer_of(self.dynamics.modes[j].hz, hz)
     }
 
-    /// What the modes that are not told answer at most beyond their answer at rest: as the first of them; 0 where there are none.
+    /// Returns the upper limit of the added response of modes outside the model: the response of the first of them; 0 without such modes.
     pub fn further(&self, hz: f64) -> Complex<f64> {
         let first = self.dynamics.further_hz;
         first.map_or(Complex::default(), |own| self.answer_of(own, hz).added)
     }
 
-    /// What the modes add to the strain of unit loads at rest, `Psi a C`, `n x k`.
+    /// Returns the strain that the modes add to the static strain of unit loads, `Psi a C`, `n x k`.
     pub fn added(&self, hz: f64) -> ComplexMatrix {
         let mut by_load = self.moved.clone();
         for (j, mut row) in by_load.row_iter_mut().enumerate() {
@@ -92,17 +92,17 @@ impl<'a> Plant<'a> {
         &self.shapes * by_load
     }
 
-    /// The gain at a frequency where the modes add `added`, `k x n`; `None` where the gauges can't tell the loads apart there.
+    /// Returns the gain at a frequency where the modes add `added`, `k x n`; `None` if the gauges can't separate the loads at that frequency.
     pub fn gain(&self, added: &ComplexMatrix) -> Option<ComplexMatrix> {
         least_squares_gain(&(&self.s + added), &self.ridge)
     }
 
-    /// What a unit of each load moves mode `j` by at rest.
+    /// Returns the static displacement of mode `j` by a unit of each load.
     pub fn moved(&self, j: usize) -> Vec<f64> {
         self.moved.row(j).iter().map(|v| v.re).collect()
     }
 
-    /// The static gain, `k x n`.
+    /// Returns the static gain, `k x n`.
     pub fn gain_at_rest(&self) -> Option<Matrix> {
         let gain = least_squares_gain(&self.s, &self.ridge)?;
         Some(gain.map(|v| v.re))

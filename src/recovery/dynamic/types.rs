@@ -14,41 +14,41 @@ pub struct ElasticMode {
     pub work: Vec<f64>,
 }
 
-/// What is known of the motion.
+/// Dynamic properties of the structure, and the frequency range of the loads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dynamics {
-    /// Modes that answer otherwise than at rest.
+    /// Modes with a dynamic response.
     pub modes: Vec<ElasticMode>,
-    /// Further modes lie from here on, Hz, and what they answer beyond their answer at rest is left to the doubt; `None` where there are none.
+    /// Frequency from which on further modes exist, Hz; their dynamic response is part of the uncertainty. `None` without further modes.
     pub further_hz: Option<f64>,
-    /// Loads are wanted up to here, Hz.
+    /// Highest frequency of the wanted loads, Hz.
     pub up_to_hz: f64,
     /// Damping of every mode, share of critical.
     pub damping: f64,
-    /// One standard deviation of their frequencies, share of each.
+    /// One standard deviation of the frequencies, share of each.
     pub frequency_sd: f64,
     /// One standard deviation of the damping, share of it.
     pub damping_sd: f64,
 }
 
-/// Why readings can't be put at rest.
+/// Reasons why quasi-static readings can't be computed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unfit {
-    /// The record does not hold the band.
+    /// The sample rate of the record is too low for the band.
     #[error("{rate_hz:.4} samples a second don't hold a band that ends at {end_hz:.4} Hz")]
     Rate {
-        /// Its rate.
+        /// Sample rate of the record, Hz.
         rate_hz: f64,
-        /// End of the band.
+        /// End of the band, Hz.
         end_hz: f64,
     },
-    /// Loads that the gauges can't tell apart.
+    /// Loads that the gauges can't separate.
     #[error("at {hz:.4} Hz the gauges don't tell the loads apart")]
     Untold {
-        /// Where.
+        /// Frequency at which they can't, Hz.
         hz: f64,
     },
-    /// A band so narrow that its filter takes longer transforms than are reckoned with.
+    /// A band so narrow that its filter needs longer transforms than are supported.
     #[error(
         "a band that ends at {end_hz} Hz is too narrow for {rate_hz:.4} samples a second: a sample at rest would hang on hundreds of thousands of others"
     )]

@@ -1,4 +1,4 @@
-//! What residuals are called: right jobs and wrong gauges.
+//! Tests findings on residuals: right jobs and wrong gauges.
 
 use super::super::*;
 use super::{KN, frame, gaussian};

@@ -1,4 +1,4 @@
-//! Errors of frequency, of modes that are not told, and of the gauges that read, against the intervals that are told of them.
+//! Tests intervals against errors of frequency, of modes outside the model, and of the gauges that read.
 
 use super::{
     Matrix, N_GAUGES, STRUCTURE, Structure, TAU, Waves, load, load_weights, loads_at, normal,
@@ -8,8 +8,8 @@ use crate::recovery::dynamic::readings_at_rest;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-/// What intervals of weighted loads hold, the mean square of errors over that which is told, that, and what noise makes of it, on structures that
-/// differ from what is told by random frequencies. `blank` takes readings out of the record, `judged` says which samples count.
+/// Returns the share of weighted loads within their intervals, the mean square error over the predicted variance, that variance, and its part from
+/// noise. Frequencies of the real structures differ randomly from the model. `blank` removes readings; `judged` selects the samples.
 fn held(
     weights: [f64; 2],
     of_loads: impl Fn(&mut ChaCha8Rng) -> Waves,
