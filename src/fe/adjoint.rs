@@ -1,6 +1,6 @@
-//! What a change of some shells' stiffness does to strain readings, to first order, for the price of one solution.
+//! Changes of strain readings by changes of the stiffness of some shells, to first order, at the cost of one solution.
 //!
-//! With `K u = f` and a reading `r = b' u`, let `K l = b` (the adjoint: the structure under the forces `b`). Where the stiffness of shells
+//! With `K u = f` and a reading `r = b' u`, let `K l = b` (the adjoint: the structure under the forces `b`). If the stiffness of shells
 //! `e` is multiplied by `1 + d`, the reading changes by `-d sum_e l' K_e u` and terms of `d^2`. One factor serves loads and readings, and any
 //! number of sets of shells costs no further solution.
 //!

@@ -1,4 +1,4 @@
-//! What acts in a load case: forces at grids, enforced displacements.
+//! Forces at grids and enforced displacements of a load case.
 
 use super::UnitLoad;
 use super::error::FeError;
@@ -11,12 +11,12 @@ use super::thermal_force::thermal_forces;
 use crate::model::{GridIx, Load, Model};
 use nastran::cards::Dofs;
 
-/// The largest entry of a field, sign dropped.
+/// Returns the largest absolute value in a field.
 pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
     f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
 }
 
-/// What SPCD enforces in a case.
+/// Returns the displacements that SPCD enforces in a case.
 pub(super) fn enforced_of(model: &Model, case: &LoadCase) -> Vec<(GridIx, Dofs, f64)> {
     let mut all = Vec::new();
     for load in &case.loads {
@@ -70,7 +70,7 @@ pub(super) fn check_sets(model: &Model, cases: &[&LoadCase]) -> Result<(), FeErr
     Ok(())
 }
 
-/// What acts on every grid in a case, basic frame.
+/// Returns the forces and moments on every grid in a case, basic frame.
 ///
 /// # Errors
 /// Sets that the deck lacks; elements that can't be formed.

@@ -1,4 +1,4 @@
-//! Dofs without stiffness at single grids (PARAM,AUTOSPC), and what acts along them.
+//! Dofs without stiffness at single grids (PARAM,AUTOSPC), and the loads along them.
 
 use super::assembly::{Assembled, Numbering};
 use crate::finding::{Finding, Severity, few};
@@ -8,14 +8,14 @@ use rayon::prelude::*;
 
 /// A direction at a grid is without stiffness when it has less than this share of the grid's stiffest one.
 pub(super) const EPZERO: f64 = 1e-8;
-/// With AUTOSPC off: none but rounding.
+/// With AUTOSPC off: only rounding counts as no stiffness.
 const NOTHING: f64 = 1e-13;
-/// A load is aimed along a direction when it has more than this share of its size there: grids of a nearly flat shell lean by less,
-/// and what they lose is judged once the structure is solved.
+/// A load acts along a direction if it has more than this share of its size along it. Grids of a nearly flat shell lean by less; the loads that
+/// they lose are tested after the solution.
 const AIMED: f64 = 1e-3;
-/// Grids that a thread looks at together.
+/// Number of grids in one task of a thread.
 const MIN_GRIDS: usize = 256;
-/// Share of the loads that may go into held directions: that of a solution whose equations hold to six digits.
+/// Share of the loads that held directions may take: the share in a solution whose equations are satisfied to six digits.
 const LOST: f64 = 1e-6;
 
 /// A direction at a grid that is held because nothing else holds it.
@@ -29,12 +29,12 @@ pub(crate) struct Weak {
     pub(crate) some: bool,
     /// First unknown of the translations, or rotations, of the grid.
     first: usize,
-    /// How far these move along the direction, length 1.
+    /// Displacement of these unknowns along the direction, length 1.
     direction: Vec<f64>,
 }
 
 impl Weak {
-    /// The part of a load along the direction, where the load is aimed along it: both at the unknowns.
+    /// Returns the part of a load along the direction, 0 if the load does not act along it; both at the unknowns.
     pub(super) fn aimed(&self, packed: &[f64]) -> f64 {
         let pairs = packed.iter().skip(self.first).zip(&self.direction);
         let (along, square) = pairs.fold((0.0, 0.0), |(a, s), (f, d)| (a + f * d, s + f * f));
@@ -47,10 +47,10 @@ impl Weak {
     }
 }
 
-/// What is to be held so that no direction at a single grid is without stiffness.
+/// Returns the springs that leave no direction at a single grid without stiffness.
 ///
-/// With AUTOSPC off, only directions without any stiffness are held: nothing can act on them, and a solver takes its null columns out.
-/// A negative stiffness is none of these: it moves things, and the factor tells whether the rest outweighs it.
+/// With AUTOSPC off, only directions without any stiffness get one: no force acts on them, and a solver removes its null columns.
+/// A direction of negative stiffness gets none: it changes the displacements, and the factor shows whether the rest of the stiffness exceeds it.
 pub(super) fn weak_unknowns(assembled: &Assembled, autospc: bool) -> Vec<Weak> {
     let limit = if autospc { EPZERO } else { NOTHING };
     let diagonal = assembled.stiffness.diagonal_values(&assembled.symbolic);
@@ -169,9 +169,9 @@ pub(super) fn load_sizes(numbering: &Numbering, acting: &[f64], reach: f64) -> [
     sizes
 }
 
-/// What holds the weak directions in a solved case: a finding where loads go there instead of into the structure.
+/// Returns a finding if the springs in the weak directions take loads of a solved case instead of the structure.
 ///
-/// `sizes`: those of the loads; `moved`: displacements at the unknowns.
+/// `sizes`: sizes of the loads, forces and moments; `moved`: displacements at the unknowns.
 pub(super) fn held_loads(
     model: &Model,
     (numbering, start): (&Numbering, &[usize]),

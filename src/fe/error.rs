@@ -5,16 +5,16 @@ use crate::finding::few_of;
 use nastran::place::Place;
 use std::fmt;
 
-/// A card that the solver does not carry, or whose content it can't use.
+/// A card that the solver does not support, or whose content it can't use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Refusal {
     /// Card name with its id, such as `CHEXA 12`.
     pub card: String,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
-    /// What is wrong with it.
+    /// Fault of the card.
     pub reason: String,
-    /// What to do.
+    /// Remedy.
     pub remedy: String,
 }
 
@@ -35,23 +35,23 @@ impl Refusal {
     }
 }
 
-/// A degree of freedom that nothing holds.
+/// A degree of freedom without any support.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeDof {
     /// Grid id.
     pub grid: u32,
     /// Degree of freedom, 1 to 6.
     pub dof: u8,
-    /// What hangs there: elements with this grid.
+    /// Elements with this grid.
     pub hangs: String,
-    /// Where the grid stands.
+    /// Place of the grid in the deck.
     pub at: Place,
 }
 
-/// What stops the solver.
+/// Errors that stop the solver.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FeError {
-    /// Cards that it does not carry, or can't use.
+    /// Cards that the solver does not support, or can't use.
     Refused(Vec<Refusal>),
     /// A dof is made dependent twice, or both dependent and held.
     DependentTwice {
@@ -61,7 +61,7 @@ pub enum FeError {
         dof: u8,
         /// The cards that claim it.
         claims: Vec<String>,
-        /// Where the second claim stands.
+        /// Place of the second claim in the deck.
         at: Place,
     },
     /// Dependent dofs that depend on themselves in a circle.
@@ -73,17 +73,17 @@ pub enum FeError {
         /// Where the grid stands.
         at: Place,
     },
-    /// Dofs that nothing holds although the supports should: mechanisms.
+    /// Dofs without support although the supports should hold them: mechanisms.
     Mechanism {
-        /// The first of them.
+        /// The first of the dofs.
         dofs: Vec<FreeDof>,
-        /// How many there are.
+        /// Number of the dofs.
         count: usize,
-        /// In words: parts that are not joined to the rest.
+        /// Descriptions of the parts that are not joined to the rest.
         parts: Vec<String>,
         /// SPC set that holds the structure; `None`: none is selected.
         spc: Option<u32>,
-        /// What balances loads that no support takes.
+        /// Balance of the loads that no support takes.
         relief: Relief,
     },
     /// A load acts on a dof that no element holds.
@@ -119,7 +119,7 @@ pub enum FeError {
     },
     /// Inertia relief was asked for, but the structure is tied to ground.
     TiedToGround {
-        /// What ties it.
+        /// Description of the tie to ground.
         what: String,
     },
     /// SUPORT does not hold the rigid motions exactly once.
@@ -135,7 +135,7 @@ pub enum FeError {
     NotANumber {
         /// Grid id.
         grid: u32,
-        /// Where it stands.
+        /// Place of the grid in the deck.
         at: Place,
     },
     /// Modes were asked for, and the structure has no mass.
@@ -306,7 +306,7 @@ fn load_on_nothing(
     }]
 }
 
-/// What holds the structure, and the dofs that move all the same.
+/// Returns the error on dofs that move although the supports should hold the structure.
 fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> Refusal {
     let (held, remedy) = match support {
         (Some(set), Relief::None) => (

@@ -1,4 +1,4 @@
-//! Springs and bushes that join grids to ground: what they put onto the structure is a reaction.
+//! Springs and bushes that join grids to ground: their forces on the structure are reactions.
 
 use super::constraint::{Reduction, State};
 use super::error::FeError;
@@ -8,10 +8,10 @@ use super::scalar_points::carry_to_grids;
 use crate::model::{ElementRef, GridIx, Model};
 use std::collections::BTreeMap;
 
-/// What joins a grid to ground.
+/// Element that joins a grid to ground.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Ground {
-    /// A CELAS: its number, which end is at the grid, and the scalar point at the other one, if any.
+    /// A CELAS: its number, its end at the grid, and the scalar point at the other end, if any.
     Spring(usize, usize, Option<GridIx>),
     /// A CBUSH without GB.
     Bush(usize),

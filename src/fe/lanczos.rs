@@ -22,7 +22,7 @@ pub(super) type Field = Vec<[f64; 6]>;
 /// No bound on a frequency is below this: what the factor's rounding leaves.
 const ROUNDING: f64 = 1e-12;
 
-/// When modes count as found.
+/// Limits below which modes count as found.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Accuracy {
     /// Bound on the relative error of a frequency.
@@ -31,16 +31,16 @@ pub(super) struct Accuracy {
     pub(super) residual: f64,
 }
 
-/// What is asked of the modes.
+/// Number, accuracy and content of the modes to compute.
 #[derive(Clone, Copy)]
 pub(super) struct Wanted<'a> {
-    /// How many.
+    /// Number of modes.
     pub(super) count: usize,
-    /// How well.
+    /// Required accuracy.
     pub(super) accuracy: Accuracy,
-    /// Shapes too; they are empty where not.
+    /// Whether to compute shapes; if not, they are empty.
     pub(super) shapes: bool,
-    /// Looked at between blocks.
+    /// Cancellation, tested between blocks.
     pub(super) stop: &'a Stop,
 }
 

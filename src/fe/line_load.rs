@@ -1,4 +1,4 @@
-//! What acts along the bars and beams of a load case: PLOAD1, temperature, inertia of coupled mass.
+//! Loads along the bars and beams of a load case: PLOAD1, temperature, inertia of coupled mass.
 
 use super::UnitLoad;
 use super::element::beam::{Interior, LineLoad, beam_inertia};
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 pub(crate) struct Between<'a> {
     loads: HashMap<usize, Vec<LineLoad>>,
     temperatures: Option<&'a Temperatures>,
-    /// Acceleration by grid, basic frame, WTMASS applied, where coupled mass acts.
+    /// Acceleration by grid, basic frame, WTMASS applied, if coupled mass has inertia loads.
     acceleration: Option<Vec<[f64; 6]>>,
 }
 
@@ -45,7 +45,7 @@ fn along(load: &Load, factor: f64) -> Option<(usize, LineLoad)> {
 }
 
 impl<'a> Between<'a> {
-    /// What acts along the beams in a case. `relief` is the rigid acceleration of inertia relief and the centre of gravity it counts from.
+    /// Returns the loads along the beams in a case. `relief` is the rigid acceleration of inertia relief and the centre of gravity it refers to.
     pub(crate) fn new(
         model: &Model,
         case: &LoadCase,
@@ -86,7 +86,7 @@ impl<'a> Between<'a> {
         loads
     }
 
-    /// What acts along beam `i`.
+    /// Returns the loads along beam `i`.
     pub(crate) fn of(&self, model: &Model, i: usize) -> Interior {
         Interior {
             loads: self.loads.get(&i).cloned().unwrap_or_default(),
@@ -96,8 +96,8 @@ impl<'a> Between<'a> {
     }
 }
 
-/// Returns the acceleration whose forces on coupled mass act in a case: GRAV, ACCEL, ACCEL1, RFORCE, less that of inertia relief.
-/// `None` where mass is lumped, or nothing accelerates it.
+/// Returns the acceleration of coupled mass in a case: GRAV, ACCEL, ACCEL1, RFORCE, less the acceleration of inertia relief.
+/// `None` if mass is lumped, or nothing accelerates it.
 fn acceleration(
     model: &Model,
     case: &LoadCase,

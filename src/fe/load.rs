@@ -163,8 +163,8 @@ fn pressure_on(
     }
 }
 
-/// The same over a face with mid-side grids, each with the number of its side: corner pressures by the corners' functions, forces by
-/// those of all grids.
+/// Adds the forces of a pressure on a face with mid-side grids, each with the number of its side. The corners' functions interpolate corner
+/// pressures; the functions of all grids distribute forces.
 fn pressure_on_curved(
     model: &Model,
     (n, grids, sides): (usize, &[GridIx], &[usize]),

@@ -19,20 +19,20 @@ pub enum Relief {
 pub struct LoadCase {
     /// Subcase id.
     pub subcase: u32,
-    /// For people.
+    /// Label for reports.
     pub label: String,
-    /// What acts; several are summed.
+    /// Loads of the case; several are summed.
     pub loads: Vec<UnitLoad>,
     /// SPC set.
     pub spc: Option<u32>,
     /// MPC set.
     pub mpc: Option<u32>,
-    /// What balances the loads.
+    /// Balance of the loads.
     pub relief: Relief,
 }
 
 impl LoadCase {
-    /// Returns what the subcase `s` selects: its loads, its SPC and MPC sets, and the balance that the model prescribes for them.
+    /// Returns the load case of the subcase `s`: its loads, its SPC and MPC sets, and the balance that the model prescribes for them.
     pub fn of_subcase(model: &Model, s: &Subcase, label: String) -> Self {
         Self {
             subcase: s.id,

@@ -1,4 +1,4 @@
-//! What loads do to modes.
+//! Modal loads: work of load cases on the shapes of modes.
 
 use super::applied::applied_forces;
 use super::error::FeError;
@@ -7,7 +7,7 @@ use super::mass::Mass;
 use super::prepared::Prepared;
 use crate::model::Model;
 
-/// Work of every case's loads on every mode's shape (by grid, basic frame), `phi_j' f`: by case, then by mode.
+/// Returns the work of every case's loads on every mode's shape (by grid, basic frame), `phi_j' f`: by case, then by mode.
 ///
 /// # Errors
 /// Load sets that the deck lacks; elements that can't be formed.

@@ -50,23 +50,23 @@ pub struct Mode {
 /// Modes of a structure, with their strain.
 #[derive(Clone, Debug, Default)]
 pub struct ModalSolution {
-    /// Ascending; rigid motions are left out.
+    /// Modes, frequencies ascending; rigid motions are left out.
     pub modes: Vec<Mode>,
     /// Rigid motions that no support holds.
     pub rigid_motions: usize,
     /// Mass and centre of gravity.
     pub mass: Option<MassProperties>,
-    /// Unknowns.
+    /// Number of unknowns.
     pub dofs: usize,
-    /// Strain of every shape, numbered 1 .. n as subcases.
+    /// Strain of every shape, with the subcase numbers 1 .. n.
     pub strain: Solution,
-    /// What was noticed.
+    /// Findings of the solver.
     pub findings: Vec<Finding>,
 }
 
-/// The lowest elastic modes with their strain; rigid motions are left out.
+/// Computes the lowest elastic modes with their strain; rigid motions are left out.
 ///
-/// `spc` holds the structure; where it holds no rigid motion, or not all, the rest is left free. Mass and stiffness are those of statics,
+/// `spc` supports the structure; rigid motions without a support remain free. Mass and stiffness equal those of statics,
 /// PARAM,WTMASS and PARAM,COUPMASS included.
 ///
 /// # Errors

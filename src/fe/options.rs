@@ -1,8 +1,8 @@
-//! What is wanted of the solver.
+//! Options of the solver.
 
 use crate::stop::Stop;
 
-/// Where strain is computed.
+/// Points of an element at which strain is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Corners {
     /// At centre and corners.
@@ -12,24 +12,24 @@ pub enum Corners {
     Leave,
 }
 
-/// What of the strain of a heated structure is wanted.
+/// Strain of a heated structure: mechanical or total.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum HeatedStrain {
-    /// Total less thermal, as Nastran gives it: what a gauge compensated for its material reads.
+    /// Total less thermal, as in Nastran: the reading of a gauge that is compensated for its material.
     #[default]
     Mechanical,
-    /// Thermal expansion included, the strain of the displacements: the apparent strain of a gauge that compensates nothing.
+    /// Thermal expansion included, the strain of the displacements: the apparent strain of a gauge without compensation.
     Total,
 }
 
 /// Settings of the solver.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct SolveOptions {
-    /// Strain at the corners, too.
+    /// Whether strain is also computed at the corners.
     pub corners: Corners,
-    /// With thermal expansion or without.
+    /// Strain of a heated structure, with thermal expansion or without.
     pub heated: HeatedStrain,
-    /// Elastic modes wanted beside the static solution, from its factor; 0: none.
+    /// Elastic modes computed in addition to the static solution, from its factor; 0: none.
     pub modes: usize,
     /// Ends the work between two steps with [`super::FeError::Stopped`].
     pub stop: Stop,

@@ -13,17 +13,17 @@ use nastran::cards::Dofs;
 use rayon::prelude::*;
 use serde::Serialize;
 
-/// Unknowns that a thread looks at together.
+/// Number of unknowns in one task of a thread.
 const MIN_UNKNOWNS: usize = 4096;
 
-/// The free rigid motions of a model and what balances loads on them.
+/// The free rigid motions of a model and the inertia that balances loads on them.
 #[derive(Clone, Debug)]
 pub(crate) struct RigidBody {
     /// Grid locations.
     x: Vec<Vec3>,
-    /// Scalar points: they have no place in the body, and what acts there is no force on it.
+    /// Whether a grid is a scalar point: it has no place in the body, and a load on it is no force on the body.
     scalar: Vec<bool>,
-    /// Those of them that hang between grids on springs, and where these put them in the six rigid motions about the centre of gravity.
+    /// Scalar points on springs between grids, and their displacement in the six rigid motions about the centre of gravity.
     hanging: Vec<(usize, [f64; 6])>,
     pub(crate) properties: MassProperties,
     /// Columns: free motions as combinations of three translations and three rotations about the centre of gravity.

@@ -1,4 +1,4 @@
-//! What the solver has to say beside the strain.
+//! Report of the solver: everything except strain.
 
 use super::mass::MassProperties;
 use super::reactions::Reactions;
@@ -6,7 +6,7 @@ use super::relief::Balance;
 use crate::finding::Finding;
 use crate::linalg::sparse::OrderingMethod;
 
-/// What the solver has to say beside the solution.
+/// Report of the solver on a solution: sizes, accuracy, balance, reactions, modes and times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SolveReport {
     /// Grids of the model.
@@ -27,21 +27,21 @@ pub struct SolveReport {
     pub reactions: Vec<Reactions>,
     /// Mass and centre of gravity.
     pub mass: Option<MassProperties>,
-    /// Frequencies of the lowest elastic modes of the structure as the first cases hold it, cycles per unit of time, ascending: as many
-    /// as were asked for.
+    /// Frequencies of the lowest elastic modes, as many as requested, cycles per unit of time, ascending. The structure has the supports of the
+    /// first cases.
     pub modes: Vec<f64>,
     /// Wall seconds by step.
     pub seconds: Vec<(String, f64)>,
 }
 
-/// What a solution is made of before strain.
+/// Displacements of a solution, with the solver's report, before strain is computed.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solved {
     /// Displacements by case and grid, basic frame.
     pub displacements: Vec<Vec<[f64; 6]>>,
-    /// What the solver has to say.
+    /// Report of the solver.
     pub report: SolveReport,
-    /// What was noticed.
+    /// Findings of the solver.
     pub findings: Vec<Finding>,
 }
 
@@ -53,7 +53,7 @@ impl Clock {
         Self(std::time::Instant::now())
     }
 
-    /// Adds the time since the last note to a step.
+    /// Adds the time since the last call to a step.
     pub(super) fn note(&mut self, report: &mut SolveReport, step: &str) {
         let seconds = std::mem::replace(&mut self.0, std::time::Instant::now()).elapsed();
         match report.seconds.iter_mut().find(|s| s.0 == step) {

@@ -6,7 +6,7 @@ use super::grid_frames::{to_basic, to_local};
 use super::prepared::Prepared;
 use crate::model::{Grid, Model};
 
-/// Whether each grid is a warping point of a beam: no motion of the body moves it, and what acts there is a bimoment.
+/// Returns whether each grid is a warping point of a beam: no motion of the body moves it, and a load on it is a bimoment.
 fn warping_points(model: &Model) -> Vec<bool> {
     let mut warps = vec![false; model.grids.len()];
     for g in model.beams.iter().filter_map(|b| b.warping).flatten() {
@@ -15,7 +15,7 @@ fn warping_points(model: &Model) -> Vec<bool> {
     warps
 }
 
-/// What acts at scalar points that follow grids (MPC), carried to these by virtual work: f_j += c_j f for u = sum of c_j u_j. Basic frame.
+/// Moves loads on scalar points that follow grids (MPC) to these grids by virtual work: f_j += c_j f for u = sum of c_j u_j. Basic frame.
 pub(super) fn carry_to_grids(
     prepared: &Prepared<'_>,
     reduction: &Reduction,
@@ -59,11 +59,11 @@ pub(super) fn follow_grids(prepared: &Prepared<'_>, reduction: &Reduction, u: &m
     }
 }
 
-/// What acts on a free structure at scalar points that follow nothing: how its force arrives at the body is not known, so that no inertia
-/// could balance it. `field` after [`carry_to_grids`].
+/// Checks that no load acts on an independent scalar point of a free structure. How its force reaches the body is unknown, so inertia can't balance
+/// it. `field` is the result of [`carry_to_grids`].
 ///
 /// # Errors
-/// Such a load, by its point.
+/// Such a load, with its point.
 pub(super) fn check_free_points(
     model: &Model,
     reduction: &Reduction,

@@ -8,11 +8,11 @@ use std::sync::Arc;
 /// Results of one or several load cases on one model.
 #[derive(Clone, Debug, Default)]
 pub struct Solution {
-    /// One entry a load case.
+    /// Results of each load case.
     pub cases: Vec<CaseResult>,
-    /// Where they come from: the solver's name, or the file's.
+    /// Source of the results: the solver's name, or the file's.
     pub source: String,
-    /// What was noticed.
+    /// Findings on the results.
     pub findings: Vec<Finding>,
 }
 
@@ -21,7 +21,7 @@ pub struct Solution {
 pub struct CaseResult {
     /// Subcase id.
     pub subcase: u32,
-    /// Label or subtitle, for people.
+    /// Label or subtitle, for reports.
     pub label: String,
     /// Shell strain.
     pub shells: ShellField,

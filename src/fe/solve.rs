@@ -266,7 +266,7 @@ fn solve_group(
     Ok(fields)
 }
 
-/// Goes on, or not.
+/// Checks for cancellation.
 pub(super) fn go_on(options: &SolveOptions) -> Result<(), FeError> {
     match options.stop.is_asked() {
         true => Err(FeError::Stopped),
@@ -274,7 +274,7 @@ pub(super) fn go_on(options: &SolveOptions) -> Result<(), FeError> {
     }
 }
 
-/// What is said of a structure whose every dof is held.
+/// Returns the finding on a structure whose dofs are all held.
 fn nothing_free(cases: &[&LoadCase]) -> Finding {
     let ids: Vec<String> = cases.iter().map(|c| c.subcase.to_string()).collect();
     Finding::new(
@@ -299,15 +299,15 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
     })
 }
 
-/// What acts in a case.
+/// Forces on the structure in a case.
 pub(super) struct Acting {
-    /// By grid, basic frame, inertia included where it balances.
+    /// Forces by grid, basic frame, inertia included if it balances.
     pub(super) forces: Vec<[f64; 6]>,
     pub(super) balance: Option<Balance>,
     pub(super) findings: Vec<Finding>,
 }
 
-/// The loads of a case, balanced by the inertia of `body` where there is one.
+/// Returns the loads of a case, balanced by the inertia of `body` if there is one.
 ///
 /// # Errors
 /// Loads on nothing; numbers beyond all bounds; sets that the deck lacks.

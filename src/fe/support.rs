@@ -18,29 +18,29 @@ pub enum SupportChoice {
     Set(u32),
 }
 
-/// What holds the structure in every load case of a job.
+/// Support of the structure in every load case of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Support {
-    /// SPC set; `None`: no set holds it (permanent constraints of grids do all the same).
+    /// SPC set; `None`: no set supports it (permanent constraints of grids apply in any case).
     pub spc: Option<u32>,
-    /// What balances loads that no support takes.
+    /// Balance of the loads that no support takes.
     pub relief: Relief,
-    /// Rigid motions that springs to ground hold where no SPC set is selected, 0 to 6.
+    /// Rigid motions that springs to ground resist if no SPC set is selected, 0 to 6.
     pub by_springs: u8,
 }
 
-/// Why a support can't be had.
+/// Reasons why a support can't be determined.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum SupportError {
     /// The deck has no such SPC set.
     #[error("the deck has no SPC set {set}: {}", known(.there))]
     Missing {
-        /// The set asked for.
+        /// The requested set.
         set: u32,
         /// Sets of the deck.
         there: Vec<u32>,
     },
-    /// Subcases stand on different supports.
+    /// Subcases have different supports.
     #[error(
         "the deck's subcases select different SPC sets ({}): unit loads need one, name it", list(.sets)
     )]
@@ -108,18 +108,18 @@ impl Support {
     }
 }
 
-/// `1 rigid motion`, `3 rigid motions`.
+/// Formats a number of rigid motions: `1 rigid motion`, `3 rigid motions`.
 fn rigid_motions(n: usize) -> String {
     format!("{n} rigid motion{}", if n == 1 { "" } else { "s" })
 }
 
-/// What holds a model's structure under unit loads.
+/// Returns the support of a model's structure under unit loads.
 ///
-/// A set that is named, or that the deck's case control selects, holds it; PARAM,INREL of the deck then stays in force for the motions
-/// that the set leaves free. Otherwise springs to ground hold it, and inertia balances loads along the motions that nothing resists.
+/// The requested SPC set, or the set of the deck's case control, supports the structure. PARAM,INREL of the deck then applies to the motions that
+/// the set leaves free. Without a set, springs to ground support it, and inertia balances loads along the motions that nothing resists.
 ///
 /// # Errors
-/// A set that the deck lacks; several sets selected where one must be.
+/// A set that the deck lacks; several sets selected where one is required.
 pub fn support_of(model: &Model, wanted: SupportChoice) -> Result<Support, SupportError> {
     let set = match (wanted, model.selected_spcs.as_slice()) {
         (SupportChoice::Free, _) | (SupportChoice::Deck, []) => return Ok(Support::free(model)),

@@ -18,25 +18,25 @@ use crate::linalg::sparse::{BlockGraph, BlockMatrix, Factor, FactorError, Symbol
 use crate::model::{GridIx, Mat3, Model};
 use rayon::prelude::*;
 
-/// Everything between a model and its factor.
+/// Equations of a model: reduction, numbering and assembled stiffness, ready for the factor.
 pub(super) struct System {
     pub(super) reduction: Reduction,
     numbering: Numbering,
     graph: BlockGraph,
     pub(super) symbolic: Symbolic,
     pub(super) stiffness: BlockMatrix,
-    /// The free rigid motions, where inertia balances the loads.
+    /// The free rigid motions, if inertia balances the loads.
     pub(super) body: Option<RigidBody>,
     weak: Vec<Weak>,
-    /// SPC set, and what balances loads that it does not take.
+    /// SPC set, and the balance of loads that it does not take.
     support: (Option<u32>, Relief),
 }
 
 impl System {
-    /// The stiffness under an SPC and an MPC set, held determinately where inertia balances the loads.
+    /// Assembles the stiffness under an SPC and an MPC set, with determinate supports if inertia balances the loads.
     ///
-    /// Determinate supports and dofs without stiffness are held by a spring of the size of their stiffness: a balanced load puts no
-    /// force into it, so the answer is that of a rigid support.
+    /// Springs of the size of their stiffness act as determinate supports, and at dofs without stiffness. A balanced load causes no force in them, so
+    /// the result equals the result of a rigid support.
     ///
     /// # Errors
     /// See [`FeError`].

@@ -6,12 +6,12 @@ use super::prepared::Prepared;
 use crate::finding::{Finding, Severity};
 use crate::model::{ElementRef, Model, Spring, Vec3};
 
-/// Share of forces, or moments, that may stay unbalanced: that of a solution whose equations hold to six digits.
+/// Share of forces, or moments, that may be unbalanced: the share in a solution whose equations are satisfied to six digits.
 const LIMIT: f64 = 1e-6;
-/// Rounding of K u beside the sum of |K| |u|: supports that all move alike strain nothing, and what is left of their forces is rounding.
+/// Rounding of K u relative to the sum of |K| |u|: supports that all move equally strain nothing, and the remaining forces are rounding.
 const ROUNDING: f64 = 1e-10;
 
-/// What the sum of loads and reactions leaves, and the sizes that were summed: forces, moments.
+/// Unbalanced sum of loads and reactions, and the sizes of the summands: forces, moments.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Left {
     pub(super) left: [f64; 2],
@@ -19,7 +19,7 @@ pub(super) struct Left {
 }
 
 impl Left {
-    /// What is left of `applied` and `held`, fields over grids at `x`, with these resultants.
+    /// Returns the unbalanced sum of `applied` and `held`, fields over grids at `x`, with these resultants.
     pub(super) fn of(
         x: &[Vec3],
         applied: &[[f64; 6]],
@@ -130,7 +130,7 @@ fn pushes_ground(prepared: &Prepared<'_>, spring: &Spring) -> bool {
     dof_a / 3 != dof_b / 3 || (da - db).norm() > LIMIT || apart
 }
 
-/// What rounding may leave of forces and moments: [`ROUNDING`] of the sum of |K| |u| over elements.
+/// Returns the unbalanced forces and moments that rounding may cause: [`ROUNDING`] of the sum of |K| |u| over elements.
 fn rounding(
     prepared: &Prepared<'_>,
     elements: &[ElementRef],

@@ -214,7 +214,7 @@ impl<'a> Base<'a> {
         }))
     }
 
-    /// What is added to the stiffness of each element, basic frame.
+    /// Returns the change of the stiffness of each element in a variant, basic frame.
     fn change(
         &self,
         variant: &Prepared<'_>,
@@ -230,8 +230,8 @@ impl<'a> Base<'a> {
         all.map_err(|r| FeError::Refused(vec![r]))
     }
 
-    /// Displacements at the unknowns under `forces`, a column a case; `None` where they are not reached in [`MOST_STEPS`], or the variant has a
-    /// motion that nothing holds.
+    /// Returns the displacements at the unknowns under `forces`, a column a case. `None` if they do not converge in [`MOST_STEPS`], or the variant
+    /// has a motion without support.
     fn converged(
         &self,
         change: &[ElementMatrix],
@@ -303,21 +303,21 @@ impl<'a> Base<'a> {
     }
 }
 
-/// What loads a variant, beside the forces.
+/// Inertia, report and findings of a variant's load cases, without their forces.
 struct Loaded {
     body: Option<super::relief::RigidBody>,
     report: SolveReport,
     findings: Vec<crate::finding::Finding>,
 }
 
-/// Column by column `a' b`.
+/// Returns `a' b`, column by column.
 fn dots(a: &[f64], b: &[f64], n: usize) -> Vec<f64> {
     let columns = a.par_chunks_exact(n).zip(b.par_chunks_exact(n));
     let dot = |(a, b): (&[f64], &[f64])| a.iter().zip(b).map(|(a, b)| a * b).sum();
     columns.map(dot).collect()
 }
 
-/// Column by column `to += factor * more`.
+/// Adds `factor * more` to `to`, column by column.
 fn add(to: &mut [f64], factors: &[f64], more: &[f64], n: usize) {
     let columns = to.par_chunks_exact_mut(n).zip(more.par_chunks_exact(n));
     columns.zip(factors).for_each(|((to, more), f)| {

@@ -1,9 +1,9 @@
-//! What hangs at a grid, for messages.
+//! Descriptions of the elements at a grid, for messages.
 
 use crate::finding::few;
 use crate::model::{ElementRef, GridIx, Model};
 
-/// Elements with a grid, in words.
+/// Returns the names of the elements with a grid.
 pub(super) fn what_hangs(model: &Model, grid: GridIx) -> String {
     let here = |e: &ElementRef| model.element_grids(*e).contains(&grid);
     let named = |e: ElementRef| format!("{} {}", model.element_word(e), model.element_id(e));

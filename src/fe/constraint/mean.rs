@@ -113,7 +113,7 @@ pub(super) fn relations(
     }
 }
 
-/// The same equations with the dofs of `um` dependent.
+/// Solves the equations for the dofs of `um`, which become the dependent ones.
 fn solve_for(
     all: &[Relation],
     um: &[(GridIx, Dofs)],

@@ -7,10 +7,10 @@ use crate::model::{GridIx, Mat3, Model, RigidKind};
 use nastran::cards::Dofs;
 use std::collections::HashMap;
 
-/// An SPC set, an MPC set, and what SPCD enforces instead of the SPC set.
+/// SPC set, MPC set, and enforced displacements by SPCD, which replace the values of the SPC set.
 pub(crate) type Sets<'a> = (Option<u32>, Option<u32>, &'a [(GridIx, Dofs, f64)]);
 
-/// What a dof is.
+/// State of a dof in the reduction.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum State {
     /// An unknown.
@@ -18,18 +18,18 @@ pub(crate) enum State {
     Free,
     /// Held at zero or at an enforced value.
     Held,
-    /// Given by a row of others.
+    /// Dependent: given by a row of other dofs.
     Dependent(u32),
 }
 
-/// What a dependent dof follows.
+/// Equation of a dependent dof: its displacement by free, held and enforced dofs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Row {
     /// Free dofs and their coefficients.
     pub(crate) free: Vec<(u32, f64)>,
-    /// Held dofs and their coefficients: what its force puts onto supports.
+    /// Held dofs and their coefficients: the dof's force on supports.
     pub(crate) held: Vec<(u32, f64)>,
-    /// Displacement that enforced dofs give it.
+    /// Displacement of the dof by enforced dofs.
     pub(crate) constant: f64,
 }
 

@@ -4,10 +4,10 @@ use crate::finding::{Finding, Severity};
 use crate::model::{Load, Model};
 use nastran::results::{Analysis, Quantity, ResultsFile, Rows};
 
-/// What the caller knows of the supports of the run.
+/// Supports of the run, as the caller knows them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Supports {
-    /// Free where PARAM,INREL says so.
+    /// Free if PARAM,INREL requests inertia relief.
     #[default]
     AsDeck,
     /// Free: unit loads under inertia relief.
@@ -17,7 +17,7 @@ pub enum Supports {
 /// Reactions up to this share of the largest applied load are rounding.
 const REACTION_TOLERANCE: f64 = 1e-3;
 
-/// A finding where a run that should be free has SPC forces that carry load.
+/// Returns a finding if a run that should be free has SPC forces that carry load.
 ///
 /// Measured: the largest SPC force of all subcases. Limit: 1e-3 of the largest applied force (the file's OLOAD output, else the deck's
 /// FORCE cards).

@@ -74,7 +74,7 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
     findings
 }
 
-/// Of every element type (strain before stress) and of displacements the block with most entries.
+/// Returns the block with most entries for every element type (strain before stress) and for displacements.
 fn largest_blocks(blocks: &[Block]) -> Vec<usize> {
     let mut best: BTreeMap<(Option<u32>, Quantity), (usize, usize)> = BTreeMap::new();
     for (ix, b) in blocks.iter().enumerate() {

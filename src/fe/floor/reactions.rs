@@ -51,7 +51,7 @@ pub enum FloorError {
     NoDisplacement,
     /// Springs to ground carry the structure already.
     Springs {
-        /// Rigid motions that they hold.
+        /// Number of rigid motions that the springs resist.
         motions: u8,
         /// The springs in words.
         springs: String,
@@ -61,7 +61,7 @@ pub enum FloorError {
 }
 
 impl FloorError {
-    /// What is wrong, and what to do: of the floor itself, one of it.
+    /// Returns the messages with their remedies: one for an error of the floor, one for each fault of the solver.
     pub fn parts(&self) -> Vec<(String, String)> {
         match self {
             Self::OnALine { contacts } => vec![(

@@ -16,9 +16,9 @@ use std::sync::Arc;
 struct Station {
     /// x/xb.
     at: f64,
-    /// At C D E F.
+    /// Strain at C D E F.
     points: [f64; 4],
-    /// Of the neutral axis; NaN where the rows do not hold it.
+    /// Strain of the neutral axis; NaN if the rows do not contain it.
     axial: f64,
 }
 

@@ -27,21 +27,21 @@ pub enum Displacements {
     Leave,
 }
 
-/// What to read.
+/// Selection of the results to read.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct ReadOptions {
-    /// Displacements.
+    /// Whether displacements are read.
     pub displacements: Displacements,
-    /// Subcases to read; `None` all.
+    /// Subcases to read; `None` for all.
     pub subcases: Option<BTreeSet<u32>>,
-    /// What is known of the run's supports.
+    /// Supports of the run, as the caller knows them.
     pub supports: Supports,
 }
 
-/// The static subcases of several files as one solution, subcases ascending.
+/// Combines the static subcases of several files to one solution, subcases ascending.
 ///
-/// A subcase found in two files is one case where each has what the other lacks (strain in one, displacements in the other, other elements)
-/// or both have the same values; where values differ there are two cases and a finding.
+/// A subcase in two files is one case if the files complement each other (strain in one, displacements in the other, other elements).
+/// It is also one case if both have equal values. If values differ there are two cases and a finding.
 pub fn solution_from_results(
     model: &Model,
     files: &[(&str, &ResultsFile)],

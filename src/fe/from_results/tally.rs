@@ -1,9 +1,9 @@
-//! What was met on the way, counted, so that each kind makes one finding.
+//! Counts irregularities of result files, so that each kind makes one finding.
 
 use crate::finding::{Finding, LISTED, Severity};
 use std::collections::BTreeMap;
 
-/// What can be met.
+/// Kinds of irregularities.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Met {
     /// Corner rows of a grid that is no corner of the element.
@@ -13,7 +13,7 @@ pub(super) enum Met {
     /// Strain taken from stress.
     ShellFromStress,
     BeamFromStress,
-    /// Stress that could not be turned: the material is not isotropic.
+    /// Stress that could not be converted: the material is not isotropic.
     NotIsotropic,
     /// Shell rows that do not come in pairs.
     Unpaired,
@@ -43,7 +43,7 @@ impl Tally {
         }
     }
 
-    /// The same with a measured number and what it should be; the worst stays.
+    /// Counts an irregularity with a measured and an expected number; the largest difference remains.
     pub(super) fn add_measured(&mut self, met: Met, id: u32, measured: f64, wanted: f64) {
         self.add(met, id);
         if let Some(entry) = self.0.get_mut(&met) {

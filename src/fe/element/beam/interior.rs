@@ -1,4 +1,4 @@
-//! What acts between the ends of a beam: loads along it (PLOAD1) and temperature.
+//! Loads between the ends of a beam: loads along it (PLOAD1) and temperature.
 
 use super::flexibility::{LocalBeam, section_at};
 use crate::linalg::{SMatrix, SVector, Vector3, Vector6};
@@ -14,9 +14,9 @@ const GAUSS: [(f64, f64); 3] = [
 /// Force or moment along a beam, element axes; `from` = `to`: concentrated there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LineLoad {
-    /// Share of the length where it begins and ends.
+    /// Shares of the length at which it begins and ends.
     pub(crate) span: [f64; 2],
-    /// Force and moment, per length at both ends of the span; the concentrated one stands first.
+    /// Force and moment, per length at both ends of the span; a concentrated one is first.
     pub(crate) force: [Vec3; 2],
     pub(crate) moment: [Vec3; 2],
 }
@@ -29,12 +29,12 @@ pub(crate) struct LineStrain {
     pub(crate) per_z: [f64; 2],
 }
 
-/// Everything between the ends.
+/// Loads between the ends of a beam.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Interior {
     pub(crate) loads: Vec<LineLoad>,
     pub(crate) thermal: Option<LineStrain>,
-    /// Forces at the ends that stand for the inertia of the coupled mass, element frame; its forces along the beam are not in `loads`.
+    /// End forces equivalent to the inertia of the coupled mass, element frame; its forces along the beam are not in `loads`.
     pub(crate) inertia: Option<[f64; 12]>,
 }
 
@@ -46,7 +46,7 @@ impl LineStrain {
     }
 }
 
-/// Section forces N, Vy, Vz, T, My, Mz at `xi` from what acts beyond it.
+/// Returns the section forces N, Vy, Vz, T, My, Mz at `xi` from the loads beyond it.
 pub(super) fn beyond(loads: &[LineLoad], xi: f64, length: f64) -> Vector6<f64> {
     let mut sum = Vector6::zeros();
     let mut add = |x: f64, f: Vec3, m: Vec3| {

@@ -226,9 +226,9 @@ fn torsion_of(model: &Model, beam: &Beam) -> Result<(f64, f64, f64), Refusal> {
 pub(crate) struct StationStrain {
     /// x/xb.
     pub(crate) station: f64,
-    /// Along the axis at C, D, E, F.
+    /// Strain along the axis at C, D, E, F.
     pub(crate) points: [f64; 4],
-    /// Of the neutral axis.
+    /// Strain of the neutral axis.
     pub(crate) axial: f64,
 }
 

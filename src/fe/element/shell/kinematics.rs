@@ -279,7 +279,7 @@ pub(super) fn add_thermal<const M: usize>(
     }
 }
 
-/// Moves the unknowns from the reference plane to grids that lie `offset` below it: u_mid = u + theta x offset.
+/// Transforms a row from the reference plane to grids at `offset` below it: u_mid = u + theta x offset.
 pub(super) fn shift<const M: usize>(row: &mut Row<M>, offset: &Vec3) {
     for k in 0..M / 6 {
         let u = Vec3::new(row[6 * k], row[6 * k + 1], row[6 * k + 2]);
@@ -287,13 +287,13 @@ pub(super) fn shift<const M: usize>(row: &mut Row<M>, offset: &Vec3) {
     }
 }
 
-/// The same for the rows of strain at a place.
+/// Transforms the strain rows at a point from the reference plane to grids at `offset` below it.
 pub(super) fn shift_rows<const M: usize>(rows: &mut StrainRows<M>, offset: &Vec3) {
     let all = rows.membrane.iter_mut().chain(&mut rows.curvature);
     all.for_each(|row| shift(row, offset));
 }
 
-/// The same for a stiffness: L' K L.
+/// Transforms a stiffness from the reference plane to grids at `offset` below it: L' K L.
 pub(super) fn shift_stiffness<const M: usize>(k: &mut [[f64; M]; M], offset: &Vec3) {
     k.iter_mut().for_each(|row| shift(row, offset));
     let mut t = [[0.0; M]; M];

@@ -16,21 +16,21 @@ const GAUSS: [(f64, f64); 3] = [
     (0.887_298_334_620_741_7, 5.0 / 18.0),
 ];
 
-/// What LAM leaves of a laminate.
+/// Parts of a laminate's stiffness that LAM selects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lamination {
-    /// Everything.
+    /// All parts.
     Full,
-    /// MEM: membrane alone.
+    /// MEM: membrane only.
     Membrane,
-    /// BEND: bending alone.
+    /// BEND: bending only.
     Bending,
     /// SMEAR: plies smeared over the thickness, no coupling.
     Smeared,
 }
 
 impl Lamination {
-    /// LAM as written; `None` for options that are not carried (SMCORE ..).
+    /// Returns the option for LAM as written; `None` for options that are not supported (SMCORE ..).
     pub(crate) fn of(lam: &str) -> Option<Self> {
         match lam {
             "" | "SYM" => Some(Self::Full),

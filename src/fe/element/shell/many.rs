@@ -135,7 +135,7 @@ fn points(model: &Model, shell: &Shell, rise: Option<[f64; 4]>) -> Result<Vec<Po
         .collect()
 }
 
-/// Functions of the corners, then of the mid-side grids there are.
+/// Returns the functions of the corners, then of the present mid-side grids.
 fn surface_functions(n: usize, p: [f64; 2], sides: &[usize]) -> Vec<[f64; 4]> {
     let (mut all, edges) = face_functions(n, p);
     for side in sides {
@@ -149,7 +149,7 @@ fn surface_functions(n: usize, p: [f64; 2], sides: &[usize]) -> Vec<[f64; 4]> {
     all
 }
 
-/// What the parts share.
+/// Data that all parts of a shell with mid-side grids share.
 struct Whole<'a> {
     model: &'a Model,
     property: &'a ShellProperty,

@@ -13,10 +13,10 @@ use crate::fe::temperature::Temperatures;
 use crate::model::{Model, Shell, ShellKind, Vec3};
 use nastran::cards::ShellShape;
 
-/// K6ROT of CQUADR and CTRIAR: equal rotations at all corners bend no side, and this holds them.
+/// K6ROT of CQUADR and CTRIAR: it resists equal rotations at all corners, which bend no side.
 const STABLE_DRILLING: f64 = 1e3;
 
-/// What a shell gives, whatever its number of corners.
+/// Matrices of a shell, with any number of corners.
 #[derive(Clone, Debug)]
 pub(crate) enum AnyShell {
     Quad(Box<ShellMatrices<4, 24>>),
@@ -150,7 +150,7 @@ pub(crate) fn shell_stiffness(prepared: &Prepared<'_>, i: usize) -> Result<Eleme
     })
 }
 
-/// What a load case heats shell `i` by; `None` where its property has no law.
+/// Returns the thermal load of shell `i` in a load case; `None` if its property has no law.
 pub(crate) fn shell_heat(model: &Model, i: usize, t: &Temperatures) -> Option<Heat> {
     let shell = &model.shells[i];
     let n = shell.shape.n_corners();
@@ -166,7 +166,7 @@ pub(crate) fn shell_heat(model: &Model, i: usize, t: &Temperatures) -> Option<He
     })
 }
 
-/// Forces of the thermal strain of shell `i`, six a grid, basic frame.
+/// Returns the forces of the thermal strain of shell `i`, six a grid, basic frame.
 ///
 /// # Errors
 /// As `shell_matrices`.

@@ -31,12 +31,12 @@ fn side_slopes(r: f64, s: f64) -> [(f64, f64); 4] {
     ]
 }
 
-/// Shape functions at the Gauss points, each of weight 1.
+/// Returns the shape functions at the Gauss points, each of weight 1.
 pub(super) fn quad_points() -> [Shape<4>; 4] {
     CORNERS.map(|(a, b)| shape(a * GAUSS, b * GAUSS))
 }
 
-/// What is needed again at a Gauss point.
+/// Strain rows and geometry at a Gauss point, used several times.
 struct Point {
     shape: Shape<4>,
     local: Local,

@@ -1,4 +1,4 @@
-//! What a shell is made from and what comes of it.
+//! Inputs and matrices of a shell element.
 
 use crate::model::Vec3;
 
@@ -18,7 +18,7 @@ pub(crate) struct ShellLaw {
     pub(crate) shear: Option<[[f64; 2]; 2]>,
 }
 
-/// Everything a shell's stiffness and strain depend on.
+/// Inputs of a shell's stiffness and strain.
 #[derive(Clone, Debug)]
 pub(crate) struct ShellInput<'a, const N: usize> {
     /// Corners, basic frame.
@@ -33,24 +33,24 @@ pub(crate) struct ShellInput<'a, const N: usize> {
     pub(crate) zoffs: f64,
     /// K6ROT.
     pub(crate) k6rot: f64,
-    /// What is wanted.
+    /// Matrices to compute.
     pub(crate) parts: Parts,
-    /// What rotations about the normal do to the sides.
+    /// Displacement of the sides by rotations about the normal.
     pub(crate) sides: Sides,
-    /// Temperatures, where forces of thermal strain are wanted.
+    /// Temperatures, if forces of thermal strain are wanted.
     pub(crate) heat: Option<&'a Heat>,
 }
 
-/// What rotations about the normal do to the sides of a shell.
+/// Displacement of the sides of a shell by rotations about the normal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Sides {
-    /// Nothing: they stay straight.
+    /// No displacement: they stay straight.
     Straight,
     /// They bend as a beam under its end rotations (Allman 1984; CQUADR and CTRIAR).
     Bending,
 }
 
-/// What is wanted of a shell: forming its stiffness is most of the work.
+/// Matrices of a shell to compute: its stiffness takes most of the time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Parts {
     All,
@@ -64,7 +64,7 @@ pub(crate) struct ShellMatrices<const N: usize, const M: usize> {
     pub(crate) stiffness: [[f64; M]; M],
     pub(crate) centre: StrainRows<M>,
     pub(crate) corners: [StrainRows<M>; N],
-    /// Forces that hold the thermal strain back, sign reversed: the load it acts as.
+    /// Loads equivalent to thermal strain: the forces that prevent it, sign reversed.
     pub(crate) thermal: [f64; M],
 }
 
@@ -89,11 +89,11 @@ pub(crate) struct Expansion {
     pub(crate) moment: [[f64; 3]; 2],
     /// Free strain per unit rise at the surfaces Z1 and Z2: exx, eyy, gxy (engineering shear).
     pub(crate) surface: [[f64; 3]; 2],
-    /// Temperature where thermal strain counts from.
+    /// Reference temperature of thermal strain.
     pub(crate) tref: f64,
 }
 
-/// What a load case heats a shell by.
+/// Thermal load of a shell in a load case.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Heat {
     pub(crate) expansion: Expansion,

@@ -44,16 +44,16 @@ impl TablePoint {
     }
 }
 
-/// The points of a shape.
+/// Integration and sampling points of a shape.
 #[derive(Debug)]
 pub(super) struct Tables {
     /// Integration without mid-side grids.
     pub(super) linear: Vec<TablePoint>,
     /// Integration with mid-side grids.
     pub(super) quadratic: Vec<TablePoint>,
-    /// Where strain is taken.
+    /// Points at which strain is computed.
     pub(super) sampling: Vec<TablePoint>,
-    /// What turns values at the sampling points into values at the corners: by corner, a weight a point.
+    /// Weights that extrapolate values at the sampling points to the corners: by corner, then by point.
     pub(super) to_corner: Vec<Vec<f64>>,
     pub(super) centre: TablePoint,
 }
