@@ -13,22 +13,22 @@ use super::replicate::{self, Template};
 use super::split::{Cut, Lead, cut, is_list_word};
 use crate::place::{Place, SourceIx};
 
-/// What the lines since the last finished card make.
+/// Unfinished content of the lines since the last finished card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Open {
     Nothing,
     Card,
     /// Fields with `=` and `*(n)`, to be filled from the card before.
     Replica,
-    /// Continuation lines whose card stands elsewhere.
+    /// Continuation lines of a card elsewhere.
     Orphan,
 }
 
-/// Takes lines one after the other and fills a [`Part`].
+/// Reads consecutive lines and fills a [`Part`].
 pub(super) struct Assembler<'a, 'b> {
     source: SourceIx,
     budget: &'b AtomicUsize,
-    /// Names of continuations that the card above them does not ask for.
+    /// Names of continuations that belong to a card other than the card above them.
     claimed: &'b Claimed,
     pub part: Part,
     open: Open,

@@ -48,11 +48,11 @@ pub struct Deck {
     pub approach: Option<(String, Place)>,
     /// Statements above CEND that change the solution sequence or start from an earlier run: their first word in upper case.
     pub program_changes: Vec<Note>,
-    /// Bulk data of superelements and other models that is kept and not read: where it begins, and that line in upper case.
+    /// Bulk data of superelements and other models that is kept and not read: its place, and its first line in upper case.
     pub parts: Vec<Note>,
-    /// Everything that is wrong.
+    /// Faults of the deck.
     pub faults: Vec<Fault>,
-    /// What else is worth saying.
+    /// Further notes on the deck.
     pub notes: Vec<Note>,
     /// Names in comments.
     pub labels: Vec<Label>,
@@ -60,7 +60,7 @@ pub struct Deck {
 }
 
 impl Deck {
-    /// Whether nothing was found that makes a text a deck: no section, no card with a struct.
+    /// Whether the text contains nothing of a deck: no section, no card with a struct.
     pub(super) fn is_empty(&self) -> bool {
         self.bounds == SectionBounds::default()
             && self.sol_text.is_none()

@@ -1,4 +1,4 @@
-//! What is wrong with a deck, where, and what to do about it.
+//! Faults of a deck, with their places and remedies.
 
 use std::fmt;
 
@@ -10,24 +10,24 @@ use crate::place::Place;
 pub struct Fault {
     /// First line of the card.
     pub at: Place,
-    /// Card name, or the statement; empty where there is none.
+    /// Card name, or the statement; empty without either.
     pub card: String,
-    /// The field, where one is to blame.
+    /// The field, if the fault is in one.
     pub field: Option<FieldName>,
-    /// What is wrong.
+    /// Kind of the fault, with its values.
     pub what: Wrong,
 }
 
 /// A field of a card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FieldName {
-    /// As the quick reference guides count: 2 to 9 on the first line, 12 to 19 on the second ..
+    /// Number in the quick reference guides: 2 to 9 on the first line, 12 to 19 on the second ..
     pub number: u32,
     /// Name in the guides.
     pub name: &'static str,
 }
 
-/// What is wrong.
+/// Kinds of faults, with their values.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum Wrong {
@@ -39,7 +39,7 @@ pub enum Wrong {
     NotReal {
         found: String,
     },
-    /// An integer stands where a solver needs a real; it was read as that real.
+    /// An integer in a field that requires a real; it was read as a real.
     IntegerForReal {
         found: String,
     },
@@ -175,7 +175,7 @@ impl Wrong {
         }
     }
 
-    /// What is wrong, in a few words.
+    /// Returns the message about the fault.
     pub fn message(&self) -> String {
         match self {
             Self::Missing => "the field is blank".to_owned(),
@@ -250,7 +250,7 @@ impl Wrong {
         }
     }
 
-    /// What to do.
+    /// Returns the remedy.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Missing => "fill in the field",

@@ -7,7 +7,7 @@ use super::number::{Number, read_number};
 use crate::cards::Dofs;
 use crate::place::Place;
 
-/// What a field holds.
+/// Content of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Value {
     Blank,
@@ -23,7 +23,7 @@ pub(super) struct Fields<'a, 'f> {
     pub at: Place,
     list: &'a [&'a [u8]],
     faults: &'f mut Vec<Fault>,
-    /// Bytes left for what the deck makes of few letters.
+    /// Remaining bytes for content that the deck expands from short text.
     budget: &'f AtomicUsize,
     /// An id could not be read: the card is left out.
     pub unusable: bool,

@@ -4,7 +4,7 @@ use super::line::{text_of, trim};
 use super::number::{Number, read_number};
 use crate::place::Place;
 
-/// What a name belongs to.
+/// Kind of the item that a name belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs)]
 pub enum Named {
@@ -16,13 +16,13 @@ pub enum Named {
     Grid,
 }
 
-/// A name out of a comment.
+/// A name from a comment.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Label {
     pub kind: Named,
     pub id: u32,
-    /// Property of a component, where the comment states it.
+    /// Property of a component, if the comment states it.
     pub property: Option<u32>,
     pub name: String,
     pub at: Place,

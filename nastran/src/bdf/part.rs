@@ -1,4 +1,4 @@
-//! What a piece of bulk data holds, before the pieces are joined.
+//! Content of a piece of bulk data, before the pieces are joined.
 
 use super::deck::OtherCard;
 use super::fault::Fault;
@@ -12,7 +12,7 @@ use crate::place::Place;
 pub(super) struct Name(pub [u8; 8]);
 
 impl Name {
-    /// `None` where it is no name: letters and digits, at most 8, a letter first.
+    /// Returns the name; `None` for text that is not a name: letters and digits, at most 8, a letter first.
     pub(super) fn new(head: &[u8]) -> Option<Name> {
         if head.is_empty() || head.len() > 8 || !head.first().is_some_and(u8::is_ascii_alphabetic) {
             return None;
@@ -33,7 +33,7 @@ impl Name {
     }
 }
 
-/// What a piece of bulk data holds.
+/// Content of a piece of bulk data.
 #[derive(Debug, Default)]
 pub(super) struct Part {
     pub cards: Cards,
@@ -44,7 +44,7 @@ pub(super) struct Part {
     pub labels: Vec<Label>,
     pub deferred: Vec<Deferred>,
     pub orphans: Vec<Orphan>,
-    /// Named continuations below a card that does not ask for them: they belong to cards elsewhere, or to none.
+    /// Named continuations below a card that has no such continuation: their cards are elsewhere, or missing.
     pub loose: Vec<Span>,
 }
 

@@ -1,17 +1,17 @@
-//! The files of a deck, and where its sections stand in them.
+//! The files of a deck, and the places of its sections in them.
 
 use crate::place::Place;
 
 /// A file of a deck.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
-    /// As the loader names it.
+    /// Path by which the loader identifies the file.
     pub path: String,
     /// Bytes of the file, unchanged.
     pub bytes: Vec<u8>,
 }
 
-/// Something worth saying that is no fault.
+/// A remark that is not a fault.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct Note {

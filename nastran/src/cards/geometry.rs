@@ -93,9 +93,9 @@ pub enum CoordKind {
 pub struct Coord {
     /// Coordinate system id.
     pub id: u32,
-    /// What its coordinates are.
+    /// Kind of the coordinates.
     pub kind: CoordKind,
-    /// How it is given.
+    /// Definition by grids or points.
     pub definition: CoordDefinition,
 }
 

@@ -35,9 +35,9 @@ pub struct Bar {
 /// CBEAM.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Beam {
-    /// What it shares with CBAR.
+    /// Fields in common with CBAR.
     pub bar: Bar,
-    /// Field 9 of the first line where it is a real: BIT.
+    /// Field 9 of the first line if it is a real: BIT.
     pub bit: Option<f64>,
     /// Warping points at A and B.
     pub warping: [Option<u32>; 2],
@@ -100,7 +100,7 @@ pub struct Bush {
 pub struct Spring {
     /// Element id.
     pub id: u32,
-    /// What gives its stiffness.
+    /// Source of the stiffness.
     pub stiffness: SpringStiffness,
     /// Ends: grid id and component (0 for a scalar point); `None` is ground.
     pub ends: [Option<(u32, u8)>; 2],

@@ -1,4 +1,4 @@
-//! What can be wrong with an HDF5 result file.
+//! Errors of an HDF5 result file.
 
 use crate::results::Damage;
 
@@ -8,20 +8,20 @@ pub enum H5Error {
     /// The container is damaged or uses a feature that is not read.
     #[error("`{path}`: {reason}: the file is cut or damaged, write it again (MDLPRM,HDF5)")]
     Container {
-        /// Where in the file.
+        /// Path in the file.
         path: String,
-        /// What the HDF5 layer says.
+        /// Message of the HDF5 layer.
         reason: String,
     },
     /// The file is cut short, or a table of it is damaged.
     #[error("damaged HDF5 file, cut short perhaps: {0}; write or copy the file again")]
     Damaged(Damage),
-    /// It is HDF5, but without `/NASTRAN/RESULT`.
+    /// The file is HDF5, but without `/NASTRAN/RESULT`.
     #[error(
         "no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it holds input only"
     )]
     NoResults,
-    /// A table without a field that its kind needs.
+    /// A table without a required field.
     #[error("`{path}`: field `{field}` is missing or not a number: schema not supported")]
     MissingField {
         /// The table.

@@ -14,16 +14,16 @@ use std::collections::BTreeMap;
 
 const RESULT: &str = "/NASTRAN/RESULT";
 
-/// An HDF5 result file: the index is made at once, rows are read block by block.
+/// An HDF5 result file: `read` builds the index, rows are read block by block.
 pub struct H5 {
     file: File,
     /// Blocks: nodal ones first, then strain and stress, each table by domain.
     pub blocks: Vec<Block>,
-    /// What was passed over.
+    /// Notes on skipped content.
     pub notes: Vec<Note>,
-    /// The solver's grid point weight, where the file has it.
+    /// The solver's grid point weight, if the file contains it.
     pub grid_point_weight: Option<GridPointWeight>,
-    /// The number of the schema, where the file states it.
+    /// Number of the schema, if the file states it.
     pub schema: Option<i64>,
     spans: Vec<Span>,
     damage: Vec<Damage>,
@@ -38,18 +38,18 @@ struct Span {
 }
 
 impl H5 {
-    /// The index of a whole HDF5 result file. The bytes are copied once: the HDF5 layer owns its input.
+    /// Builds the index of a whole HDF5 result file. The bytes are copied once: the HDF5 layer owns its input.
     ///
     /// # Errors
-    /// [`H5Error::Damaged`] for a file that is cut short or whose tables can't all be opened, and those of [`H5::salvage`].
+    /// [`H5Error::Damaged`] for a file that is cut short or whose tables can't all be opened, and every error of [`H5::salvage`].
     pub fn read(bytes: &[u8]) -> Result<Self, H5Error> {
         Self::salvage(bytes)?.whole().map_err(H5Error::Damaged)
     }
 
-    /// What can be read of a file that may be cut or damaged, with the damage.
+    /// Builds the index of the readable part of a file that may be cut or damaged, with the damage.
     ///
     /// # Errors
-    /// [`H5Error`] where the container is damaged or holds no Nastran results.
+    /// [`H5Error`] if the container is damaged or contains no Nastran results.
     pub fn salvage(bytes: &[u8]) -> Result<Salvaged<Self>, H5Error> {
         let fail = |e: hdf5_pure::Error| H5Error::Container {
             path: "/".to_string(),

@@ -99,12 +99,12 @@ impl<'f> Table<'f> {
         })
     }
 
-    /// The field of that name, if the table has it and it is a number or an array of numbers.
+    /// Returns the field with a name, if the table has it and it is a number or an array of numbers.
     pub(super) fn field(&self, name: &str) -> Option<Field> {
         self.fields.iter().find(|(n, _)| n == name).map(|&(_, f)| f)
     }
 
-    /// The same, or an error that names it.
+    /// Returns the field with a name, or an error with this name.
     pub(super) fn need(&self, name: &'static str) -> Result<Field, H5Error> {
         self.field(name).ok_or_else(|| H5Error::MissingField {
             path: self.path.clone(),

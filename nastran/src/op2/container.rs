@@ -9,7 +9,7 @@ use super::fortran::{Cursor, Physical, Stop};
 use super::words::{Format, Words};
 use crate::results::{Damage, Note};
 
-/// What a table is, as far as its name and keys tell.
+/// Kind of a table, from its name and keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum TableKind {
     /// Identification records with rows after each.
@@ -31,15 +31,15 @@ pub struct TableEntry {
     pub subtable: String,
     /// The seven words of the trailer.
     pub trailer: [i64; 7],
-    /// What it holds.
+    /// Kind of the content.
     pub kind: TableKind,
-    /// Byte where it starts.
+    /// Offset of its first byte.
     pub offset: usize,
     /// Records after the sub-table name.
     pub(super) records: std::ops::Range<usize>,
 }
 
-/// A run of bytes of the file.
+/// A range of bytes of the file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Piece {
     pub offset: usize,
@@ -54,7 +54,7 @@ pub(super) struct Record {
     pub bytes: usize,
 }
 
-/// Everything one pass over a file finds.
+/// Tables, records and damage from one pass over a file.
 #[derive(Clone, Debug)]
 pub(super) struct Container {
     pub tape_label: Option<String>,
@@ -63,13 +63,13 @@ pub(super) struct Container {
     pub records: Vec<Record>,
     pub pieces: Vec<Piece>,
     pub notes: Vec<Note>,
-    /// Where the file contradicts itself, or ends too early.
+    /// Places at which the file contradicts itself, or ends too early.
     pub damage: Vec<Damage>,
-    /// Where reading stopped before the end of the file.
+    /// Offset at which reading stopped before the end of the file, and the reason.
     pub stopped: Option<(usize, String)>,
 }
 
-/// Trouble within a table: the chain of records broke, or the keys do not make sense.
+/// Error within a table: a broken chain of records, or invalid keys.
 enum Trouble {
     Stop(Stop),
     Key {
@@ -79,7 +79,7 @@ enum Trouble {
     },
 }
 
-/// What stands between the ends of tables.
+/// Item between the ends of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Item {
     Zero,
@@ -93,7 +93,7 @@ impl From<Stop> for Trouble {
     }
 }
 
-/// Tables and records of `file`.
+/// Reads the tables and records of `file`.
 pub(super) fn read_container(file: &[u8], format: Format) -> Container {
     let mut c = Container {
         tape_label: None,

@@ -1,4 +1,4 @@
-//! What can be wrong with an OP2.
+//! Errors of an OP2 file.
 
 use crate::results::{Damage, ElementType};
 

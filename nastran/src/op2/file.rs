@@ -36,7 +36,7 @@ pub struct Op2<'a> {
     pub solver: Solver,
     /// Version label of the header (`XXXXXXXX`, `NX2019.2`); `None` in files without header.
     pub version_label: Option<String>,
-    /// 4 or 8.
+    /// Bytes of a word, 4 or 8.
     pub word_bytes: usize,
     /// Order of the bytes in a word.
     pub byte_order: ByteOrder,
@@ -44,7 +44,7 @@ pub struct Op2<'a> {
     pub tables: Vec<TableEntry>,
     /// Every result block, in file order.
     pub blocks: Vec<Block>,
-    /// What was passed over.
+    /// Notes on skipped content.
     pub notes: Vec<Note>,
     spans: Vec<Span>,
     weight: Option<usize>,
@@ -53,20 +53,20 @@ pub struct Op2<'a> {
 }
 
 impl<'a> Op2<'a> {
-    /// Tables and blocks of a whole file; no row is decoded.
+    /// Indexes the tables and blocks of a whole file; no row is decoded.
     ///
     /// # Errors
     ///
-    /// [`Op2Error::Damaged`] for a file that is cut short or contradicts itself, and those of [`Op2::salvage`].
+    /// [`Op2Error::Damaged`] for a file that is cut short or contradicts itself, and every error of [`Op2::salvage`].
     pub fn read(file: &'a [u8]) -> Result<Op2<'a>, Op2Error> {
         Self::salvage(file)?.whole().map_err(Op2Error::Damaged)
     }
 
-    /// What can be read of a file that may be cut or damaged, with the damage: tables may be missing, the last block may lack rows.
+    /// Indexes the readable part of a file that may be cut or damaged, with the damage: tables may be missing, the last block may lack rows.
     ///
     /// # Errors
     ///
-    /// [`Op2Error::NotOp2`], or [`Op2Error::NoTable`] where not even one table could be read.
+    /// [`Op2Error::NotOp2`], or [`Op2Error::NoTable`] if not even one table could be read.
     pub fn salvage(file: &'a [u8]) -> Result<Salvaged<Op2<'a>>, Op2Error> {
         let first = || file.get(..file.len().min(8)).unwrap_or(&[]).to_vec();
         let format = Format::detect(file).ok_or_else(|| Op2Error::NotOp2 { first: first() })?;

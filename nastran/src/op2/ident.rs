@@ -6,7 +6,7 @@ use crate::results::{Analysis, ElementType, Quantity, ShellForm};
 /// Words of an identification record.
 pub(super) const IDENT_WORDS: usize = 146;
 
-/// What an identification record says.
+/// Content of an identification record.
 #[derive(Clone, Debug)]
 pub(super) struct Ident {
     pub analysis: Analysis,

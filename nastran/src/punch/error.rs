@@ -1,4 +1,4 @@
-//! What can be wrong with a punch file.
+//! Errors of a punch file.
 
 use crate::results::Damage;
 
@@ -16,7 +16,7 @@ pub enum PunchError {
     /// The block index is out of range.
     #[error("block {index} does not exist: the file has {blocks}")]
     NoSuchBlock {
-        /// Asked for.
+        /// Requested index.
         index: usize,
         /// There are.
         blocks: usize,
@@ -29,16 +29,16 @@ pub enum PunchError {
         /// The reason.
         why: String,
     },
-    /// A field is not what the layout says.
+    /// A field contradicts its layout.
     #[error(
         "line {line}: `{text}`: expected {expected}: write the file again, it is damaged or edited"
     )]
     BadField {
         /// Line, from 1.
         line: u32,
-        /// What stands there.
+        /// Text of the field.
         text: String,
-        /// What should.
+        /// Description of a valid field.
         expected: &'static str,
     },
     /// An entry has another number of words than its element type has.

@@ -5,21 +5,21 @@ use super::header::Header;
 use super::{PunchError, decode};
 use crate::results::{Block, Damage, Note, Quantity, Rows, Salvaged, ShellForm};
 
-/// Columns of a line as solvers write it: one of them is whole even without a line end.
+/// Columns of a line as solvers write it: a line of this length is complete even without a line end.
 const FULL_LINE: usize = 80;
 
-/// A punch file: the index is made at once, rows are decoded block by block from the bytes it borrows.
+/// A punch file: `read` builds the index, rows are decoded block by block from the borrowed bytes.
 #[derive(Clone, Debug)]
 pub struct Punch<'a> {
     bytes: &'a [u8],
     /// Blocks in file order.
     pub blocks: Vec<Block>,
-    /// What was passed over.
+    /// Notes on skipped content.
     pub notes: Vec<Note>,
     spans: Vec<Span>,
 }
 
-/// Where the entries of a block stand.
+/// Place of the entries of a block.
 #[derive(Clone, Copy, Debug)]
 struct Span {
     start: usize,
@@ -28,18 +28,18 @@ struct Span {
 }
 
 impl<'a> Punch<'a> {
-    /// The index of a whole punch file.
+    /// Builds the index of a whole punch file.
     ///
     /// # Errors
-    /// [`PunchError::Damaged`] for a text that ends within an entry, and those of [`Punch::salvage`].
+    /// [`PunchError::Damaged`] for a text that ends within an entry, and every error of [`Punch::salvage`].
     pub fn read(bytes: &'a [u8]) -> Result<Self, PunchError> {
         Self::salvage(bytes)?.whole().map_err(PunchError::Damaged)
     }
 
-    /// What can be read of a punch file that may be cut, with the damage.
+    /// Builds the index of the readable part of a punch file that may be cut, with the damage.
     ///
     /// # Errors
-    /// [`PunchError::NoBlocks`] where no header names a result.
+    /// [`PunchError::NoBlocks`] if no header states a result.
     pub fn salvage(bytes: &'a [u8]) -> Result<Salvaged<Self>, PunchError> {
         let mut this = Self {
             bytes,

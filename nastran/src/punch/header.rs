@@ -2,7 +2,7 @@
 
 use crate::results::{Analysis, ElementType, Quantity};
 
-/// What the `$` lines read so far say about the entries that follow.
+/// Content of the `$` lines read so far, for the entries that follow.
 #[derive(Clone, Debug)]
 pub(super) struct Header {
     pub titles: [String; 3],
@@ -13,7 +13,7 @@ pub(super) struct Header {
     pub sort2: bool,
     pub subcase: u32,
     pub element: Option<ElementType>,
-    /// What follows the number in `$ELEMENT TYPE`.
+    /// Text after the number in `$ELEMENT TYPE`.
     pub element_words: String,
     pub analysis: Analysis,
     pub mode: i32,

@@ -1,4 +1,4 @@
-//! What a result block holds, before any row is decoded.
+//! Header of a result block, before any row is decoded.
 
 use super::ElementType;
 
@@ -108,7 +108,7 @@ pub struct Block {
     /// Table name as in the file (`OUGV1`, `OSTR1X`); an HDF5 path. Vectors of tables `BOUGV1` and `BOUG1` are in the basic frame
     /// ([`Block::is_in_basic`]), others in the displacement frames of the grids.
     pub table: String,
-    /// What it holds. Strain or stress is told by the stress code, not by the table name.
+    /// Quantity of the block. The stress code, not the table name, distinguishes strain and stress.
     pub quantity: Quantity,
     /// Kind of analysis.
     pub analysis: Analysis,
@@ -124,7 +124,7 @@ pub struct Block {
     pub form: Option<ShellForm>,
     /// The stress code's von Mises bit (else maximum shear).
     pub von_mises: bool,
-    /// Complex numbers (rows are then not decoded).
+    /// Whether the numbers are complex (rows are then not decoded).
     pub complex: bool,
     /// SORT2 tables run over steps for one entity; rows are decoded in statics only, where there is one step and the same rows
     /// often stand in a SORT1 block too.

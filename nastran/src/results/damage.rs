@@ -1,11 +1,11 @@
-//! What shows that a file was cut or damaged.
+//! Evidence that a file was cut or damaged.
 
-/// A place where a file contradicts itself: the rest of it may be missing, or wrong.
+/// A place at which a file contradicts itself: the rest of the file may be missing, or wrong.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Damage {
-    /// Where: table and record, a line, or a path within the file.
+    /// Place: table and record, a line, or a path within the file.
     pub at: String,
-    /// What was found there.
+    /// Description of the damage.
     pub what: String,
 }
 
@@ -15,17 +15,17 @@ impl std::fmt::Display for Damage {
     }
 }
 
-/// What could be read of a file, and every damage that was met; of an unharmed file there is none.
+/// Readable part of a file, with its damage; an undamaged file has an empty list.
 #[derive(Clone, Debug)]
 pub struct Salvaged<T> {
-    /// What could be read.
+    /// Readable part.
     pub file: T,
-    /// In file order.
+    /// Damage in file order.
     pub damage: Vec<Damage>,
 }
 
 impl<T> Salvaged<T> {
-    /// The file if it is whole.
+    /// Returns the file if it is undamaged.
     ///
     /// # Errors
     /// The first damage.
@@ -36,7 +36,7 @@ impl<T> Salvaged<T> {
         }
     }
 
-    /// The same damage round another form of the file.
+    /// Converts the file and keeps the damage.
     pub fn map<U>(self, form: impl FnOnce(T) -> U) -> Salvaged<U> {
         Salvaged {
             file: form(self.file),

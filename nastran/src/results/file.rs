@@ -68,10 +68,10 @@ impl<'a> ResultsFile<'a> {
         })
     }
 
-    /// What can be read of a result file that may be cut or damaged, with the damage: to describe it, never to compute with it.
+    /// Indexes the readable part of a result file that may be cut or damaged, with the damage. Use it to describe the file, never to compute with it.
     ///
     /// # Errors
-    /// [`ResultsError`]: a kind that is not known, or a file of which nothing can be read.
+    /// [`ResultsError`]: an unknown kind of file, or a file without any readable part.
     pub fn salvage(bytes: &'a [u8], name: &str) -> Result<Salvaged<Self>, ResultsError> {
         if is_h5(bytes) {
             return Ok(H5::salvage(bytes)?.map(|f| Self::H5(Box::new(f))));
@@ -150,7 +150,7 @@ impl<'a> ResultsFile<'a> {
     /// The rows of block `index`.
     ///
     /// # Errors
-    /// What the reader says: the block does not exist, is not decoded, or is damaged.
+    /// Errors of the reader: the block does not exist, is not decoded, or is damaged.
     pub fn rows(&self, index: usize) -> Result<Rows, ResultsError> {
         Ok(match self {
             Self::Op2(op2) => op2.rows(index)?,
@@ -159,7 +159,7 @@ impl<'a> ResultsFile<'a> {
         })
     }
 
-    /// What was passed over.
+    /// Returns the notes on skipped content.
     pub fn notes(&self) -> &[Note] {
         match self {
             Self::Op2(op2) => &op2.notes,
@@ -168,7 +168,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// The cards of the geometry blocks with notes on what was passed over; `None` where the file holds no grids.
+    /// Returns the cards of the geometry blocks with notes on skipped content; `None` if the file contains no grids.
     pub fn cards(&self) -> Option<(Cards, Vec<Note>)> {
         match self {
             Self::Op2(op2) => Some(op2.cards()).filter(|(cards, _)| !cards.grids.is_empty()),
@@ -176,7 +176,7 @@ impl<'a> ResultsFile<'a> {
         }
     }
 
-    /// The solver's grid point weight, where the file has it.
+    /// Returns the solver's grid point weight, if the file contains it.
     pub fn grid_point_weight(&self) -> Option<GridPointWeight> {
         match self {
             Self::Op2(op2) => op2.grid_point_weight(),

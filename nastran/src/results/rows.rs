@@ -96,11 +96,11 @@ pub struct GridPointWeight {
     pub inertia_cg: [[f64; 3]; 3],
 }
 
-/// Something that was passed over, with its place in words.
+/// Note on skipped content, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Table or record it is about.
+    /// Table or record of the note.
     pub subject: String,
-    /// What was found and what was done.
+    /// Description of the content, and its treatment.
     pub message: String,
 }

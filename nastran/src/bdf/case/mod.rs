@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use crate::cards::Param;
 use crate::place::Place;
 
-/// Case control as it is written; [`CaseControl::effective`] applies what subcases inherit.
+/// Case control as written; [`CaseControl::effective`] applies the values that subcases inherit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CaseControl {
-    /// What stands above the first subcase; its id is 0.
+    /// Statements above the first subcase; its id is 0.
     pub global: Subcase,
     /// SUBCASE, SUBCOM, SYM .. in file order.
     pub subcases: Vec<Subcase>,
@@ -28,20 +28,20 @@ pub struct CaseControl {
 pub struct CaseLine {
     /// First line of the statement.
     pub at: Place,
-    /// The subcase it stands in, an index of [`CaseControl::subcases`]; `None` above the first.
+    /// Index of its subcase in [`CaseControl::subcases`]; `None` above the first.
     pub subcase: Option<usize>,
     /// First word, upper case, as written.
     pub name: String,
     /// The statement without comments, its lines joined.
     pub text: String,
-    /// Whether it is not carried out: below OUTPUT(PLOT), OUTPUT(POST) and the like, or between SKIPON and SKIPOFF.
+    /// Whether the statement is not executed: below OUTPUT(PLOT), OUTPUT(POST) and the like, or between SKIPON and SKIPOFF.
     pub in_packet: bool,
-    /// Offsets of its first byte and after its last line.
+    /// Offsets of the first byte of the statement and after its last line.
     pub(super) start: usize,
     pub(super) end: usize,
 }
 
-/// What begins a subcase.
+/// Kind of the statement that begins a subcase.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum SubcaseKind {
     /// SUBCASE.
@@ -62,9 +62,9 @@ pub enum SubcaseKind {
 pub struct Subcase {
     /// Number; 0 for the part above all subcases.
     pub id: u32,
-    /// What begins it.
+    /// Kind of the statement that begins the subcase.
     pub kind: SubcaseKind,
-    /// Where it begins.
+    /// Place of this statement.
     pub at: Place,
     /// TITLE.
     pub title: Option<String>,
@@ -111,11 +111,11 @@ pub struct Request {
     pub what: String,
     /// Options in brackets, upper case.
     pub options: Vec<String>,
-    /// For which grids or elements.
+    /// Grids or elements of the request.
     pub value: Selection,
 }
 
-/// What a request is for.
+/// Selection of grids or elements in a request.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Selection {
     /// ALL (or YES).

@@ -324,7 +324,7 @@ impl Reader<'_> {
     }
 }
 
-/// Offset of the first byte after the number that begins at or after `from`.
+/// Returns the offset of the first byte after the number that begins at or after `from`.
 fn end_of_number(text: &str, from: usize) -> usize {
     let tail = text.get(from..).unwrap_or_default();
     let digits = tail.trim_start();
@@ -334,7 +334,7 @@ fn end_of_number(text: &str, from: usize) -> usize {
     from.min(text.len()) + tail.len() - digits.len() + length
 }
 
-/// What stands behind `=`, or behind the name where there is no `=`.
+/// Returns the text after `=`, or after the name if there is no `=`.
 fn value_of(text: &str, name: usize) -> &str {
     let rest = text.get(name..).unwrap_or_default();
     let rest = match rest.trim_start().strip_prefix('(') {
@@ -346,7 +346,7 @@ fn value_of(text: &str, name: usize) -> &str {
         .trim()
 }
 
-/// Offset of the bracket that closes.
+/// Returns the offset of the closing bracket.
 fn close(inner: &str) -> Option<usize> {
     let mut depth = 1;
     for (i, c) in inner.char_indices() {

@@ -3,7 +3,7 @@
 /// The items of a SET.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Set {
-    /// As listed.
+    /// Items in the order of the statement.
     pub items: Vec<SetItem>,
 }
 

@@ -9,13 +9,13 @@ pub(in crate::op2) enum Shape {
     Nodal,
     /// `10 id + device, reals`: one row.
     Plain,
-    /// `10 id + device, reals`: entries of the same bar follow each other, one a station.
+    /// `10 id + device, reals`: consecutive entries of one bar, one for each station.
     Stations,
     /// `10 id + device, reals, reals`: a row at each of two fibres.
     ShellCentre,
-    /// `10 id + device, CEN/, n`, then the centre and the corners: 16 reals each, a corner's after its grid id.
+    /// `10 id + device, CEN/, n`, then the centre and the corners: 16 reals each, for a corner after its grid id.
     ShellCorners,
-    /// As `ShellCorners` with one row a location.
+    /// Entries like `ShellCorners`, with one row for each location.
     ForceCorners,
     /// `10 id + device`, then 11 stations: `grid, reals`.
     Beam,

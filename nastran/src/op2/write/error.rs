@@ -1,4 +1,4 @@
-//! What can go wrong while writing.
+//! Errors of writing an OP2.
 
 use crate::results::{ElementType, Quantity};
 
