@@ -21,34 +21,34 @@ pub struct Problem<'a> {
     pub s: usize,
     /// Prior information.
     pub prior: &'a [f64],
-    /// The criterion of the best layout known.
+    /// Criterion of the best known layout.
     pub incumbent: f64,
-    /// A bound that holds already.
+    /// Known upper bound of the criterion.
     pub upper: f64,
-    /// Floating-point operations after which it gives up, roughly; counted, not timed, so that answers don't depend on the machine.
+    /// Approximate number of floating-point operations after which the search stops; counted, not timed, so that results don't depend on the machine.
     pub work: f64,
-    /// Cuts it short.
+    /// Cancellation of the search.
     pub stop: &'a Stop,
 }
 
-/// What came of it.
+/// Result of the search.
 #[derive(Clone, Debug)]
 pub struct Proof {
-    /// A better layout than the incumbent, where there is one.
+    /// A better layout than the incumbent, if there is one.
     pub best: Option<Chosen>,
-    /// No layout is better than this; the best one's own criterion where proved.
+    /// Upper bound of the criterion of any layout; the criterion of the best layout if proved.
     pub upper: f64,
     /// Nodes visited.
     pub nodes: usize,
-    /// True where no better layout exists (by more than [`SAME`]).
+    /// Whether no better layout exists (by more than [`SAME`]).
     pub proved: bool,
 }
 
-/// Difference of criteria that counts as none: rounding of log-determinants.
+/// Difference of criteria that counts as zero: rounding of log-determinants.
 pub const SAME: f64 = 1e-9;
-/// Nodes evaluated together: fixed, so that the answer does not depend on the number of threads.
+/// Number of nodes evaluated together: fixed, so that the result does not depend on the number of threads.
 const BATCH: usize = 8;
-/// Tolerances to which the relaxation of a node is solved one after the other, until it decides.
+/// Successive tolerances for the relaxation of a node, until it decides.
 const LADDER: [f64; 6] = [3e-3, 3e-4, 3e-5, 3e-6, 1e-7, 1e-9];
 /// Weights this close to 0 or 1 count as such when a row to branch on is chosen.
 const WHOLE: f64 = 1e-6;
@@ -67,14 +67,14 @@ struct Step {
     work: f64,
 }
 
-/// What can't be chosen together, and what is the same.
+/// Exclusions between rows, and groups of equal rows.
 struct Rules {
     conflicts: Vec<Vec<u32>>,
-    /// Rows that read the same (but for the sign) share a number; alone: `u32::MAX`.
+    /// Number shared by rows with equal readings (except for the sign); `u32::MAX` for a single row.
     twins: Vec<u32>,
 }
 
-/// Searches until nothing better can be left, or `work` is spent.
+/// Searches until no better layout is possible, or `work` is spent.
 pub fn prove(
     p: &Problem,
     weights: &[f64],
@@ -367,7 +367,7 @@ fn rounded(p: &Problem, rules: &Rules, node: &Node, s: usize) -> Option<Chosen> 
     (rows.len() == p.s).then(|| layout(p, &rows)).flatten()
 }
 
-/// What the bound says of a free row.
+/// State of a free row by the bound.
 #[derive(Clone, Copy, PartialEq)]
 enum Mark {
     Free,

@@ -27,15 +27,15 @@ pub struct Scatter {
     pub angle_sd: f64,
     /// Uncertainty of each load's part of the reading, 1 sd, a fraction (model and gauge factor, squares added); needs tensors.
     pub model_rel: f64,
-    /// A variance of its own for each place; empty: none.
+    /// Separate variance of each place; empty if none.
     pub extra: Vec<f64>,
-    /// A variance that turns with the gauge, for each place: a quadratic form of its direction (position tolerance, gradient over the
-    /// grid); needs tensors; empty: none.
+    /// Variance of each place that depends on the gauge's direction: a quadratic form of the direction (position tolerance, gradient over the
+    /// grid). It needs tensors; empty if none.
     pub forms: Vec<Form>,
 }
 
 impl Scatter {
-    /// The same noise everywhere.
+    /// Returns equal noise at all places, as the only error.
     pub fn uniform(noise: f64) -> Self {
         Self {
             noise,
@@ -130,7 +130,7 @@ impl Candidates {
         c
     }
 
-    /// The same with a position for each place.
+    /// Returns these candidates with a position for each place.
     pub fn with_positions(mut self, positions: Vec<[f64; 3]>) -> Self {
         self.positions = positions;
         self
@@ -199,20 +199,20 @@ impl Candidates {
         v
     }
 
-    /// The same candidates with noise as the only error.
+    /// Returns these candidates with noise as the only error.
     pub fn with_noise_only(mut self) -> Self {
         self.scatter = Scatter::uniform(self.scatter.noise);
         self.slopes = Vec::new();
         self
     }
 
-    /// The part of the variance that the angle does not change.
+    /// Returns the part of the variance that does not depend on the angle.
     pub fn fixed_variance(&self, place: usize) -> f64 {
         self.scatter.noise * self.scatter.noise
             + self.scatter.extra.get(place).copied().unwrap_or(0.0)
     }
 
-    /// True where the variance depends on the angle.
+    /// Whether the variance depends on the angle.
     pub fn has_slopes(&self) -> bool {
         !self.slopes.is_empty() || !self.scatter.forms.is_empty()
     }

@@ -22,7 +22,7 @@ pub enum Groups {
 }
 
 impl Groups {
-    /// The group of a candidate.
+    /// Returns the group of a candidate.
     pub fn key(&self, c: Choice) -> u64 {
         match self {
             Groups::Rows => (u64::from(c.place) << 16) | u64::from(c.step),
@@ -31,7 +31,7 @@ impl Groups {
         }
     }
 
-    /// What a pass has to report.
+    /// Returns the candidates that a pass reports.
     pub fn report(&self) -> Report {
         match self {
             Groups::Rows => Report::EachAngle,
@@ -45,11 +45,11 @@ impl Groups {
 pub struct Columns {
     /// Rows that took part.
     pub active: Active,
-    /// Which candidates they are.
+    /// Candidates of these rows.
     pub choices: Vec<Choice>,
-    /// Their weights and `M`.
+    /// Weights of these rows, and `M`.
     pub relaxed: Relaxed,
-    /// No layout can have a larger `log det`.
+    /// Upper bound of the `log det` of any layout.
     pub upper_bound: f64,
     /// `T` and its smallest term at the last pass.
     pub top: (f64, f64),

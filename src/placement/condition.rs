@@ -174,7 +174,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         m
     }
 
-    /// What is made large, and the condition number; `None` where singular.
+    /// Returns the objective and the condition number; `None` if `m` is singular.
     fn value(&self, m: &[f64]) -> Option<(f64, f64)> {
         let l = spd::cholesky(m, self.k)?;
         let e = spd::eigenvalues(m, self.k);

@@ -17,23 +17,23 @@ pub(super) const LEAST_GAIN: f64 = 1e-9;
 const LEAST_PART: f64 = 1e-9;
 /// Sweeps after which the search gives up; it stops by itself long before.
 const MAX_SWEEPS: usize = 200;
-/// Exchanges after which rounding in the tables is cleared away.
+/// Number of exchanges after which the tables are recomputed to remove rounding.
 const FRESH: usize = 400;
-/// Rounding in the sum of the chosen rows' variances from which the tables are made anew.
+/// Rounding in the sum of the chosen rows' variances from which the tables are recomputed.
 const DRIFT: f64 = 1e-7;
-/// Share of the determinant that an perturbing exchange may cost.
+/// Largest share of the determinant that a perturbing exchange may cost.
 const ROUGH: f64 = 0.05;
-/// Rows a perturbation draws for a slot.
+/// Number of random rows that a perturbation tries for a slot.
 const DRAWS: usize = 12;
 
-/// What can be chosen from.
+/// Rows to choose from, with their exclusions.
 pub(super) struct List<'a, E> {
     pub active: &'a Active,
     pub packed: Packed,
     pub prior: &'a [f64],
-    /// True where two rows can't both be chosen, and for one and the same.
+    /// True for two rows that can't both be chosen, and for a row with itself.
     excludes: &'a E,
-    /// By row, the rows it excludes, itself among them; filled when first asked for.
+    /// Rows that each row excludes, itself included; filled on first use.
     partners: Vec<OnceLock<Vec<u32>>>,
 }
 

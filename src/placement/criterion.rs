@@ -1,4 +1,4 @@
-//! What a layout is chosen for, as a concave function of its information matrix `M` (`k x k`), larger is better.
+//! Criterion of a layout, a concave function of its information matrix `M` (`k x k`), larger is better.
 //!
 //! | criterion | value | slope `G` |
 //! |---|---|---|
@@ -12,16 +12,16 @@
 
 use crate::linalg::spd;
 
-/// What is made large.
+/// Criterion that a layout maximises.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Criterion {
     /// The determinant for all columns.
     #[default]
     D,
-    /// The determinant for the others, that many leading columns being present but not asked for.
+    /// The determinant for the wanted columns; that many leading columns are nuisance columns.
     Ds(usize),
-    /// The smallest `tr(L M^-1)`, `L` `k x k` by rows, symmetric, not negative: A with `L` diagonal (variances of loads, weighed), I with
-    /// the mean of `b b'` over rows `b` whose prediction counts.
+    /// The smallest `tr(L M^-1)`, `L` `k x k` by rows, symmetric, not negative. A-optimality has a diagonal `L` (weighted variances of loads),
+    /// I-optimality the mean of `b b'` over rows `b` whose prediction counts.
     Linear(Vec<f64>),
 }
 

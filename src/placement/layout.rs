@@ -40,29 +40,29 @@ pub struct Layout {
 pub enum PlaceError {
     /// Fewer places than gauges.
     TooFewPlaces {
-        /// Asked for.
+        /// Requested number of gauges.
         gauges: usize,
-        /// There are.
+        /// Number of places among the candidates.
         places: usize,
     },
     /// No layout separates the loads.
     Singular {
-        /// Asked for.
+        /// Requested number of gauges.
         gauges: usize,
         /// Columns.
         loads: usize,
     },
     /// The spacing leaves too few places.
     TooTight {
-        /// Asked for.
+        /// Requested number of gauges.
         gauges: usize,
-        /// Asked for.
+        /// Requested least distance.
         spacing: f64,
     },
 }
 
 impl PlaceError {
-    /// What is wrong, and what to do.
+    /// Returns the message and the remedy.
     pub fn parts(&self) -> (String, String) {
         match self {
             Self::TooFewPlaces { gauges, places } => (

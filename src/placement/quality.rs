@@ -1,31 +1,31 @@
-//! What a layout is worth: leverages, standard deviations of the loads, loss of a gauge.
+//! Quality of a layout: leverages, standard deviations of the loads, loss of a gauge.
 
 use super::candidates::{Candidates, Choice};
 use super::criterion::Criterion;
 use crate::linalg::spd;
 
-/// A layout judged.
+/// Quality of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
-    /// `h_i = a_i' M^-1 a_i`: the share of its own reading that a gauge decides; losing it multiplies `det` by `1 - h_i`.
+    /// `h_i = a_i' M^-1 a_i`: the weight of a gauge in the prediction of its own reading; losing the gauge multiplies `det` by `1 - h_i`.
     pub leverage: Vec<f64>,
     /// Standard deviation of each load, in shares of the column's scale (`expected`).
     pub sigma: Vec<f64>,
     /// Covariance of the loads in these shares, `k x k` by rows.
     pub covariance: Vec<f64>,
-    /// `(1 - max h)^(1/k)`: efficiency left, relative to now, after the worst loss of one gauge; 0: none may fail.
+    /// `(1 - max h)^(1/k)`: efficiency after the worst loss of one gauge, relative to all gauges; 0: no gauge may fail.
     pub worst_loss: f64,
-    /// Which gauge that is.
+    /// Gauge whose loss is worst.
     pub worst: usize,
 }
 
-/// Leverages and standard deviations of a layout with prior information `prior` (`k x k`); `None` where it is singular.
+/// Computes leverages and standard deviations of a layout with prior information `prior` (`k x k`); `None` if it is singular.
 pub fn judge(c: &Candidates, gauges: &[Choice], prior: &[f64]) -> Option<Quality> {
     let rows: Vec<Vec<f64>> = gauges.iter().map(|&g| c.row(g)).collect();
     judge_rows(&rows, prior, c.n_loads())
 }
 
-/// The same for rows over their standard deviation, columns times `expected`.
+/// Computes the quality of rows over their standard deviation, columns times `expected`.
 pub fn judge_rows(rows: &[Vec<f64>], prior: &[f64], k: usize) -> Option<Quality> {
     let mut m = prior.to_vec();
     for r in rows {

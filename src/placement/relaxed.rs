@@ -1,16 +1,16 @@
-//! What a relaxation works on and comes to.
+//! Inputs and results of a relaxation.
 
 use super::criterion::{Criterion, Point};
 
-/// Weight under which a row counts as unused, and slack under which a group counts as full.
+/// Weight below which a row counts as unused, and slack below which a group counts as full.
 pub(super) const FULL: f64 = 1e-12;
 
-/// The rows a relaxation works on.
+/// Rows of a relaxation.
 #[derive(Clone, Debug, Default)]
 pub struct Active {
     /// Number of columns.
     pub k: usize,
-    /// What is made large.
+    /// Criterion to maximise.
     pub criterion: Criterion,
     /// `n x k` by rows.
     pub rows: Vec<f64>,

@@ -1,19 +1,19 @@
-//! What a placed gauge is for.
+//! Purpose of a placed gauge.
 
 use serde::Serialize;
 
-/// What a gauge is for.
+/// Purpose of a gauge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Role {
-    /// Loads are estimated with it.
+    /// The gauge is used to estimate loads.
     Estimate,
-    /// It is kept from estimating: the others predict it.
+    /// The gauge is excluded from the estimate; the other gauges predict its reading.
     Validation,
 }
 
 impl Role {
-    /// The word of files and reports.
+    /// Returns the name of the role in files and reports.
     pub fn word(self) -> &'static str {
         match self {
             Self::Estimate => "estimate",

@@ -35,9 +35,9 @@ pub fn candidates(
     )
 }
 
-/// The same for gauges wired as `bridge` (bridge factor 1): readings are sums of signed arm strains.
+/// Returns the candidates for gauges wired as `bridge` (bridge factor 1): readings are sums of signed arm strains.
 ///
-/// A shear bridge is a candidate by the angle of its first grid: its axis lies [`axis_of`] that.
+/// A shear bridge is a candidate by the angle of its first grid; [`axis_of`] gives the angle of its axis.
 pub fn bridges(
     model: &Model,
     sites: &[Site],

@@ -9,11 +9,11 @@ use rayon::prelude::*;
 pub struct Priced {
     /// `a' M^-1 a`.
     pub d: f64,
-    /// Which candidate.
+    /// The candidate.
     pub choice: Choice,
 }
 
-/// What a pass returns for a place.
+/// Candidates that a pass returns for a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Report {
     /// Every angle above the threshold.
@@ -22,10 +22,10 @@ pub enum Report {
     BestOfPlace,
 }
 
-/// Blocks a task: fixed, so that results do not depend on the number of threads.
+/// Number of blocks in a task: fixed, so that results do not depend on the number of threads.
 const CHUNK: usize = 512;
 
-/// Candidates with `d >= threshold`, by place and angle, of each 4,096 places the `keep` largest; `linv` is the inverse of the
+/// Returns the candidates with `d >= threshold`, by place and angle, of each 4,096 places the `keep` largest. `linv` is the inverse of the
 /// lower Cholesky factor of `M`, by rows.
 pub fn price(
     c: &Candidates,

@@ -66,7 +66,7 @@ fn choices(c: &Candidates, place: usize) -> Vec<Choice> {
     }
 }
 
-/// What the criterion makes of a layout; `None` where it doesn't tell the loads apart.
+/// Returns the criterion of a layout; `None` if it does not separate the loads.
 pub fn value(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Option<f64> {
     let rows: Vec<Vec<f64>> = gauges.iter().map(|&g| c.row(g)).collect();
     quality::value(&rows, &spec.prior, c.n_loads(), &spec.criterion)

@@ -12,20 +12,20 @@ use crate::units::number;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// Declared noise may be wrong by this factor: it is a data sheet's, or was estimated at rest.
+/// Possible factor between declared and true noise: the declared value is from a data sheet, or was estimated without excitation.
 const NOISE_FACTOR: f64 = 1.5;
 /// Standard deviations of declared tolerances that one job of a hundred exceeds.
 const TOLERANCE_SD: f64 = 2.6;
-/// A misfit is far above its floor from so many times what 99 complete models of 100 leave: nearer than that, parameters are off by about
-/// as much as their intervals say.
+/// Ratio of a misfit to the limit for 99 complete models of 100, from which the misfit is far above its floor. Nearer to the limit, the errors of
+/// parameters are about as large as their intervals.
 const FAR: f64 = 2.0;
 
-/// What is declared of the channels, one sd each.
+/// Declared errors of the channels, one sd each.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Declared {
-    /// Noise of accelerometers, a sample; none: not declared.
+    /// Noise of accelerometers, a sample; `None` if not declared.
     pub noise_acc: Option<f64>,
-    /// Noise of wheel forces, a sample; none: not declared.
+    /// Noise of wheel forces, a sample; `None` if not declared.
     pub noise_force: Option<f64>,
     /// Gain of every channel, a share.
     pub gain: f64,
@@ -33,21 +33,21 @@ pub struct Declared {
     pub sync_s: f64,
 }
 
-/// What sensors leave of a channel's misfit: expected, and the most that 99 complete models of 100 leave; in the channel's unit.
+/// Expected misfit of a channel from sensor errors, and the largest misfit of 99 complete models of 100; in the channel's unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelFloor {
     /// Channel.
     pub channel: String,
-    /// RMS expected.
+    /// Expected RMS misfit.
     pub expected: f64,
-    /// What noise alone makes of it.
+    /// RMS misfit from noise alone.
     pub noise: f64,
-    /// The most.
+    /// Largest RMS misfit of 99 complete models of 100.
     pub limit: f64,
 }
 
-/// Floors of the misfit of every channel of a record, by doing to it once more what is declared: noise of the declared size is added,
-/// gains and timing are moved by one sd each, and what that changes in the residuals is what it left there already. Empty where no noise
+/// Computes the floors of the misfit of every channel of a record by applying the declared errors a second time. It adds noise of the declared size,
+/// and changes gains and timing by one sd each. The change of the residuals is the part that these errors already have in them. Empty if no noise
 /// is declared.
 ///
 /// # Errors

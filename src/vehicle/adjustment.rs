@@ -1,49 +1,49 @@
-//! What is wrong with a channel and known: gain, timing, a filter that is too slow, a mains line.
+//! Known errors of a channel: gain, timing, a slow filter, a mains line.
 
 use crate::series::align::{delayed, retimed};
 use crate::series::spectrum::Fourier;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, SQRT_2};
 
-/// A channel taken as it may truly be: reading(t) = gain . filtered truth(t - lateness(t)).
+/// Corrections of a channel: reading(t) = gain . filtered truth(t - lateness(t)).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Adjustment {
     /// Channel.
     pub channel: String,
-    /// The channel is divided by this.
+    /// Gain by which the channel is divided.
     pub gain: f64,
-    /// The channel is advanced by this, s.
+    /// Time by which the channel is advanced, s.
     pub delay_s: f64,
-    /// Seconds by which it reads later with every second of the record: its clock against that of the others.
+    /// Added delay by second of the record, s/s: the drift of its clock against the clock of the other channels.
     pub clock: f64,
-    /// Steps of its lateness: samples that a logger lost or wrote twice.
+    /// Steps of its delay: samples that a logger lost or wrote twice.
     pub slips: Vec<Slip>,
-    /// Low-passes that it went through alone.
+    /// Low-passes of this channel alone.
     pub lags: Vec<Lag>,
-    /// Mains lines on it, Hz. Every channel of a record is taken without these frequencies, so that equations between them hold.
+    /// Mains lines in the channel, Hz. These frequencies are removed from every channel of a record, so that equations between them remain valid.
     pub lines_hz: Vec<f64>,
 }
 
-/// A step of a channel's lateness at a moment of one record.
+/// A step of a channel's delay at a time of one record.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Slip {
-    /// When, s of the record's time.
+    /// Time of the step, s of the record's time.
     pub at_s: f64,
-    /// How much later it reads from then on, s; negative where samples were lost.
+    /// Added delay from then on, s; negative if samples were lost.
     pub by_s: f64,
 }
 
 /// A low-pass: order 1 is 1 / (1 + i w T), order 2 Butterworth's 1 / (1 + i w T sqrt 2 - w^2 T^2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lag {
-    /// 1 or 2.
+    /// Order, 1 or 2.
     pub order: u8,
     /// T = 1 / (2 pi cut-off), s.
     pub time_s: f64,
 }
 
 impl Lag {
-    /// Truth over reading at an angular frequency.
+    /// Returns truth over reading at an angular frequency.
     pub fn undone(&self, w: f64) -> Complex64 {
         let x = w * self.time_s;
         match self.order {
@@ -52,14 +52,14 @@ impl Lag {
         }
     }
 
-    /// What it makes late of slow motion, s.
+    /// Returns the delay of slow motion by the low-pass, s.
     pub fn delay_s(&self) -> f64 {
         self.time_s * if self.order == 1 { 1.0 } else { SQRT_2 }
     }
 }
 
 impl Adjustment {
-    /// Nothing wrong.
+    /// Returns an adjustment without any error.
     pub fn none(channel: &str) -> Self {
         Self {
             channel: channel.to_owned(),

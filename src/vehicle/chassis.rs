@@ -167,18 +167,18 @@ fn quadratic(found: &Identification, parameters: &[usize], x: impl Fn(usize) -> 
     sum
 }
 
-/// What a link's force does to the heave of a body.
+/// Returns the weight of a link's force in the heave equation of a body.
 fn weight(v: &Vehicle, link: usize, body: usize) -> f64 {
     let ends = v.links[link].ends.iter();
     ends.filter(|e| e.1.body == body).map(|e| e.0).sum()
 }
 
-/// Where a leaf spring stands on the frame.
+/// Position of a leaf spring on the frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeafSeat {
-    /// From the fixed hanger to the axle, along the spring.
+    /// Distance from the fixed hanger to the axle, along the spring.
     pub hanger_to_axle: f64,
-    /// From the axle to the shackle.
+    /// Distance from the axle to the shackle.
     pub axle_to_shackle: f64,
     /// Angle of the shackle from the vertical, radians, positive when it pulls the spring's end away from the hanger.
     pub shackle_angle_rad: f64,

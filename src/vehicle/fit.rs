@@ -1,23 +1,23 @@
-//! Parameters by weighted least squares over all equations, known ones held, bounds kept.
+//! Fits parameters by weighted least squares over all equations, with known values fixed and bounds applied.
 
 use super::equations::Equation;
 use crate::linalg::tall::{Solution, Triangle, solve, triangle};
 
-/// What a parameter may be.
+/// Range of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Allowed {
-    /// Anything.
+    /// Any value.
     Free,
-    /// Within limits.
+    /// A value within limits.
     Within(f64, f64),
-    /// Exactly this.
+    /// Exactly this value.
     Known(f64),
 }
 
 /// A fit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit {
-    /// One value a parameter; NaN where no equation holds it.
+    /// Value of each parameter; NaN if no equation contains it.
     pub values: Vec<f64>,
     /// Weight of each equation: one over its residual RMS.
     pub weights: Vec<f64>,

@@ -1,4 +1,4 @@
-//! What a record can't tell about a model, in words.
+//! Messages about parameters that a record does not determine.
 
 use super::fit::Fit;
 use super::layout::Parameter;
@@ -15,7 +15,7 @@ pub fn is_known(value: f64, sigma: f64, effect_of_sigma: f64) -> bool {
         && (sigma <= KNOWN_SHARE * value.abs() || effect_of_sigma <= IMMATERIAL_SHARE)
 }
 
-/// The sentence for a group of parameters that scale together, given the reference.
+/// Returns the message about a group of parameters that scale together, given the reference.
 pub fn scale_sentence(group: &[String], reference: &str, springs: &[String]) -> String {
     let list = group.join(", ");
     let spring = springs.first().map_or("a spring rate", String::as_str);

@@ -1,4 +1,4 @@
-//! What an identification is asked, and what it answers.
+//! Inputs and results of an identification.
 
 use super::adjustment::Adjustment;
 use super::checks::MassClosure;
@@ -9,7 +9,7 @@ use crate::series::spectrum::Band;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What is asked.
+/// Inputs of an identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IdentifyTask {
     /// The model.
@@ -55,56 +55,56 @@ pub struct Estimate {
     pub known: bool,
 }
 
-/// How well a channel is explained.
+/// Quality of the fit of a channel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChannelFit {
     /// Channel.
     pub channel: String,
     /// RMS of measured less predicted over RMS of measured, in band.
     pub relative_rms: f64,
-    /// The same on the data that were fitted.
+    /// RMS of measured less predicted over RMS of measured, in band, on the fitted data.
     pub relative_rms_fitted: f64,
-    /// What declared noise and tolerances leave of it where `relative_rms` was found, over the same RMS; none where no noise is declared.
+    /// Part of `relative_rms` from declared noise and tolerances, over the RMS of measured on its data; `None` if no noise is declared.
     pub floor: Option<f64>,
-    /// `hold-out` or `fitted`: where `relative_rms` comes from.
+    /// Data of `relative_rms`: `hold-out` or `fitted`.
     pub on: &'static str,
 }
 
-/// The answer.
+/// Result of an identification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Identification {
     /// The vehicle with all constants of its terms.
     pub vehicle: Vehicle,
-    /// Values of `vehicle.parameters()`; relative to the reference mass (1) where no force sets the scale; NaN where unknown.
+    /// Values of `vehicle.parameters()`; relative to the reference mass (1) if no force sets the scale; NaN if unknown.
     pub values: Vec<f64>,
-    /// Standard deviations, 0 for known ones.
+    /// Standard deviations, 0 for known parameters.
     pub sigmas: Vec<f64>,
     /// Covariance of `values`, by rows.
     pub covariance: Vec<Vec<f64>>,
-    /// Whether `values` carry the scale of forces.
+    /// Whether each of `values` has the scale of forces.
     pub scaled: Vec<bool>,
     /// Factor on sigma for 95 %.
     pub coverage_factor: f64,
     /// Parameters and ratios as reported.
     pub parameters: Vec<Estimate>,
-    /// What can't be told, in words.
+    /// Messages about parameters that the record does not determine.
     pub unidentifiable: Vec<String>,
-    /// How well each channel is explained.
+    /// Quality of the fit of each channel.
     pub fit: Vec<ChannelFit>,
-    /// Dynamics against statics.
+    /// Masses of the dynamic fit against static masses.
     pub mass_closure: Option<MassClosure>,
-    /// How wheel forces are best put together.
+    /// Shares of the signals in each wheel force that fit best.
     pub blend: Vec<Vec<f64>>,
     /// RMS of the wheel force error in band, where measured (the larger of fitted and held-out).
     pub wheel_force_sigma: Vec<Option<f64>>,
     /// Ratio of smallest to largest singular value, worst component, columns of unit norm.
     pub conditioning: f64,
-    /// Everything noticed.
+    /// All findings.
     pub findings: Vec<Finding>,
 }
 
 impl Identification {
-    /// Value of a parameter by name, where the record tells it with its scale.
+    /// Returns the value of a parameter by name, if the record determines it with its scale.
     pub fn value(&self, name: &str) -> Option<f64> {
         self.parameters
             .iter()

@@ -59,26 +59,26 @@ pub struct Body {
     pub name: String,
     /// Motions of the body.
     pub shape: Shape,
-    /// Where motions that it has not take place (an axle's x).
+    /// Coordinate x of a body without pitch (an axle).
     pub x: f64,
-    /// As `x`, across.
+    /// Coordinate y of a body without roll, across.
     pub y: f64,
     /// Whether springs carry it.
     pub sprung: bool,
 }
 
-/// A place on a body.
+/// A point on a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     /// Index of the body.
     pub body: usize,
-    /// Along.
+    /// Coordinate along.
     pub x: f64,
-    /// Across.
+    /// Coordinate across.
     pub y: f64,
 }
 
-/// What a sensor gives.
+/// Quantity that a sensor measures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measures {
     /// Vertical acceleration.
@@ -92,9 +92,9 @@ pub enum Measures {
 pub struct Sensor {
     /// Channel name.
     pub channel: String,
-    /// Where.
+    /// Position.
     pub at: Point,
-    /// What.
+    /// Measured quantity.
     pub measures: Measures,
 }
 
@@ -103,7 +103,7 @@ pub struct Sensor {
 pub struct Wheel {
     /// Channel name of its force, whether measured or not.
     pub channel: String,
-    /// Where.
+    /// Position.
     pub at: Point,
 }
 
@@ -160,9 +160,9 @@ impl MassStep {
 pub struct Parameter {
     /// Name, such as `m_b` or `k_s`.
     pub name: String,
-    /// What it is measured in.
+    /// Quantity, which gives the unit.
     pub quantity: Quantity,
-    /// Whether a negative value is against nature.
+    /// Whether negative values are physically impossible.
     pub positive: bool,
 }
 

@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::estimate::LoadEstimate;
 use crate::linalg::tall::{left_inverse, solve, triangle};
 
-/// What is added to the spring path of each wheel force: `share[wheel][signal]` over [`signals`], missing shares being 0.
+/// Shares of the signals that are added to the spring path of each wheel force: `share[wheel][signal]` over [`signals`], missing shares being 0.
 pub type Blend = Vec<Vec<f64>>;
 
 /// A history of recovered loads, each with one standard deviation for all samples.
@@ -24,7 +24,7 @@ pub struct LoadHistory {
     pub sigma: Vec<f64>,
 }
 
-/// Force of each link: the sum of its terms, positive when it pulls its ends together.
+/// Computes the force of each link: the sum of its terms, positive in tension.
 pub fn link_forces(vehicle: &Vehicle, values: &[f64], motion: &Motion) -> Vec<Vec<f64>> {
     let mut out = Vec::new();
     for (l, terms) in motion.terms.iter().enumerate() {
@@ -136,7 +136,7 @@ pub fn wheel_forces(
     out
 }
 
-/// What a blend is over: residuals of the sprung equations, then the accelerations of all bodies, then all link terms for a
+/// Returns the signals of a blend. These are residuals of the sprung equations, then the accelerations of all bodies, then all link terms for a
 /// coefficient of one.
 fn signals(
     vehicle: &Vehicle,
@@ -150,10 +150,10 @@ fn signals(
     out
 }
 
-/// A free combination of all signals replaces the physical blend when it leaves less than this share of its error.
+/// Share of the physical blend's error below which a free combination of all signals replaces it.
 const FREE_GAIN: f64 = 0.85;
 
-/// The blend that fits measured wheel forces best; empty shares where none is measured.
+/// Computes the blend that fits measured wheel forces best; empty shares if no wheel force is measured.
 ///
 /// First choice: shares of the sprung residuals, which weigh the spring path against the momentum path and keep the physical
 /// parameters. Where the model misses something that the same sensors see (the other side of a beam axle, friction), a free

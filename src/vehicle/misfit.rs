@@ -1,4 +1,4 @@
-//! What a fitted vehicle leaves of every channel.
+//! Misfit of a fitted vehicle in every channel.
 
 use super::layout::Vehicle;
 use super::loads::{Blend, link_forces, needed_forces, wheel_forces};
@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::linalg::tall::left_inverse;
 use crate::series::detrend::rms;
 
-/// Channel, RMS of measured less predicted, RMS of measured, as [`channel_residuals`].
+/// Returns channel, RMS of measured less predicted and RMS of measured, from [`channel_residuals`].
 pub fn channel_misfits(
     part: &Vehicle,
     values: &[f64],

@@ -27,13 +27,13 @@ pub struct Motion {
     pub rate: Vec<Vec<f64>>,
     /// Each term of each link for a coefficient of one, formed wide-band, then limited to the band.
     pub terms: Vec<Vec<Vec<f64>>>,
-    /// Each mass change's column: what is there of it times acceleration.
+    /// Column of each mass change: its active share times acceleration.
     pub steps: Vec<Vec<f64>>,
-    /// Each wheel's force, where measured.
+    /// Force of each wheel, if measured.
     pub forces: Vec<Option<Vec<f64>>>,
-    /// Each wheel's mean force over the whole record, where measured.
+    /// Mean force of each wheel over the whole record, if measured.
     pub mean_forces: Vec<Option<f64>>,
-    /// What was noticed on the way.
+    /// Findings on the record.
     pub findings: Vec<Finding>,
 }
 
@@ -43,7 +43,7 @@ impl Motion {
         self.sensors.first().map_or(0, Vec::len)
     }
 
-    /// Samples of the channel of a sensor or of a wheel's force.
+    /// Returns the samples of the channel of a sensor or of a wheel's force.
     pub fn signal(&self, vehicle: &Vehicle, channel: &str) -> Option<&[f64]> {
         let sensor = vehicle.sensors.iter().position(|s| s.channel == channel);
         if let Some(s) = sensor {

@@ -132,7 +132,7 @@ fn put_ratios(task: &IdentifyTask, answer: &mut Identification, part: &PartAnswe
         .push(scale_sentence(&group, reference, &springs));
 }
 
-/// What can't be told in words, and parameters at their bounds.
+/// Adds messages on parameters that are not determined, and on parameters at their bounds.
 fn put_unidentifiable(answer: &mut Identification, part: &PartAnswer) {
     let absent: Vec<String> = (0..part.names.len())
         .filter(|&i| !part.values[i].is_finite())

@@ -16,9 +16,9 @@ pub(super) struct PartProblem {
     pub motion: Motion,
     /// Equations of the part.
     pub equations: Vec<Equation>,
-    /// What each parameter may be.
+    /// Range of each parameter.
     pub allowed: Vec<Allowed>,
-    /// The parameter that all others are measured by, where no force sets the scale.
+    /// Reference parameter, to which all other parameters are relative if no force sets the scale.
     pub reference: Option<usize>,
 }
 

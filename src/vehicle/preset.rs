@@ -17,24 +17,24 @@ pub const MODELS: [&str; 8] = [
     "oscillator",
 ];
 
-/// What can be wrong with the request for a vehicle.
+/// Errors in the request for a vehicle.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PresetError {
-    /// No such model.
+    /// An unknown model.
     Model {
-        /// As written.
+        /// Name in the request.
         name: String,
     },
-    /// A term that is unknown or meets no link.
+    /// A term that is unknown or fits no link.
     Term {
-        /// As written.
+        /// Text in the request.
         term: String,
         /// The model.
         model: String,
-        /// Names that would do.
+        /// Valid names.
         examples: Vec<String>,
     },
-    /// A place that the model needs.
+    /// A missing place that the model needs.
     Place {
         /// The model.
         model: String,
@@ -44,7 +44,7 @@ pub enum PresetError {
 }
 
 impl PresetError {
-    /// What is wrong, and what to do.
+    /// Returns the message and the remedy.
     pub fn parts(&self) -> (String, String) {
         match self {
             Self::Model { name } => (
@@ -79,7 +79,7 @@ impl fmt::Display for PresetError {
 
 impl std::error::Error for PresetError {}
 
-/// What a job says of its vehicle.
+/// Description of the vehicle in a job.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct PresetRequest {
     /// Name of the model.
@@ -89,11 +89,11 @@ pub struct PresetRequest {
     /// Places (x, y): of wheels by their corner (`lf`, `front`), of springs (`spring_lf`; else at the wheel), of body
     /// accelerometers (`body_lf`; else at the spring).
     pub places: BTreeMap<String, [f64; 2]>,
-    /// Channel names where the file calls them otherwise: `a_body` to the name in the file.
+    /// Channel names that differ in the file: `a_body` to the name in the file.
     pub channels: BTreeMap<String, String>,
 }
 
-/// The vehicle of a request.
+/// Returns the vehicle of a request.
 ///
 /// - `front2`: a_body, a_wheel, f_wheel (thesis 5.1, 5.2); `front_pair`: also `_other`
 /// - `rear3`: a_body, a_mid, a_rear, f_mid, f_rear (thesis 5.3 to 5.5)

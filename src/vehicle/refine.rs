@@ -1,4 +1,4 @@
-//! Parameters by the error of simulation: the last word on nonlinear terms, since stretch is simulated, not integrated.
+//! Refines parameters by the error of simulation. This decides on nonlinear terms, since stretch is simulated, not integrated.
 
 use super::layout::{Measures, Vehicle};
 use super::simulate::{Drive, Simulated, SimulationError, simulate};
@@ -8,11 +8,11 @@ use crate::series::integrate::integrated;
 use crate::series::spectrum::{Band, Fourier};
 use crate::series::{Channels, SeriesError};
 
-/// What a simulation is held against.
+/// Measured signals for comparison with a simulation, with its inputs.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     drive: Drive,
-    /// Sensor index and its measured signal, in band and trimmed.
+    /// Sensor index and the measured signal, in band and trimmed.
     measured: Vec<(usize, Vec<f64>)>,
     band: Band,
     trim: usize,
@@ -23,7 +23,7 @@ pub struct Comparison {
 pub struct Refinement {
     /// Values of all parameters.
     pub values: Vec<f64>,
-    /// Constant force on each body (what a displacement sensor's offset asks for).
+    /// Constant force on each body (from the offset of a displacement sensor).
     pub constant: Vec<f64>,
     /// RMS of measured less simulated of each compared sensor, before and after, in its unit.
     pub error_rms: Vec<(String, f64, f64)>,
@@ -173,13 +173,13 @@ impl Comparison {
             .collect())
     }
 
-    /// The same with so many integration steps a sample.
+    /// Returns this comparison with `steps` integration steps a sample.
     pub fn with_steps(mut self, steps: usize) -> Self {
         self.drive.steps = steps;
         self
     }
 
-    /// RMS of each compared sensor, its mean included where that is compared.
+    /// Returns the RMS of each compared sensor, its mean included if it is compared.
     pub fn measured_rms(&self) -> Vec<(usize, f64)> {
         let size = |y: &[f64]| {
             let kept: Vec<f64> = y.iter().copied().filter(|v| v.is_finite()).collect();
@@ -188,7 +188,7 @@ impl Comparison {
         self.measured.iter().map(|(i, y)| (*i, size(y))).collect()
     }
 
-    /// Samples at the start that are not compared (a simulation from rest needs time to forget it).
+    /// Excludes samples at the start from the comparison, while the initial state of the simulation decays.
     pub fn forget(&mut self, samples: usize) {
         let n = samples.min(self.measured.first().map_or(0, |m| m.1.len()) / 2);
         self.measured
@@ -197,7 +197,7 @@ impl Comparison {
     }
 }
 
-/// What a sensor would read.
+/// Returns the simulated reading of a sensor.
 pub fn sensor_signal(vehicle: &Vehicle, s: &Simulated, sensor: usize) -> Vec<f64> {
     let at = &vehicle.sensors[sensor].at;
     let motions = match vehicle.sensors[sensor].measures {

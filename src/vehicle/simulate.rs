@@ -1,4 +1,4 @@
-//! Forward in time: motion of the bodies from wheel forces, or from the measured motion of some of them (thesis 4.4).
+//! Simulates the motion of the bodies from wheel forces, or from the measured motion of some of them (thesis 4.4).
 
 use super::layout::Vehicle;
 use super::term::Term;
@@ -6,14 +6,14 @@ use crate::linalg::tall::left_inverse;
 use crate::series::resample::upsampled;
 use thiserror::Error;
 
-/// What drives a simulation, at the sample rate of the record.
+/// Inputs of a simulation, at the sample rate of the record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drive {
     /// Samples per second.
     pub rate_hz: f64,
     /// Force of each wheel; `None` for none.
     pub forces: Vec<Option<Vec<f64>>>,
-    /// Displacement and velocity of each motion of bodies whose motion is given; `None` for bodies that move freely.
+    /// Displacement and velocity of each motion of bodies with prescribed motion; `None` for bodies that move freely.
     pub given: Vec<Option<Vec<[Vec<f64>; 2]>>>,
     /// Constant force on the heave of each body.
     pub constant: Vec<f64>,
@@ -63,7 +63,7 @@ pub enum SimulationError {
     },
 }
 
-/// A free body: where its motions sit in the state, and its inverse inertia.
+/// A free body: index of its motions in the state, and its inverse inertia.
 struct Free {
     body: usize,
     at: usize,
@@ -71,7 +71,7 @@ struct Free {
     inverse: Vec<Vec<f64>>,
 }
 
-/// Everything a time step needs, in flat lists.
+/// Data of a time step, in flat lists.
 struct Machine<'a> {
     free: Vec<Free>,
     n_state: usize,

@@ -1,8 +1,8 @@
-//! What a link between two bodies does: force as a sum of terms, each a coefficient times a function of stretch and its rate.
+//! Force law of a link between two bodies: a sum of terms, each a coefficient times a function of stretch and its rate.
 
 use crate::units::{Quantity as Dimension, UnitSystem};
 
-/// What a coefficient is measured in.
+/// Physical quantity of a coefficient.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// kg or t.
@@ -236,7 +236,7 @@ impl Term {
         }
     }
 
-    /// What its coefficient is measured in.
+    /// Returns the physical quantity of the coefficient.
     pub fn quantity(&self) -> Quantity {
         match self {
             Self::Stiffness
@@ -252,7 +252,7 @@ impl Term {
         }
     }
 
-    /// Whether a negative coefficient is against nature.
+    /// Whether a negative coefficient is physically impossible.
     pub fn is_positive(&self) -> bool {
         matches!(
             self,
@@ -305,7 +305,7 @@ impl Term {
         }
     }
 
-    /// The same at a time of the record, s: what changes with time is there as far as it is done.
+    /// Returns the basis function at a time of the record, s: a term that changes with time has its share at that time.
     pub fn basis_at(&self, d: f64, v: f64, t_s: f64) -> f64 {
         match *self {
             Self::StiffnessChange { at_s, over_s } => d * share_done(at_s, over_s, t_s),
@@ -319,7 +319,7 @@ impl Term {
     }
 }
 
-/// Share of a change that begins at `at_s` and takes `over_s` that is done at `t_s`.
+/// Returns the completed share, at `t_s`, of a change that begins at `at_s` and takes `over_s`.
 pub fn share_done(at_s: f64, over_s: f64, t_s: f64) -> f64 {
     if over_s > 0.0 {
         ((t_s - at_s) / over_s).clamp(0.0, 1.0)

@@ -1,16 +1,16 @@
-//! How channels of a record are taken: corrections, band, slow stretch; and what stops the acceleration path.
+//! Treatment of the channels of a record: corrections, band, slow stretch; and the errors of the acceleration path.
 
 use super::adjustment::Adjustment;
 use crate::series::SeriesError;
 use crate::series::spectrum::Band;
 use std::fmt;
 
-/// What stops the acceleration path.
+/// Errors that stop the acceleration path.
 #[derive(Clone, Debug, PartialEq)]
 pub enum VehicleError {
     /// The record itself.
     Series(SeriesError),
-    /// A body whose motion the sensors don't give.
+    /// A body whose motion the sensors do not determine.
     Sensors {
         /// The body.
         body: String,
@@ -21,18 +21,18 @@ pub enum VehicleError {
         /// Channels of the body.
         channels: Vec<String>,
     },
-    /// No equation is left.
+    /// No equation remains.
     NoEquation(String),
-    /// The record that judges, not the fitted one.
+    /// An error of the hold-out record, not of the fitted one.
     HeldOut(Box<VehicleError>),
-    /// A known parameter that the model has not.
+    /// A known parameter that the model does not have.
     Known {
-        /// As written.
+        /// Name in the job.
         name: String,
         /// Names of the model.
         present: Vec<String>,
     },
-    /// Limits without a value that nature allows.
+    /// Limits without a physically possible value.
     Bounds {
         /// The parameter.
         name: String,
@@ -42,7 +42,7 @@ pub enum VehicleError {
 }
 
 impl VehicleError {
-    /// What is wrong, and what to do.
+    /// Returns the message and the remedy.
     pub fn parts(&self) -> (String, String) {
         let (wrong, remedy) = match self {
             Self::Series(e) => return e.parts(),
@@ -105,14 +105,14 @@ pub struct Treatment {
     pub keep_every: usize,
     /// Corrections of channels, none for most.
     pub adjust: Vec<Adjustment>,
-    /// Slow stretch of links, where known: nonlinear terms then need no double integration below the band.
+    /// Slow stretch of links, if known: nonlinear terms then need no double integration below the band.
     pub slow: Vec<SlowStretch>,
-    /// What is cut off either end, s; none: as little as the terms need.
+    /// Time that is cut off at both ends, s; `None`: as little as the terms need.
     pub settle_s: Option<f64>,
 }
 
 impl Treatment {
-    /// Plain treatment: one band, samples thinned as far as it allows.
+    /// Returns the plain treatment: one band, samples thinned as far as it allows.
     pub fn of(band: Band) -> Self {
         Self {
             band,

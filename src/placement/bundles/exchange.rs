@@ -5,10 +5,10 @@ use super::set::{BundleSpec, Bundles, CENT, fits};
 use crate::linalg::spd;
 use crate::placement::coordinate_exchange::LEAST_GAIN;
 
-/// Of the candidates of an exchange, those judged exactly.
+/// Number of exchange candidates that are evaluated exactly.
 const JUDGED: usize = 24;
 
-/// Fills the budget, then exchanges single bundles until none gains.
+/// Fills the budget, then exchanges single bundles until no exchange improves the criterion.
 pub(super) fn improve(
     bundles: &Bundles,
     spec: &BundleSpec,

@@ -20,14 +20,14 @@ pub(super) struct Relaxed {
     weights: Vec<f64>,
     /// Price over cost of every bundle.
     worth: Vec<f64>,
-    /// The prior with a little of every bundle in use: regular wherever their rows are.
+    /// The prior with a small weight of every bundle in use: regular wherever their rows are.
     pub(super) ridge: Vec<f64>,
-    /// No layout within the budget has a larger criterion.
+    /// Upper bound of the criterion of any layout within the budget.
     pub(super) upper: f64,
 }
 
 impl Relaxed {
-    /// Those with weight, the heaviest first.
+    /// Returns the bundles with weight, the heaviest first.
     pub(super) fn by_weight(&self) -> Vec<usize> {
         let mut order: Vec<usize> = (0..self.active.len())
             .filter(|&i| self.weights[i] > 1e-6)
@@ -36,7 +36,7 @@ impl Relaxed {
         order.into_iter().map(|i| self.active[i]).collect()
     }
 
-    /// The bundles of the largest worth, and those with weight.
+    /// Returns the bundles with the largest worth, and the bundles with weight.
     pub(super) fn list(&self, bundles: &Bundles) -> Vec<usize> {
         let mut order: Vec<usize> = (0..bundles.len()).collect();
         let by = |a: &usize, b: &usize| self.worth[*b].total_cmp(&self.worth[*a]).then(a.cmp(b));

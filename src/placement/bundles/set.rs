@@ -12,18 +12,18 @@ pub struct Bundles {
     pub k: usize,
     /// Rows over their standard deviations, bundle after bundle.
     pub rows: Vec<f64>,
-    /// Where each bundle's rows begin, in rows; one more than there are bundles.
+    /// First row of each bundle; one more entry than there are bundles.
     pub start: Vec<u32>,
-    /// What each costs.
+    /// Cost of each bundle.
     pub cost: Vec<f64>,
-    /// The places it takes, one or two (twice the same: one).
+    /// Places of each bundle, one or two (one place is listed twice).
     pub seats: Vec<[u32; 2]>,
     /// Positions of the places.
     pub positions: Vec<[f64; 3]>,
 }
 
 impl Bundles {
-    /// None yet, for `k` columns and these places.
+    /// Returns an empty set, for `k` columns and these places.
     pub fn new(k: usize, positions: Vec<[f64; 3]>) -> Self {
         Self {
             k,
@@ -90,27 +90,27 @@ impl Bundles {
     }
 }
 
-/// What is asked for.
+/// Requirements of a layout of bundles.
 #[derive(Clone, Debug)]
 pub struct BundleSpec {
-    /// Costs of a layout add up to this at most.
+    /// Largest sum of the costs of a layout.
     pub budget: f64,
     /// Least distance between places of two bundles; 0: none.
     pub spacing: f64,
     /// Prior information.
     pub prior: Vec<f64>,
-    /// What the layout is chosen for.
+    /// Criterion of the layout.
     pub criterion: Criterion,
     /// Gap to which the relaxation is solved.
     pub tolerance: f64,
-    /// How hard to search.
+    /// Effort of the search.
     pub effort: Effort,
 }
 
-/// Room in a budget that is rounding.
+/// Excess over a budget that counts as rounding.
 pub(super) const CENT: f64 = 1e-9;
 
-/// Whether bundle `u` fits beside those chosen, at a cost of `spent` so far.
+/// Whether bundle `u` fits in addition to the chosen bundles, at a cost of `spent` so far.
 pub(super) fn fits(
     bundles: &Bundles,
     spec: &BundleSpec,

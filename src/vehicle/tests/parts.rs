@@ -35,12 +35,12 @@ fn coloured(n: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-/// A quarter truck that follows its model exactly: stretch is given, everything else follows by band-limited calculus.
+/// Returns the channels of a quarter truck that follows its model exactly: stretch is given, all else follows by band-limited calculus.
 pub(super) fn quarter(n: usize, seed: u64, values: [f64; 4]) -> Channels {
     quarter_at(500.0, n, seed, values)
 }
 
-/// The same at a sample rate.
+/// Returns the channels of such a quarter truck at a sample rate.
 fn quarter_at(rate: f64, n: usize, seed: u64, values: [f64; 4]) -> Channels {
     let [m_b, m_f, k, c] = values;
     let smooth = |x: &[f64], times| {
