@@ -1,4 +1,4 @@
-//! What a finding means, by its code.
+//! Explanation of a finding by its code.
 
 use crate::finding::explain::{self, Code};
 use crate::host::fault::{Fault, Faults};

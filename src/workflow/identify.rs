@@ -31,13 +31,13 @@ pub struct Identified {
     pub band_hz: [f64; 2],
     /// Parameters and ratios.
     pub parameters: Vec<Estimate>,
-    /// What the data can't tell, in words.
+    /// Parameters that the data do not determine, in words.
     pub unidentifiable: Vec<String>,
     /// How well each channel is explained.
     pub fit: Vec<ChannelFit>,
     /// Identified over weighed mass.
     pub mass_closure: Option<f64>,
-    /// The same with what it is made of.
+    /// Identified mass, weighed mass, and their ratio.
     pub mass_closure_detail: Option<MassClosure>,
     /// Smallest over largest singular value, worst component, columns of unit norm.
     pub conditioning: Option<f64>,
@@ -45,13 +45,13 @@ pub struct Identified {
     pub loads: Vec<WheelLoad>,
     /// Forces on sprung bodies.
     pub chassis_forces: Vec<ChassisForceOf>,
-    /// Everything that was identified.
+    /// Complete result of the identification.
     #[serde(skip)]
     pub found: Identification,
     /// Wheel forces of the fitted record.
     #[serde(skip)]
     pub fitted: Driven,
-    /// Wheel forces of the record that judges.
+    /// Wheel forces of the held-out record.
     #[serde(skip)]
     pub held_out: Option<Driven>,
     /// Force histories on sprung bodies.

@@ -27,7 +27,7 @@ pub struct ModeRow {
     pub mode: usize,
     /// Cycles per unit of time.
     pub hz: f64,
-    /// Of the shape that is written: 1 but for rounding.
+    /// Generalised mass of the written shape: 1 except for rounding.
     pub generalised_mass: f64,
     /// Share of the modal equation that is not satisfied.
     pub residual: f64,
@@ -51,7 +51,7 @@ fn or_null<S: Serializer>(x: &f64, s: S) -> Result<S::Ok, S::Error> {
 pub struct Modes {
     /// Ascending.
     pub modes: Vec<ModeRow>,
-    /// What holds the structure, in words.
+    /// Support of the structure, in words.
     pub support: String,
     /// Rigid motions that nothing holds; they are no modes.
     pub rigid_motions: usize,

@@ -23,11 +23,11 @@ pub struct Sensed {
     /// Rank and condition numbers.
     #[serde(flatten)]
     pub conditioning: Conditioning,
-    /// How many gauges.
+    /// Number of gauges.
     pub gauges: usize,
     /// Names of the loads, a column each.
     pub loads: Vec<String>,
-    /// What reports count each load in.
+    /// Report unit of each load.
     pub report_units_of_loads: Vec<String>,
     /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it.
     #[serde(skip_serializing_if = "Vec::is_empty")]

@@ -45,11 +45,11 @@ pub struct SolvedCases {
     pub epsilon: [f64; 2],
     /// Units of mass, balance and reactions: those of the job's system; null for a deck, which doesn't say.
     pub model_units: StatedUnits,
-    /// By load case: what acts, what inertia takes, what is left.
+    /// By load case: applied loads, inertia loads, remaining imbalance.
     pub balance: Vec<Balance>,
     /// Mass and its centre.
     pub mass: Option<MassAndCentre>,
-    /// What holds the structure under the unit loads of a job, in words; `None` for a deck, whose subcases say so themselves.
+    /// Support of the structure under the unit loads of a job, in words; `None` for a deck, whose subcases state their support.
     pub support: Option<String>,
     /// By load case: resultants of what acts and of the reactions, and the reactions grid by grid, basic frame; empty where nothing is held.
     pub reactions: Vec<Reactions>,
@@ -66,13 +66,13 @@ pub struct SolvedCases {
     /// The deck's model.
     #[serde(skip)]
     pub deck: DeckModel,
-    /// What was solved.
+    /// Load cases.
     #[serde(skip)]
     pub cases: Vec<LoadCase>,
     /// Displacements and strain.
     #[serde(skip)]
     pub solution: Solution,
-    /// What the solver said.
+    /// Report of the solver.
     #[serde(skip)]
     pub report: SolveReport,
 }
@@ -105,17 +105,17 @@ impl Answer for SolvedCases {
     }
 }
 
-/// What is to be solved.
+/// Inputs of the solver.
 struct Task {
     read: DeckModel,
     cases: Vec<LoadCase>,
     /// Where strain is wanted.
     corners: Corners,
-    /// Combinations of them.
+    /// Combinations of the load cases.
     combined: Vec<CombinedSubcase>,
-    /// Why a subcase of the deck is left out.
+    /// Reason why a subcase of the deck is left out.
     left_out: Vec<String>,
-    /// What holds the structure of a job.
+    /// Support of the structure of a job, in words.
     support: Option<String>,
 }
 

@@ -28,11 +28,11 @@ const DEFAULT_BAND_HZ: [f64; 2] = [0.7, 20.0];
 
 /// A task with its records.
 pub struct VehicleRecords {
-    /// What is asked.
+    /// Identification task.
     pub task: IdentifyTask,
     /// The record to fit.
     pub data: Channels,
-    /// The record to judge by.
+    /// Held-out record, for tests.
     pub hold_out: Option<Channels>,
 }
 
@@ -236,7 +236,7 @@ pub fn section_of(job: &Job) -> Result<&VehicleJob, Faults> {
     })
 }
 
-/// What a section asks of its vehicle.
+/// Returns the vehicle request of a section.
 pub fn preset_request(section: &VehicleJob) -> PresetRequest {
     PresetRequest {
         model: section.model.clone(),

@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 /// Keys of result.json that are of the run and not of the answer.
 const OF_THE_RUN: [&str; 3] = ["seconds", "peak_memory_bytes", "extended_model"];
 
-/// What a recomputation found.
+/// Result of a recomputation.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Verified {
-    /// Inputs that still have the bytes that were read, and files that came out the same.
+    /// Inputs with unchanged bytes, and files with the same content as recomputed.
     pub same: Vec<String>,
-    /// Everything else.
+    /// Inputs and files that differ.
     pub differs: Vec<Difference>,
 }
 
@@ -41,25 +41,25 @@ impl Answer for Verified {
     }
 }
 
-/// A difference between what stands in the folder and what its inputs give now.
+/// Difference between a result folder and its recomputation.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Difference {
     /// Input as given, or file of the folder.
     pub file: String,
     /// Key of result.json, or line of a table; empty for a file as a whole.
     pub at: String,
-    /// What stands in the folder.
+    /// Value in the folder.
     pub was: String,
-    /// What comes out now.
+    /// Recomputed value.
     pub now: String,
 }
 
-/// What a folder says of how it was made.
+/// Command, inputs and records of a result folder.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Made {
     /// The command.
     pub command: String,
-    /// What it read, the job or deck first.
+    /// Files read by the command, the job or deck first.
     pub inputs: Vec<Input>,
     /// Records of a fleet, as given, each once; empty for other commands.
     pub records: Vec<String>,

@@ -85,17 +85,17 @@ pub struct HungMass {
 pub struct Reaction {
     /// Load.
     pub name: String,
-    /// As measured.
+    /// Measured reaction.
     pub measured: f64,
     /// Standard deviation of the reaction.
     pub sigma: f64,
-    /// Of the deck as it was.
+    /// Reaction of the given deck.
     pub before: f64,
-    /// Of the completed deck, read back and solved.
+    /// Reaction of the completed deck, read back and solved.
     pub after: f64,
 }
 
-/// What is missing as a whole: the resultant of the measured reactions less the model's own.
+/// Total missing mass and its centre, from the resultant of the measured reactions less the reactions of the model.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Together {
     /// Mass.
@@ -108,7 +108,7 @@ pub struct Together {
     pub position_sigma: [f64; 2],
 }
 
-/// What was sized, job units.
+/// Result of the sizing, job units.
 pub(super) struct Sized<'a> {
     pub run: String,
     pub measured: &'a [f64],
@@ -201,8 +201,8 @@ const FAR_BEYOND: f64 = 100.0;
 /// Density of steel, kg/m^3: of what carries a ballast, the heaviest that is common.
 const STEEL_KG_M3: f64 = 7850.0;
 
-/// What the structure weighs in steel, job units, where no property of it has mass; 0 where one has. Lumped masses are no measure of what it
-/// carries: an accelerometer may be all that has mass.
+/// Returns the weight of the structure in steel, job units, if no property has mass; 0 otherwise. Lumped masses do not count, because an
+/// accelerometer may be the only mass in the model.
 fn in_steel(task: &Task) -> f64 {
     let mut structure = task.read.model.clone();
     structure.masses.clear();
@@ -253,7 +253,7 @@ pub(super) fn far_beyond(
 /// Misfit of a reaction above which the masses do not explain it, of the measured value.
 const MATCHED: f64 = 0.02;
 
-/// What is to be said of the masses.
+/// Reports the findings on the masses.
 pub(super) fn judge(
     work: &mut Work,
     task: &Task,

@@ -1,4 +1,4 @@
-//! What is asked of ballast, and the deck that comes of it.
+//! Inputs of `ballast`, and the completed deck.
 
 use crate::fe::floor::Standing;
 use crate::job::{Ballast, Job};
@@ -25,7 +25,7 @@ impl CompletedDeck {
     }
 }
 
-/// What is asked, on its model.
+/// Inputs of `ballast` with the model.
 pub(super) struct Task<'a> {
     pub job: &'a Job,
     pub ballast: &'a Ballast,

@@ -27,7 +27,7 @@ pub(super) struct Sites<'a> {
     cases: Vec<LoadCaseOf<'a>>,
 }
 
-/// What `[calibration]` states; `None` where it states no tolerance.
+/// Returns the tolerances of `[calibration]`; `None` if both are zero.
 pub(super) fn tolerance(keys: &CalibrationKeys) -> Option<GlueTolerance> {
     let stated = keys.position_tolerance > 0.0 || keys.angle_tolerance_deg > 0.0;
     stated.then(|| GlueTolerance {
@@ -188,7 +188,7 @@ pub(super) fn off_drawing(job: &Job, prepared: &Prepared) -> Result<Option<OffDr
     Ok(Some(out))
 }
 
-/// What the runs say of each gauge, in job units of length and degrees.
+/// Returns the installed position and gain of a gauge from the runs, in job units of length and degrees.
 pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
     let of = |kind, unit: f64| {
         glued.of(kind).map(|m| GlueSummary {

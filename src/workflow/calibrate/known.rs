@@ -35,13 +35,13 @@ impl Known {
     }
 }
 
-/// What the runs file says.
+/// Runs of the runs file with known loads.
 pub(super) struct KnownRuns {
-    /// Runs that teach, in the order of the strain table.
+    /// Calibration runs, in the order of the strain table.
     pub runs: Vec<Known>,
-    /// Runs that are recovered and compared with their loads alone.
+    /// Check runs, which are recovered and compared with their loads but not used for S.
     pub checks: Vec<Known>,
-    /// Name and values, a run each (NaN where blank), of the column that the scale may depend on.
+    /// Name and values of the column that the scale may depend on, one value per run (NaN where blank).
     pub column: Option<(String, Vec<f64>)>,
 }
 
@@ -50,17 +50,17 @@ struct Stated {
     name: String,
     terms: Vec<(usize, f64)>,
     value: usize,
-    /// Column of its sd, job units of one unit of that, and SI units.
+    /// Column of the sd, job units per unit of that column, and SI units per unit of that column.
     sd: Option<(usize, f64, f64)>,
     /// Job units of one unit of the column.
     unit: f64,
-    /// Sd where no column states it, job units.
+    /// Sd if no column states it, job units.
     noise: f64,
-    /// What it measures, and SI units of one unit of the column.
+    /// Quantity, and SI units per unit of the column.
     size: (Option<Quantity>, f64),
 }
 
-/// The runs that teach, with their loads.
+/// Reads the calibration runs with their loads.
 ///
 /// # Errors
 /// Columns that the job names and the file lacks, fields that are no numbers, runs without strain or without known loads.

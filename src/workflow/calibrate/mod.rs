@@ -215,7 +215,7 @@ fn payload_place(job: &Job, prepared: &Prepared) -> [f64; 2] {
     grid.unwrap_or([0.0; 2])
 }
 
-/// What calibration can't do without.
+/// Returns the two sections that calibration needs, or a fault for each missing section.
 fn sections(job: &Job) -> Result<(&Measured, &Runs), Faults> {
     let lacks = |section: &str, remedy: &str| {
         Fault::of(

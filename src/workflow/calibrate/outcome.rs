@@ -1,4 +1,4 @@
-//! What `calibrate` answers.
+//! Answer of `calibrate`.
 
 use crate::calibrate::Calibration;
 use crate::fe::strain_tensor::Surface;
@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// A calibrated S.
 #[derive(Serialize)]
 pub struct Calibrated {
-    /// What the runs taught.
+    /// Summary of the calibration.
     pub calibration: CalibrationSummary,
     /// S with its covariance.
     #[serde(skip)]
@@ -26,7 +26,7 @@ pub struct Calibrated {
     /// Gauges where they sit, `None` for those on bars; empty where `[calibration]` states no tolerance.
     #[serde(skip)]
     pub glued: Vec<Option<GluedGauge>>,
-    /// All of it.
+    /// Complete result of the calibration.
     #[serde(skip)]
     pub found: Calibration,
     /// The job's text.
@@ -139,22 +139,22 @@ pub struct GlueSummary {
     pub told: bool,
 }
 
-/// A gauge laid onto the model where the runs say that it sits.
+/// Gauge on the model at its installed position, as determined from the runs.
 #[derive(Clone, Debug)]
 pub struct GluedGauge {
     /// There.
     pub gauge: Gauge,
-    /// On the reference surface, basic frame.
+    /// Position on the reference surface, basic frame.
     pub at: Vec3,
-    /// Whether strain is read at that point; else in the middle of its element.
+    /// Whether strain is read at `at`; else in the middle of the element.
     pub by_position: bool,
-    /// As drawn.
+    /// Specification of the gauge, at its nominal position.
     pub spec: GaugeSpec,
     /// Wiring, as a job writes it.
     pub bridge: &'static str,
     /// Element and side of the other pair of a bridge.
     pub pair: Option<(u32, Surface)>,
-    /// Factor on its readings.
+    /// Factor on the readings.
     pub gain: f64,
 }
 

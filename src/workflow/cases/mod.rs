@@ -52,7 +52,7 @@ const UNWANTED: [&str; 22] = [
 /// A deck with one unit-load subcase a load.
 #[derive(Serialize)]
 pub struct UnitLoadDeck {
-    /// What holds the structure, in words.
+    /// Support of the structure, in words.
     pub support: String,
     /// By load: its subcase and what acts.
     pub subcases: Vec<Value>,

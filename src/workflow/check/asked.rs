@@ -1,5 +1,5 @@
-//! What the commands come to on a job that reads well: its deck is solved or its results are opened, gauges are laid or places for them looked
-//! for, and readings judged, by the code of the commands.
+//! Tests of a readable job with the code of the commands. The deck is solved or its results are opened, gauges or places for them are found on the
+//! model, and readings are tested.
 
 use crate::finding::{Finding, Severity};
 use crate::host::fault::Faults;
@@ -13,8 +13,8 @@ const MOST_GRIDS: usize = 10_000;
 /// Grids that a mesh half as wide has for each of the deck's.
 const FINER: usize = 4;
 
-/// What `sensitivity` and `recover` find on the way to their answers; `grids` are those of the job's deck. Whoever asks has read
-/// everything else.
+/// Runs `sensitivity` and `recover` as far as their findings require. `grids` is the number of grids of the job's deck. The caller has read all other
+/// files.
 ///
 /// # Errors
 /// Faults of these commands.

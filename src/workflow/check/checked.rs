@@ -1,4 +1,4 @@
-//! What was found in all files.
+//! Contents and faults of all checked files.
 
 use super::decks::DeckEntry;
 use super::records::RecordEntry;

@@ -92,18 +92,18 @@ pub(super) fn look(work: &mut Work, base: &Path, given: &str, found: &mut Checke
     found.faults = faults;
 }
 
-/// What was read; faults are added to the list.
+/// Returns the value; on an error, adds the faults to the list and returns `None`.
 fn kept<T>(read: Result<T, Faults>, faults: &mut FaultList) -> Option<T> {
     read.map_err(|f| faults.extend(f)).ok()
 }
 
-/// Keeps the first of those that are called alike.
+/// Keeps the first of several entries with one name.
 fn each_once<T>(list: &mut Vec<T>, called: impl Fn(&T) -> String) {
     let mut seen = HashSet::with_capacity(list.len());
     list.retain(|entry| seen.insert(called(entry)));
 }
 
-/// Names of the readings: those of a given S, of the gauges that the job states, of the strain file.
+/// Returns the names of the readings: from a given S, else from the gauges of the job, else from the strain file.
 fn gauges_of(
     work: &mut Work,
     job: &Job,
@@ -122,7 +122,7 @@ fn gauges_of(
     }
 }
 
-/// What is wrong with measured strain, its zero, and the runs that are held out in a file of their own.
+/// Returns the faults of the measured strain, of its zero, and of a separate file with held-out runs.
 fn measured(
     work: &mut Work,
     job: &Job,
@@ -148,7 +148,7 @@ fn measured(
     faults
 }
 
-/// What is wrong with the signatures beside a given S, of the gauges that are measured.
+/// Returns the faults of the signatures that belong to a given S, for the measured gauges.
 fn signatures(
     work: &mut Work,
     job: &Job,

@@ -1,4 +1,4 @@
-//! What a file is: by content, its name only where that does not tell.
+//! Kind of a file: by its content, and by its name only if the content does not determine it.
 
 use crate::host::sheet::is_sheet;
 use crate::host::what_is::{binary_kind, is_deck};

@@ -1,4 +1,4 @@
-//! What runs into a folder were asked for, and what of it is missing when their results are merged.
+//! Records requested by the runs into a folder, and the requested records that are missing when results are merged.
 
 use super::day::FileHead;
 use super::name::Shard;
@@ -6,31 +6,31 @@ use crate::finding::{Finding, Severity, few};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
-/// Ends the names of these files in the folder of the kept results.
+/// Last part of the names of these files in the folder of the stored results.
 pub const ASKED: &str = "asked";
 
-/// What a run was asked for; all parts of a whole are asked for the same.
+/// Records requested by a run. All parts (shards) of one run request the same records.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Asked {
-    /// Digest of what a record of the job depends on beside its bytes.
+    /// Digest of the inputs that the result of a record depends on, without the bytes of the record.
     pub job: String,
-    /// Into how many parts the whole was divided.
+    /// Number of parts (shards) of the run.
     pub parts: usize,
-    /// All records of the whole, sorted.
+    /// Paths of all requested records, sorted.
     pub files: Vec<String>,
-    /// Where this stands.
+    /// Path of this file.
     #[serde(skip)]
     pub place: String,
 }
 
 impl Asked {
-    /// Whether it asks for all that another of the same job asks for.
+    /// Whether this run requests all records of another run of the same job.
     pub fn holds(&self, other: &Self) -> bool {
         let own = |f: &String| self.files.binary_search(f).is_ok();
         self.job == other.job && other.files.iter().all(own)
     }
 
-    /// An error that names the records, and the parts, of which nothing is kept.
+    /// Returns an error finding with the requested records, and their parts, that have no stored result.
     pub fn missing(&self, held: &[FileHead]) -> Option<Finding> {
         let held: BTreeSet<&str> = held.iter().map(|f| f.path.as_str()).collect();
         let is_missing = |f: &(usize, &String)| !held.contains(f.1.as_str());

@@ -1,4 +1,4 @@
-//! What damage is held against: a reference day, a target, a mission mixed of kinds of days.
+//! References for damage: a reference day, a target, a mission of several kinds of days.
 
 use super::day::{Day, FileHead};
 use super::kept::KeptDays;
@@ -97,14 +97,14 @@ impl Reference {
     }
 }
 
-/// What the job holds damage against.
+/// References that the job compares damage with.
 pub(super) struct Compared {
     pub reference: Option<Reference>,
     pub mission: Option<MissionSums>,
 }
 
 impl Compared {
-    /// Nothing of the mission yet.
+    /// Finds the reference day and starts the mission without days.
     pub fn of(
         keys: &FleetKeys,
         kept: &KeptDays,
@@ -117,10 +117,10 @@ impl Compared {
         }
     }
 
-    /// What the job names and no record is; a fault for each of them where all records there are were merged.
+    /// Returns the findings on a reference day or a mission kind without a record.
     ///
     /// # Errors
-    /// See above.
+    /// A fault for each of them if all existing records were merged (`is_all`).
     pub fn check(
         &self,
         file: &str,

@@ -1,4 +1,4 @@
-//! What is kept of one file: a few kilobytes that merge to the result of a vehicle.
+//! Stored result of one file: a few kilobytes, which a merge combines to the result of a vehicle.
 
 use crate::finding::Finding;
 use crate::host::whole_file::Stamp;
@@ -36,26 +36,26 @@ pub struct GaugeDay {
     /// Noise from second differences of its readings, microstrain.
     #[serde(deserialize_with = "number")]
     pub noise: f64,
-    /// What the loads leave unexplained, rms, microstrain.
+    /// Residual, rms, microstrain.
     #[serde(deserialize_with = "number")]
     pub residual: f64,
     /// Reading divided by the prediction from the loads that all gauges determine, by least squares.
     #[serde(deserialize_with = "number")]
     pub gain: f64,
-    /// Mean of its reading less what the other gauges predict for it, microstrain.
+    /// Mean reading less the prediction from the other gauges, microstrain.
     #[serde(deserialize_with = "number")]
     pub offset: f64,
-    /// Share in its own prediction: of an error of it, `1 - leverage` stands in its residual.
+    /// Leverage of the gauge on its own prediction: `1 - leverage` of an error of its reading appears in its residual.
     #[serde(deserialize_with = "number")]
     pub leverage: f64,
     /// Samples without a reading.
     pub missing: u64,
-    /// Parts of the record in which it is dead, hours from the first sample: it gives nothing, or one and the same value.
+    /// Parts of the record in which the gauge is dead (no readings) or stuck (constant), hours from the first sample.
     pub dead: Vec<[f64; 2]>,
 }
 
 impl GaugeDay {
-    /// That of a gauge that gives nothing, or one and the same value: neither tells anything.
+    /// Returns the result of a gauge that is dead (no readings) or stuck (constant) in the whole record.
     pub fn silent(name: &str) -> Self {
         Self {
             name: name.to_owned(),
@@ -88,7 +88,7 @@ mod with_chances {
     }
 }
 
-/// What a record came to.
+/// Result of a record.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Day {
     /// Samples a second.
@@ -121,24 +121,24 @@ impl Day {
     }
 }
 
-/// A file and what became of it.
+/// Result of a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FileResult {
     /// Path as given.
     pub path: String,
-    /// Digest of its bytes; empty where it can't be read.
+    /// Digest of the bytes; empty for a file that can't be read.
     pub sha256: String,
-    /// As it was when they were read.
+    /// Size and time of the file when its bytes were read.
     pub stamp: Option<Stamp>,
     /// The vehicle.
     pub vehicle: String,
     /// The day.
     pub day: String,
-    /// What it came to, or why to nothing.
+    /// Result of the record, or the reason why the record gives no result.
     pub result: Result<Day, String>,
 }
 
-/// What a record came to but for its loads and gauges, which are large.
+/// Result of a record without its loads and gauges, which are large.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct DayHead {
     /// Samples a second.
@@ -152,20 +152,20 @@ pub struct DayHead {
     pub findings: Vec<Finding>,
 }
 
-/// A file and what became of it, in a few hundred bytes: all files of a fleet are in memory as these.
+/// Result of a file in a few hundred bytes. All files of a fleet are in memory in this form.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileHead {
     /// Path as given.
     pub path: String,
-    /// Digest of its bytes; empty where it can't be read.
+    /// Digest of the bytes; empty for a file that can't be read.
     pub sha256: String,
-    /// As it was when they were read.
+    /// Size and time of the file when its bytes were read.
     pub stamp: Option<Stamp>,
     /// The vehicle.
     pub vehicle: String,
     /// The day.
     pub day: String,
-    /// What it came to, or why to nothing.
+    /// Result of the record, or the reason why the record gives no result.
     pub result: Result<DayHead, String>,
 }
 

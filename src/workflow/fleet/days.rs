@@ -23,24 +23,24 @@ pub enum DayOrder {
     MonthFirst,
 }
 
-/// Days of which nobody knows which comes first.
+/// Days whose order is ambiguous.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unordered {
-    /// What is wrong.
+    /// Reason why the order is ambiguous.
     pub wrong: String,
-    /// What to do.
+    /// Remedy.
     pub remedy: &'static str,
 }
 
-/// A date in a name that does not begin with its year.
+/// Date in a name with the year last.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Date {
     year: u32,
-    /// The two others, as they stand.
+    /// First and second number before the year.
     two: [u32; 2],
-    /// Whether points divide them, or a word says the month: the day comes first.
+    /// Whether the name determines the order of day and month: points between the numbers, or the month as a word. The day is then first.
     is_told: bool,
-    /// Whether two digits stand for the year, as they may for the part of a section or a version.
+    /// Whether the year has two digits, which may also be the number of a section or a version.
     is_short: bool,
 }
 
@@ -140,7 +140,7 @@ fn by_date(first: First, a: &str, b: &str) -> Ordering {
 #[derive(Clone, Copy)]
 struct Word<'a> {
     text: &'a str,
-    /// What stands before it.
+    /// Text between this word and the word before it.
     mark: &'a str,
 }
 

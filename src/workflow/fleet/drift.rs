@@ -12,22 +12,22 @@ const DAYS: usize = 5;
 /// Sigmas of the model's error by which the loads of a day may move the mean of a right gauge.
 const OF_MODEL: f64 = 3.0;
 
-/// A line through the offsets of a gauge by the number of the day.
+/// Line through the offsets of a gauge by the number of the day.
 struct Trend {
-    /// From the first to the last day, microstrain.
+    /// Change from the first to the last day, microstrain.
     moved: f64,
-    /// Of the days about the line, microstrain.
+    /// Scatter of the days about the line, microstrain.
     scatter: f64,
-    /// What noise and the model's error may move it, microstrain.
+    /// Change that noise and the model's error can cause, microstrain.
     small: f64,
     /// Number of the first and last day.
     ends: [usize; 2],
-    /// What of it stands in the gauge's residual, over the root of its share there: largest for the gauge that moves (Cauchy and Schwarz), whose
-    /// movement others show too.
+    /// Change in the gauge's own residual, divided by the root of the gauge's share in it: `moved * sqrt(1 - leverage)`. It is largest for the gauge
+    /// that moves (Cauchy and Schwarz), although the residuals of other gauges change too.
     weight: f64,
 }
 
-/// The line by least squares; `None` where it does not rise out of the scatter, with a chance of [`ALARM`] over all gauges, or not out of noise
+/// Fits the line by least squares. `None` if it is not significant against the scatter (chance [`ALARM`] over all gauges), or not larger than noise
 /// and the model's error.
 fn trend(g: &GaugeHistory, v: &VehicleAnswer, errors: &ErrorModel) -> Option<Trend> {
     let known = g.offset.iter().enumerate();

@@ -23,7 +23,7 @@ pub(super) struct Exchange {
 }
 
 impl Exchange {
-    /// What is to be known of it; `names` by gauge.
+    /// Returns the finding on the exchange; `names` by gauge.
     pub fn finding(&self, names: &[String]) -> Finding {
         let [a, b] = self.gauges.map(|g| names.get(g).map_or("", String::as_str));
         let [before, after] = [self.before, self.after].map(|v| v / MICROSTRAIN);

@@ -160,7 +160,7 @@ mod tests {
         is_told(&alike, of, all)
     }
 
-    /// As many right records as a year has raise the alarm as seldom as one does; a gauge that is off shows in more of them.
+    /// Correct records of a year give an alarm as rarely as one correct record. A wrong gauge is suspect in more of them.
     #[test]
     fn a_suspect_on_a_few_of_many_days_is_chance_and_on_more_is_told() {
         let told = |n, certain, chance, of| is_told_of(n, certain, chance, [of, of]);

@@ -13,7 +13,7 @@ const MOVES: f64 = 0.1;
 /// From which a gain is another one: glue, wires and amplifiers of a sound gauge stay well within. A gauge with less than this share of what the
 /// others predict for it gives no signal.
 const OFF: f64 = 0.1;
-/// What is named of a record by its cause, and makes of the gains and zeros of that day what they are not.
+/// Codes of findings that identify the cause in a record. Gains and zeros of that day are then invalid.
 const CAUSES: [&str; 3] = ["inputs-exchanged", "input-sign-reversed", "gauge-dead"];
 
 /// A gauge of a vehicle over its days.
@@ -21,22 +21,22 @@ const CAUSES: [&str; 3] = ["inputs-exchanged", "input-sign-reversed", "gauge-dea
 pub struct GaugeHistory {
     /// Name of the gauge.
     pub name: String,
-    /// Days on which it gave nothing or one value, all day or a part of it.
+    /// Days on which the gauge is dead (no readings) or stuck (constant), all day or for a part of it.
     pub dead_days: Vec<String>,
-    /// Those parts of days.
+    /// Parts of days in which the gauge is dead or stuck.
     pub dead_parts: Vec<DeadPart>,
     /// Mean reading of each day, microstrain.
     pub mean: Vec<Option<f64>>,
-    /// Scatter of its readings on each day, microstrain.
+    /// Standard deviation of the readings on each day, microstrain.
     #[serde(skip)]
     pub sd: Vec<Option<f64>>,
     /// Noise of each day, microstrain.
     pub noise: Vec<Option<f64>>,
-    /// Gain against what the other gauges predict, each day.
+    /// Gain against the prediction from the other gauges, each day.
     pub gain: Vec<Option<f64>>,
-    /// Mean reading less what the other gauges predict, each day, microstrain.
+    /// Mean reading less the prediction from the other gauges, each day, microstrain.
     pub offset: Vec<Option<f64>>,
-    /// Share in its own prediction, each day.
+    /// Leverage on its own prediction, each day.
     #[serde(skip)]
     pub leverage: Vec<f64>,
 }
@@ -61,13 +61,13 @@ pub(super) struct GainChange {
     pub finding: Finding,
 }
 
-/// What a gauge reads on its typical day: the median of the standard deviations of those on which it reads.
+/// Returns the typical reading of a gauge: the median of its standard deviations over the days with readings.
 fn typical(days: &[GaugeDay]) -> f64 {
     let sds = days.iter().map(|d| d.sd).filter(|s| s.is_finite());
     median(sds.collect()).unwrap_or(0.0)
 }
 
-/// On which days a vehicle moves, by the gauges that read on each.
+/// Returns for each day whether the vehicle moves, by the gauges that read.
 pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> Vec<bool> {
     let typical: Vec<f64> = gauges.iter().map(|g| typical(&g.1)).collect();
     let moves = |day: usize| {
@@ -80,8 +80,7 @@ pub(super) fn moving_days(gauges: &[(String, Vec<GaugeDay>)], n_days: usize) -> 
 }
 
 impl GaugeHistory {
-    /// That of a gauge whose days have these names.
-    /// `moves` says on which days the vehicle moved.
+    /// Returns the history of gauge `name` over the days with these names. `moves`: whether the vehicle moved on each day.
     pub(super) fn of(name: &str, days: &[GaugeDay], names: &[String], moves: &[bool]) -> Self {
         let typical = typical(days);
         let finite = |x: f64| x.is_finite().then_some(x);

@@ -1,4 +1,4 @@
-//! What the readings of a day say of each gauge.
+//! State of each gauge from its readings of a day.
 
 use super::day::GaugeDay;
 use crate::units::MICROSTRAIN;
@@ -117,7 +117,7 @@ impl Health {
         }
     }
 
-    /// What is kept, `leverage` by gauge.
+    /// Returns the result of each gauge to store; `leverage` by gauge.
     pub fn days(&self, names: &[String], leverage: &[f64]) -> Vec<GaugeDay> {
         let gauges = names.iter().zip(&self.sums).zip(leverage);
         gauges.map(|((name, s), h)| s.day(name, *h)).collect()

@@ -22,19 +22,19 @@ struct Extreme {
     strain: Vec<f64>,
 }
 
-/// The samples to be judged, of a part of a record or of the whole.
+/// Samples that are tested, of a part of a record or of the whole record.
 #[derive(Clone, Debug, Default)]
 pub struct Judged {
     n_gauges: usize,
     n_loads: usize,
     stride: usize,
     spread: BTreeMap<usize, Vec<f64>>,
-    /// Of each load the largest, and the smallest.
+    /// Samples with the largest and the smallest value of each load, in pairs.
     extremes: Vec<Extreme>,
 }
 
 impl Judged {
-    /// None yet, of a record of `samples`.
+    /// Creates a selection without samples for a record of `samples`.
     pub fn new(n_gauges: usize, n_loads: usize, samples: usize) -> Self {
         let spread = JUDGED.saturating_sub(2 * n_loads).max(JUDGED / 2);
         let none = Extreme {
@@ -117,18 +117,18 @@ impl Judged {
         ends.collect()
     }
 
-    /// The samples spread over the record, strain less zero.
+    /// Returns the samples spread over the record, strain less zero.
     pub fn spread(&self) -> Vec<Vec<f64>> {
         self.spread.values().cloned().collect()
     }
 
-    /// The same, each with its number.
+    /// Returns the samples spread over the record, each with its number.
     pub fn numbered(&self) -> impl Iterator<Item = (usize, &[f64])> {
         self.spread.iter().map(|(at, strain)| (*at, &**strain))
     }
 
-    /// What recovery makes of all of them, and, where the loads explain these, of the extremes alone: among two hundred a single wrong one may
-    /// drown. None where no gauge reads.
+    /// Recovers all of these samples. If the loads explain them, recovers the extremes alone too: among 200 samples a single wrong one may not be
+    /// significant. Empty if no gauge reads.
     pub fn recovered(
         self,
         s: &Sensitivity,
@@ -183,7 +183,7 @@ fn is_of_samples(f: &Finding) -> bool {
     OF_SAMPLES.contains(&f.code)
 }
 
-/// What recovery says of its samples as findings of the record. Notes are left out: by chance one right record in twenty has one.
+/// Converts the findings on samples into findings of the record. Info findings are left out: one correct record in twenty has one by chance.
 fn findings_of_one(recovery: Recovery) -> Vec<Finding> {
     let mut out: Vec<Finding> = Vec::new();
     let mut subjects: BTreeMap<&str, Vec<String>> = BTreeMap::new();

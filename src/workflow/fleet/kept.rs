@@ -12,21 +12,21 @@ use std::path::{Path, PathBuf};
 
 /// Folder of the kept results within the output folder.
 pub const FOLDER: &str = "days";
-/// Counts up when what is kept changes its meaning.
+/// Number of the form of a stored result, raised when its meaning changes.
 const FORM: u32 = 10;
-/// What stands before the digest of a kept result, which ends its file.
+/// Text before the digest at the end of a stored result.
 const SEAL: &[u8] = b",\"content\":\"";
 
-/// A kept result; `D` is what is read of its day.
+/// Stored result; `D` is the part of its day that is read.
 #[derive(Serialize, Deserialize)]
 struct Kept<D> {
     form: u32,
     version: String,
-    /// Digest of what a record of the job depends on beside its bytes.
+    /// Digest of the inputs that the result of a record depends on, without the bytes of the record.
     job: String,
     path: String,
     sha256: String,
-    /// As the file was when its bytes were read.
+    /// Size and time of the file when its bytes were read.
     stamp: Option<Stamp>,
     vehicle: String,
     day: String,
@@ -34,7 +34,7 @@ struct Kept<D> {
     failed: Option<String>,
 }
 
-/// Whose a kept result is: what can be told of one of another form.
+/// Identity of a stored result, which is readable for other forms too.
 #[derive(Deserialize)]
 struct Whose {
     form: u32,
@@ -42,35 +42,35 @@ struct Whose {
     job: String,
 }
 
-/// What a file of the folder is.
+/// Kind of a file in the folder.
 enum Found {
     Own(FileHead),
-    /// Of another job, version or form.
+    /// Result of another job, version or form.
     Other,
-    /// It can't be read, or holds something else than was written.
+    /// File that can't be read, or whose content has changed.
     Damaged,
 }
 
-/// Kept results of one job.
+/// Stored results of one job.
 pub struct KeptDays {
     folder: PathBuf,
     job: String,
 }
 
-/// What a folder holds.
+/// Content of a folder of stored results.
 #[derive(Default)]
 pub struct Held {
     /// Files of this job, by path.
     pub files: Vec<FileHead>,
     /// Results of another job, version or form.
     pub others: usize,
-    /// Paths of kept results that can't be read, or hold something else than was written.
+    /// Paths of stored results that can't be read, or whose content has changed.
     pub damaged: Vec<String>,
-    /// Records that runs of this job were asked for.
+    /// Records requested by runs of this job.
     pub asked: Vec<Asked>,
 }
 
-/// A kept result with its digest at its end, JSON as before.
+/// Adds the digest of a stored result at its end; the result remains valid JSON.
 fn sealed(mut json: Vec<u8>) -> Vec<u8> {
     let seal = hex(&Sha256::digest(&json));
     json.pop();
@@ -122,7 +122,7 @@ pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
 }
 
 impl KeptDays {
-    /// Those of a job, whose digest is `job`, in an output folder.
+    /// Returns the stored results in an output folder of the job with digest `job`.
     pub fn new(out: &Path, job: String) -> Self {
         Self {
             folder: out.join(FOLDER),
@@ -139,13 +139,13 @@ impl KeptDays {
             .join(format!("{}.json", key.get(..32).unwrap_or(&key)))
     }
 
-    /// What became of a file with this path when it was done last, whatever its bytes were, where it is kept.
+    /// Returns the last stored result of the file with this path, for any content of the file; `None` if no result is stored.
     pub fn latest(&self, path: &str) -> Option<FileHead> {
         let bytes = std::fs::read(self.place(path)).ok()?;
         self.head_of(&bytes).filter(|f| f.path == path)
     }
 
-    /// What became of a file with these bytes and this path, where it is kept.
+    /// Returns the stored result of the file with this path and these bytes; `None` if no result is stored.
     pub fn head(&self, path: &str, sha256: &str) -> Option<FileHead> {
         self.latest(path).filter(|f| f.sha256 == sha256)
     }

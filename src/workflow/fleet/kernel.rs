@@ -37,19 +37,19 @@ const LOOKED_AT: usize = 10;
 /// Samples of them that tell whether the vehicle moves.
 const ENOUGH: usize = 200;
 
-/// What a record gives in one pass.
+/// Result of one pass over a record.
 struct Pass {
     counters: Vec<Counter>,
     health: Health,
     missing: Missing,
     judged: Judged,
-    /// Samples in which some gauge gave nothing, by the gauges that read.
+    /// Number of samples with a missing reading, by the gauges that read.
     by_gauges: BTreeMap<Vec<usize>, u64>,
-    /// Of each load, report unit: what its cycles are counted with.
+    /// Noise of each load for the count of its cycles, report unit.
     noise: Vec<f64>,
 }
 
-/// What all records of a job share.
+/// Inputs that all records of a job share.
 pub struct Kernel {
     /// S of all gauges of the job.
     pub sensitivity: Sensitivity,
@@ -61,7 +61,7 @@ pub struct Kernel {
     pub noise_factor: f64,
     /// Range of each load of S in its calibration, job units; `None` where the job states none.
     pub ranges: Vec<Option<[f64; 2]>>,
-    /// What is counted: the loads of S, then sums of them, with their units.
+    /// Loads of S, then sums of loads, whose cycles are counted, with their units.
     pub listed: Listed,
     /// Harm of a cycle.
     pub law: Law,
@@ -69,7 +69,7 @@ pub struct Kernel {
     pub widths: Vec<f64>,
     /// Seconds in the unit of times in tables that state none; `None`: seconds.
     pub time_unit_s: Option<f64>,
-    /// What is known to be wrong with channels.
+    /// Known faults of channels and their corrections.
     pub corrections: Vec<StrainCorrection>,
     /// Names of the readings of validation gauges, which are not read.
     pub reserved: Vec<String>,
@@ -78,10 +78,10 @@ pub struct Kernel {
 }
 
 impl Kernel {
-    /// What a record comes to. Gauges that it lacks, or that give nothing, are said; the loads are recovered from the others.
+    /// Computes the result of a record. Reports gauges that are missing (no column), dead or stuck, and recovers the loads from the other gauges.
     ///
     /// # Errors
-    /// Why loads can't be had of it.
+    /// The reason why loads can't be recovered.
     pub fn day(&self, record: &Record) -> Result<Day, Faults> {
         let mut findings = Vec::new();
         let irregular = clock::irregular("time", &record.clock);
@@ -188,8 +188,8 @@ impl Kernel {
         Ok(pass)
     }
 
-    /// What recovery's judge says of samples of the record, and the estimate with the intervals that its residuals call for; `None` where the
-    /// stated errors stay, or where no interval can be relied on.
+    /// Tests samples of the record as `recover` does and adds the findings. Returns the estimate with the intervals that the residuals require, and
+    /// the noise of the gauges. `None` if the stated errors remain valid, or if no interval is reliable.
     fn judge(
         &self,
         r: &Recovering,

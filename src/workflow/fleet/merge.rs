@@ -8,18 +8,18 @@ use crate::series::rainflow::{DamageInterval, DamageParts, Ratio, Tally};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// What became of a file.
+/// Status of a file in a merge.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Status {
-    /// It counts.
+    /// The file counts.
     Done,
-    /// It can't be read, or loads can't be had of it.
+    /// The file can't be read, or its loads can't be recovered.
     Failed(String),
-    /// Another file holds the same bytes.
+    /// Another file contains the same bytes.
     Copy(String),
-    /// A file of another vehicle holds the same bytes.
+    /// A file of another vehicle contains the same bytes.
     Foreign(String),
-    /// Another file is the same day, and holds other bytes.
+    /// Another file with other bytes is of the same day.
     Second(String),
 }
 

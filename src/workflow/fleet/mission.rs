@@ -21,15 +21,15 @@ pub struct MissionLoad {
     pub damage_high: f64,
     /// Standard deviation from the error of S, the same on all days.
     pub sigma_s: f64,
-    /// From the scatter of noise.
+    /// Standard deviation from the scatter of noise.
     pub sigma_noise: f64,
-    /// Of the bias of noise that was taken off.
+    /// Standard deviation of the noise bias that was subtracted.
     pub sigma_bias: f64,
-    /// From the scatter between days of one kind, outside of the interval; `None` where a kind has one day.
+    /// Standard deviation from the scatter between days of one kind, which is not part of the interval; `None` if a kind has one day.
     pub sigma_days: Option<f64>,
     /// Damage an hour of each kind.
     pub by_kind: Vec<f64>,
-    /// What cycles that close between days may add to the damage at most: they are left out of it.
+    /// Upper bound of the damage of cycles that close between days, which `damage` leaves out.
     pub between_days_at_most: f64,
 }
 
@@ -40,9 +40,9 @@ pub struct KindAnswer {
     pub name: String,
     /// Share of the hours.
     pub share: f64,
-    /// Records of it.
+    /// Number of records of this kind.
     pub files: usize,
-    /// Their hours.
+    /// Hours of these records.
     pub hours: f64,
 }
 
@@ -67,14 +67,14 @@ struct KindSums {
     loads: Vec<LoadSums>,
 }
 
-/// Of a load, sums over the days of a kind.
+/// Sums over the days of a kind for one load.
 struct LoadSums {
     name: String,
     unit: String,
     damage: DamageParts,
-    /// Of the hours in which it is known, and of their squares.
+    /// Sum of the hours in which the load is known, and sum of their squares.
     hours: [f64; 2],
-    /// Of squares of the days' damages, and of products with their hours.
+    /// Sum of the squared damages of the days, and sum of the products of damage and hours.
     squares: [f64; 2],
     /// Smallest and largest value.
     ends: [f64; 2],
@@ -270,12 +270,12 @@ fn wider(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// What cycles that close between days may add to the sum of the damages of single days: half a cycle from the smallest to the largest value of all
-/// at each border of two days, by the straight line of the law.
+/// Returns the upper bound of the damage that cycles closing between days add to the sum of the damages of single days. The bound adds half a cycle
+/// at each border of two days. Its range is from the smallest to the largest value of all days, by the straight line of the law.
 ///
-/// The count of a history at levels u < v is half the number of its passages from u to v and back, and its damage `sum of d(range)` is the integral
-/// of that count with the weight `d''(v - u)`. Where two days meet, the passages are those of both and one more at most, and none where a level lies
-/// beyond the extremes: `d(max - min) / 2`. A knee, at which d is not convex, makes it an estimate.
+/// The count of a history at levels u < v is half the number of its passages from u to v and back. The damage `sum of d(range)` is the integral of
+/// that count with the weight `d''(v - u)`. At the border of two days there is at most one passage more than in both days. There is no passage if a
+/// level is beyond the extremes. This adds `d(max - min) / 2`. With a knee, at which d is not convex, the bound is an estimate.
 ///
 /// # Reference
 /// I. Rychlik, Note on cycle counts in irregular loads, Fatigue Fract. Eng. Mater. Struct. 16 (1993) 377: passages of intervals.

@@ -61,18 +61,18 @@ use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What is asked of a fleet.
+/// Inputs of a fleet run.
 #[derive(Clone, Debug, Default)]
 pub struct FleetSpec {
-    /// Records, folders of records and patterns, relative to the working folder ([`records::records_of`]); none: what the output folder holds is
-    /// merged.
+    /// Records, folders of records and patterns, relative to the working folder ([`records::records_of`]). If empty, the results in the output folder
+    /// are merged.
     pub files: Vec<PathBuf>,
-    /// The part of them that is done here; all where `None`.
+    /// Part of the records to process; all records if `None`.
     pub shard: Option<Shard>,
-    /// The output folder, where the results of single files are kept.
+    /// Output folder, which also stores the results of single files.
     pub folder: PathBuf,
-    /// SHA-256 of records by path, as another process read them: one whose result is kept is not read again, as long as its size and the time of
-    /// its last change are those at which it was done. One that is out of reach here is what that process read.
+    /// SHA-256 of records by path, as computed by another process. A record with a stored result is not read again if its size and its time of change
+    /// are unchanged. A record that can't be reached here counts by the digest of that process.
     pub digests: BTreeMap<String, String>,
 }
 
@@ -156,7 +156,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// What the days come to.
+/// Result of merging the days.
 struct Merged {
     vehicles: Vec<VehicleAnswer>,
     status: Vec<Status>,
@@ -220,7 +220,7 @@ fn job_digest(work: &mut Work, job: &Job, keys: &FleetKeys) -> String {
     digest(&parts)
 }
 
-/// What the output folder holds.
+/// Reads the stored results of the output folder.
 fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead>, usize), Faults> {
     let shown = folder.display().to_string();
     let held = kept.all().map_err(|e| {
@@ -442,10 +442,10 @@ fn reason(faults: Faults) -> String {
     each.join("; ")
 }
 
-/// What a record comes to.
+/// Computes the result of a record.
 ///
 /// # Errors
-/// Why they come to nothing.
+/// The reason why the loads or their damage can't be computed.
 pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
     let options = Options {
         declared_hz: None,

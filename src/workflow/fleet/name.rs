@@ -15,12 +15,12 @@ enum Part {
     Any,
 }
 
-/// What a file name tells.
+/// Vehicle and day in a file name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Named {
     /// The vehicle.
     pub vehicle: String,
-    /// The day, as the name has it.
+    /// Day, as written in the name.
     pub day: String,
 }
 

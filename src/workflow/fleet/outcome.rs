@@ -48,13 +48,13 @@ pub struct VehicleLoadAnswer {
     pub damage_high: f64,
     /// Damage as counted.
     pub damage_counted: f64,
-    /// What noise added, in the mean.
+    /// Expected damage that noise added.
     pub noise_bias: f64,
     /// Standard deviation from the error of S, the same on all days.
     pub sigma_s: f64,
-    /// From the scatter of noise, which averages out.
+    /// Standard deviation from the scatter of noise, which averages out.
     pub sigma_noise: f64,
-    /// Of the bias that was taken off.
+    /// Standard deviation of the noise bias that was subtracted.
     pub sigma_bias: f64,
     /// Damage an hour over that of all vehicles together.
     pub relative: f64,
@@ -125,7 +125,7 @@ pub struct FileAnswer {
     pub rate_hz: Option<f64>,
     /// Samples missing in gaps.
     pub missing: Option<usize>,
-    /// What was found in the record.
+    /// Findings of the record.
     pub findings: Vec<Finding>,
 }
 
@@ -136,7 +136,7 @@ impl FileAnswer {
         self.status == Status::Done.word() && self.findings.iter().any(is_error)
     }
 
-    /// Why it does not count, or else the codes of what was found in it.
+    /// Returns the reason why the file does not count, or else the codes of its findings.
     pub fn words(&self) -> String {
         let codes: BTreeSet<&str> = self.findings.iter().map(|f| f.code).collect();
         match self.message.is_empty() {
@@ -183,7 +183,7 @@ impl Answer for Fleet {
 }
 
 impl VehicleAnswer {
-    /// What is told of a vehicle; [`VehicleAnswer::compare`] sees the others.
+    /// Returns the answer of a vehicle without its comparison with other vehicles; [`VehicleAnswer::compare`] adds that.
     pub(super) fn of(v: Vehicle, keys: &FleetKeys) -> Self {
         let moves = moving_days(&v.gauges, v.days.len());
         Self {
@@ -339,7 +339,7 @@ impl Fleet {
         }
     }
 
-    /// What is to be known: files that don't count, gauges that died, findings of single records.
+    /// Returns the findings of the fleet: files that don't count, dead gauges, findings of single records.
     pub(super) fn findings(
         &self,
         files: &[FileHead],
@@ -393,9 +393,9 @@ impl Fleet {
     }
 }
 
-/// Says that what noise makes of the ranges is most of the damage that was counted.
+/// Returns the finding that noise causes most of the counted damage.
 fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
-    /// Of the damage counted.
+    /// Limit of the noise bias, as a share of the counted damage.
     const MOST: f64 = 0.5;
     let share = l.noise_bias / l.damage_counted;
     (share > MOST).then(|| {
@@ -410,9 +410,9 @@ fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
     })
 }
 
-/// Says that a load is known for less time than others are: its damage is that of fewer hours.
+/// Returns the finding that a load is known for less time than other loads; its damage covers fewer hours.
 fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
-    /// Of the hours: so much damage more is well within what days differ by.
+    /// Limit of the missing hours, as a share of all hours. The corresponding difference in damage is small against the differences between days.
     const MISSING: f64 = 0.05;
     let missing = 1.0 - l.hours / v.hours;
     (missing > MISSING).then(|| {

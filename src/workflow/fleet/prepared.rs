@@ -20,7 +20,7 @@ use crate::workflow::recover::listed;
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
 
-/// What all records of a job share: S solved or read, zero and reference, stated errors, S-N line, classes.
+/// Prepares the inputs that all records of a job share: S solved or read, zero and reference, stated errors, S-N line, classes.
 ///
 /// # Errors
 /// Every fault of the job and of the files it names.

@@ -72,21 +72,21 @@ pub(super) struct Recovering {
     pub samples: usize,
 }
 
-/// What a piece of a record gives.
+/// Result of a piece of a record.
 pub(super) struct Part {
     /// Loads in report units, row by row.
     pub loads: Vec<f64>,
-    /// What tells its samples apart.
+    /// Mark of each sample, computed from its loads ([`Marks`]).
     pub marks: Vec<u64>,
     pub health: Health,
     pub missing: Missing,
     pub judged: Judged,
-    /// Samples in which some gauge gave nothing, by the gauges that read.
+    /// Number of samples with a missing reading, by the gauges that read.
     pub by_gauges: BTreeMap<Vec<usize>, u64>,
 }
 
 impl Part {
-    /// Counts the samples of loads in which some gauge gave nothing.
+    /// Counts the samples with a missing reading by the gauges that read.
     fn count_gaps(&mut self, recovered: &SampleLoads) {
         for gain in recovered.gaps.iter().filter_map(|g| g.1.as_deref()) {
             match self.by_gauges.get_mut(&gain.used) {

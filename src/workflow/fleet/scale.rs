@@ -75,10 +75,10 @@ pub(super) fn scales(
         .collect()
 }
 
-/// Of each load the matrix B by which its variance, by `sigma` at loads, gains `f' B f` with the loads `f`: its diagonal from loads that act alone,
-/// the rest from pairs of them.
+/// Returns a matrix B for each load. The variance of the load, by `sigma` at loads `f`, grows by `f' B f`. The diagonal comes from loads that act
+/// alone, the other entries from pairs of loads.
 ///
-/// `scales` are sizes of the loads, `factors` report units per job unit, of sums of loads too, which stand behind the loads and are known by these.
+/// `scales`: sizes of the loads. `factors`: report units per job unit, of the loads, then of the sums of loads, which the loads determine.
 fn covariances(
     scales: &[f64],
     factors: &[f64],

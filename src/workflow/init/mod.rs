@@ -196,7 +196,7 @@ fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
     Ok(target)
 }
 
-/// What stops placing before it is tried; `None`: nothing that shows.
+/// Returns the finding on an obstacle that stops placing before a trial: faults of the deck, no shells, unknown units.
 fn obstacle(deck: &DeckModel, given: &str, units_open: bool) -> Option<Finding> {
     let m = &deck.model;
     let stop = |code, message: String, remedy: &str| {

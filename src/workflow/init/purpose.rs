@@ -1,4 +1,4 @@
-//! What a job is written for: the sections that its command needs, commented, instead of those that come after placing.
+//! Jobs for one command: the sections that the command needs, commented, instead of the sections that follow placing.
 
 use super::Proposal;
 use super::text::{JOB, LATER};
@@ -9,7 +9,7 @@ use crate::host::work::Work;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What a job is written for beside placing gauges and recovering loads.
+/// Command of a job, other than placing gauges and recovering loads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// `payload`.

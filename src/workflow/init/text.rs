@@ -20,18 +20,18 @@ const MOST_PROPERTIES: usize = 60;
 /// The file of a proposed job.
 pub const JOB: &str = "job.toml";
 
-/// What a job is written of.
+/// Inputs of the text of a job.
 #[derive(Clone)]
 pub(super) struct JobPlan<'a> {
     pub deck: &'a DeckModel,
     pub deck_path: &'a Path,
     pub results: &'a [PathBuf],
-    /// The folder that the job will lie in.
+    /// Folder of the job.
     pub folder: &'a Path,
-    /// `None`: left open.
+    /// System of units; `None` leaves it open.
     pub system: Option<UnitSystem>,
     pub from: StrainFrom,
-    /// Why results that were given are left out.
+    /// Reason why given results are left out.
     pub without_results: &'a str,
     pub loads: &'a [ProposedLoad],
     /// Loads and subcases that are not proposed.
@@ -106,7 +106,7 @@ impl JobPlan<'_> {
         )
     }
 
-    /// What holds the structure.
+    /// Returns the `support` line of the job, with a comment on the support.
     fn support(&self) -> String {
         let held = Support::free(&self.deck.model);
         match self.deck.model.selected_spcs.as_slice() {

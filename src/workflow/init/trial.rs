@@ -17,22 +17,22 @@ const MOST_GRIDS: usize = 100_000;
 /// Trials at most.
 const MOST_TRIALS: usize = 24;
 
-/// What came of the trials.
+/// Result of the trials.
 pub(super) struct Verdict {
     /// job.toml.
     pub text: String,
-    /// Names of its loads.
+    /// Names of the loads in `text`.
     pub loads: Vec<String>,
     /// Loads and subcases that are left out.
     pub left_out: Vec<LeftOutLoad>,
     /// Whether `place` can be recommended.
     pub places: bool,
-    /// What is to be said of it.
+    /// Warning if `place` finds no gauges for any proposal.
     pub finding: Option<Finding>,
 }
 
 impl Verdict {
-    /// The job as planned, not to be recommended, for reasons said elsewhere.
+    /// Returns the job as planned, which is not recommended.
     pub(super) fn hopeless(plan: &JobPlan) -> Self {
         Self {
             text: plan.text(),

@@ -19,7 +19,7 @@ pub struct Weighed {
     pub payload: Vec<WeighedPayload>,
     /// By run and gauge.
     pub by_gauge: Vec<SingleGauge>,
-    /// What each gauge reads of each run, less its zero.
+    /// Net reading of each gauge in each run: reading less zero.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub net: Vec<NetReading>,
     /// Rank and condition numbers of S, where strain is used and S is the model's.
@@ -28,7 +28,7 @@ pub struct Weighed {
     /// The runs as they were weighed.
     #[serde(skip)]
     pub runs: Vec<PayloadRun>,
-    /// All that weighing says.
+    /// Complete result of the weighing.
     #[serde(skip)]
     pub weighing: Weighing,
     /// S and gauges, where strain is used.
@@ -126,11 +126,11 @@ impl WeighedPayload {
 pub struct Ellipse {
     /// Half axes, the longer first.
     pub half_axes: [f64; 2],
-    /// Of the longer one, from the first axis of the plan.
+    /// Angle of the longer half axis from the first axis of the plan.
     pub angle_deg: f64,
 }
 
-/// What one gauge alone says of a run.
+/// Payload of a run from one gauge alone.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SingleGauge {
     /// The run.
@@ -141,9 +141,9 @@ pub struct SingleGauge {
     pub estimate: Option<f64>,
     /// Standard deviation of the estimate.
     pub sigma: Option<f64>,
-    /// Whether it counts.
+    /// Whether the gauge is used.
     pub used: bool,
-    /// Why, or why not.
+    /// Reason why the gauge is used or not.
     pub reason: String,
 }
 

@@ -198,7 +198,7 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
     }
 }
 
-/// What there is to say of every run, and of the gauges that carry nothing.
+/// Reports the findings on every run, and on the gauges that are not used.
 pub(super) fn findings(
     work: &mut Work,
     task: &Task,

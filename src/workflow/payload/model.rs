@@ -187,7 +187,7 @@ fn report_units(task: &Task) -> [f64; 3] {
     [1.0 / task.force, shift, shift]
 }
 
-/// What a calibrated S leaves uncertain of the columns of `p`: `columns` holds for each the load of S that it is, with its sign.
+/// Returns the uncertainty of the columns of `p` from a calibrated S. `columns`: for each column its load of S, with its sign.
 fn calibrated(
     task: &Task,
     s: &Sensitivity,

@@ -1,4 +1,4 @@
-//! What the runs read: net strain with its noise, changes of the wheel forces, known places.
+//! Readings of the runs: net strain with its noise, changes of the wheel forces, known places.
 
 use super::task::Task;
 use crate::finding::{Finding, Severity, few};
@@ -22,7 +22,7 @@ use serde::Serialize;
 /// Noise of a wheel force where the job states none, of the largest.
 pub(super) const ASSUMED_NOISE: f64 = 0.01;
 
-/// What a gauge reads of a run, less its zero.
+/// Net reading of a gauge in a run: reading less zero.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NetReading {
     /// The run.
@@ -33,15 +33,15 @@ pub struct NetReading {
     pub net_microstrain: Option<f64>,
     /// Standard deviation of the net reading, microstrain.
     pub sigma_microstrain: Option<f64>,
-    /// Their ratio.
+    /// Net reading over its standard deviation.
     pub signal_to_noise: Option<f64>,
 }
 
-/// What was read.
+/// Readings of all runs.
 pub(super) struct Readings {
     /// The runs to be weighed.
     pub runs: Vec<PayloadRun>,
-    /// What each gauge reads of each run, less its zero.
+    /// Net reading of each gauge in each run: reading less zero.
     pub net: Vec<NetReading>,
 }
 
@@ -480,7 +480,7 @@ fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String
     }
 }
 
-/// What each gauge reads of each run, less its zero.
+/// Returns the net reading of each gauge in each run.
 fn net_rows(model: &PayloadModel, runs: &[(String, Vec<Net>)]) -> Vec<NetReading> {
     let of_run = |(run, nets): &(String, Vec<Net>)| -> Vec<NetReading> {
         let gauges = model.gauges.iter().zip(nets);

@@ -1,4 +1,4 @@
-//! What a job states of a payload, its place and its recorded mass, compared with what was read.
+//! Stated place and recorded mass of a payload, compared with the readings.
 
 use super::model::Parts;
 use super::task::Task;

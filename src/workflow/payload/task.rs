@@ -1,4 +1,4 @@
-//! What is asked of a payload.
+//! Inputs of `payload`.
 
 use crate::job::{Job, Payload};
 

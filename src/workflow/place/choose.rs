@@ -236,13 +236,13 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
     })
 }
 
-/// What a bundle is: wiring, site and angle of each grid or bridge in it; a rosette's legs are three of the quarter kind.
+/// Content of a bundle: wiring, site and angle of each grid or bridge in it. The legs of a rosette are three grids of the quarter kind.
 struct Described {
     members: Vec<(usize, Choice)>,
     rosette: bool,
 }
 
-/// Bundles of rows to choose from, with their costs, and what each is.
+/// Bundles of rows to choose from, with the cost and the content of each.
 struct DescribedBundles<'a> {
     kinds: &'a [Kind],
     bundles: Bundles,

@@ -1,4 +1,4 @@
-//! What is to be said of a layout.
+//! Findings on a layout.
 
 use super::choose::{Channel, Chosen};
 use super::outcome::PlacedGauge;
@@ -14,7 +14,7 @@ use crate::strain_chain::{LoadSigma, LoadUnits};
 use crate::units::{Quantity, Unit, is_unit_load};
 use crate::workflow::recover::Listed;
 
-/// The standard deviations in job order.
+/// Puts the standard deviations and the covariance into job order.
 pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
     let ordered = q.sigma.clone();
     for (i, &l) in order.iter().enumerate() {
@@ -24,7 +24,7 @@ pub(super) fn in_job_order(mut q: Quality, order: &[usize]) -> Quality {
     q
 }
 
-/// The same of a covariance.
+/// Returns a covariance in job order.
 fn covariance_in_job_order(covariance: &[f64], order: &[usize]) -> Vec<f64> {
     let k = order.len();
     let mut out = vec![0.0; k * k];
@@ -155,7 +155,7 @@ pub(super) fn with_unit_loads(job: &Job, mut finding: Finding) -> Finding {
 
 /// Strain, microstrain, beyond which foil gauges tire within a test (makers rate their fatigue life at 1,500 to 2,000) and steel yields.
 const STRAIN: f64 = 2000.0;
-/// What a technician with a rule can keep, mm.
+/// Tolerance of a place that a technician can keep with a rule, mm.
 const PLACE: f64 = 1.0;
 
 /// Findings on what the workshop has to keep.

@@ -1,4 +1,4 @@
-//! What `place` answers.
+//! Answer of `place`.
 
 use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
@@ -19,9 +19,9 @@ pub struct Placed {
     pub gauges: Vec<PlacedGauge>,
     /// Files for the workshop: the table of gauges and the gluing sheets.
     pub files: [&'static str; 4],
-    /// What they were chosen from.
+    /// Candidates that the gauges were chosen from.
     pub candidates: Candidates,
-    /// What was optimised, as a job names it.
+    /// Optimality criterion, as a job names it.
     pub criterion: &'static str,
     /// ln det(S'S), rows over their standard deviations.
     pub log_det: f64,
@@ -55,7 +55,7 @@ pub struct Placed {
     pub reserved: Vec<Reserved>,
     /// The gauges that the job has, by the same measures.
     pub installed: Option<Installed>,
-    /// What other numbers of gauges give, where the job asks for it.
+    /// Results with other numbers of gauges, if the job asks for them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub how_many: Vec<CurvePoint>,
     /// S of the chosen gauges and of those that stay.
@@ -147,7 +147,7 @@ pub struct PlacedGauge {
     pub direction: [f64; 3],
     /// From the element x axis, right-handed about the element normal.
     pub angle_deg: f64,
-    /// As the technician sees that side: on the bottom it turns the other way.
+    /// Angle as the technician sees it on that side; on the bottom it turns the other way.
     pub angle_seen_deg: f64,
     /// Leverage of the gauge.
     pub leverage: f64,
@@ -155,20 +155,20 @@ pub struct PlacedGauge {
     pub expected_microstrain: f64,
     /// Wiring.
     pub bridge: &'static str,
-    /// What it is for.
+    /// Purpose of the gauge.
     pub role: Role,
     /// Standard deviation of its reading, microstrain.
     pub sd_microstrain: f64,
-    /// The error of its angle, degrees, that moves some load by 5 % of its expected size; `None`: none does.
+    /// Error of the angle, degrees, that moves some load by 5 % of its expected size; `None` if no error does.
     pub angle_budget_deg: Option<f64>,
-    /// The same for its place, model units.
+    /// Error of the place, model units, that moves some load by 5 % of its expected size; `None` if no error does.
     pub position_budget: Option<f64>,
     /// By load, its strain when that load has its expected size.
     pub strain_by_load: Vec<StrainOfLoad>,
     /// Nearest reference point, and the way from there, basic frame.
     #[serde(skip)]
     pub reference: Option<(String, [f64; 3])>,
-    /// As laid onto the model.
+    /// Gauge as laid onto the model.
     #[serde(skip)]
     pub gauge: Gauge,
 }
@@ -185,7 +185,7 @@ impl PlacedGauge {
     }
 }
 
-/// What a gauge reads of one load.
+/// Strain of a gauge under one load.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct StrainOfLoad {
     /// Load.
@@ -194,14 +194,14 @@ pub struct StrainOfLoad {
     pub microstrain: f64,
 }
 
-/// What the loss of one gauge costs.
+/// Effect of the loss of one gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorstLoss {
     /// The gauge.
     pub gauge: String,
     /// Leverage of the gauge.
     pub leverage: f64,
-    /// Efficiency left without it, 0 to 1.
+    /// Efficiency without the gauge, 0 to 1.
     pub efficiency_left: f64,
 }
 
@@ -210,7 +210,7 @@ pub struct WorstLoss {
 pub struct Reserved {
     /// Name of the gauge.
     pub name: String,
-    /// Standard deviation of what the others predict for it, its own noise included.
+    /// Standard deviation of the reading predicted from the other gauges, its own noise included.
     pub prediction_sd_microstrain: f64,
 }
 
@@ -244,22 +244,22 @@ pub struct InstalledQuality {
     pub worst_loss: WorstLoss,
 }
 
-/// What a number of gauges gives.
+/// Results with one number of gauges.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CurvePoint {
-    /// How many.
+    /// Number of gauges.
     pub gauges: usize,
-    /// Certified share of the best possible layout of that many.
+    /// Certified share of the best possible layout with this number of gauges.
     pub efficiency_bound: f64,
     /// Scaled condition number.
     pub condition_number_scaled: Option<f64>,
-    /// Efficiency left after the worst loss.
+    /// Efficiency after the worst loss.
     pub worst_loss: f64,
     /// By load.
     pub load_sigma: Vec<BoughtSigma>,
 }
 
-/// One standard deviation of a load, and what the last gauge bought.
+/// One standard deviation of a load, and its decrease by the last gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct BoughtSigma {
     /// Load.

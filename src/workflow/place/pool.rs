@@ -18,13 +18,13 @@ const ASSUMED_STRAIN: f64 = 100.0;
 
 /// Candidates of one wiring.
 pub(super) struct Kind {
-    /// As wired.
+    /// Wiring.
     pub bridge: Bridge,
     /// Candidates of the wiring, on all sites.
     pub candidates: Candidates,
 }
 
-/// What scatters the readings of a wiring, in microstrain, at these sites.
+/// Returns the sources of scatter of the readings of a wiring at these sites, in microstrain.
 pub(crate) fn scatter(
     job: &Job,
     model: &Model,

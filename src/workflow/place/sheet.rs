@@ -1,4 +1,4 @@
-//! What the technician needs of each gauge: reference point, tolerance budget, strain by load.
+//! Data on each gauge for the technician: reference point, tolerance budget, strain by load.
 
 use super::choose::Chosen;
 use super::outcome::{PlacedGauge, StrainOfLoad};
@@ -15,7 +15,7 @@ use crate::sensitivity::LoadCaseOf;
 /// Error of a load, in shares of its expected size, for which the tolerance budget is stated.
 const BUDGET: f64 = 0.05;
 
-/// The gauges with all that the sheet says of them; `validation` are those not used for estimating.
+/// Returns the gauges with all data of the sheet; the gauges in `validation` are not used for estimating.
 pub(super) fn placed(
     task: &Task,
     chosen: &Chosen,

@@ -1,4 +1,4 @@
-//! What is to be placed: the job resolved on its model.
+//! Inputs of placing: the job resolved on its model.
 
 use super::pool::column_order;
 use super::region::ClearRule;
@@ -30,13 +30,13 @@ pub(super) struct Task<'a> {
     pub order: Vec<usize>,
     /// Where gauges can go.
     pub sites: Vec<Site>,
-    /// What `clear_of` leaves of the places.
+    /// Rule of `clear_of` that excludes the most shells.
     pub cleared: Option<ClearRule>,
     /// Gauges that stay.
     pub kept: Vec<Gauge>,
-    /// Their rows, columns in the candidates' order, made independent and of unit variance.
+    /// Rows of these gauges, columns in the candidates' order, made independent and of unit variance.
     pub kept_rows: Vec<Vec<f64>>,
-    /// The same as `recover` weighs them: without the gauge factor's tolerance.
+    /// Rows of these gauges with the weights of `recover`: without the gauge factor's tolerance.
     pub kept_recovered: Vec<Vec<f64>>,
     /// The S of `[sensitivity]`.
     pub given: Option<Sensitivity>,
@@ -145,7 +145,7 @@ impl<'a> Task<'a> {
         spec
     }
 
-    /// What is known beforehand without the gauges that stay.
+    /// Returns the prior information on the loads without the gauges that stay.
     pub fn without_kept(&self, spec: &Spec) -> Vec<f64> {
         let mut prior = spec.prior.clone();
         for row in &self.kept_rows {
@@ -275,7 +275,7 @@ pub(super) fn task<'a>(
     }
 }
 
-/// What a gauge reads under each load of its expected size, microstrain, job order.
+/// Returns the reading of a gauge under each load of its expected size, microstrain, job order.
 pub(super) fn by_load(task: &Task, gauge: &Gauge) -> Vec<f64> {
     task.cases
         .iter()

@@ -1,4 +1,4 @@
-//! What the extended model holds that the job did not: where it stands, its old and its new value.
+//! Differences between the extended model and the job: path, old value and new value.
 
 use super::deck_frame::DeckFrame;
 use super::described::effect_of;
@@ -13,23 +13,23 @@ use crate::reconcile::strain::{StiffnessOf, StrainFrame};
 use crate::units::number;
 use serde::Serialize;
 
-/// One thing that was added to the model.
+/// Change of the model by an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Added {
     /// Id of the effect with its place.
     pub effect: String,
     /// File and key, card, row or column.
     pub path: String,
-    /// What stood there.
+    /// Value in the job.
     pub old: String,
-    /// What stands there now.
+    /// Value in the extended model.
     pub new: String,
 }
 
 /// Path, old and new value.
 pub(super) type Place = [String; 3];
 
-/// Places as what was added for one effect.
+/// Converts places into the changes by one effect.
 pub(super) fn added(effect: &str, places: Vec<Place>) -> Vec<Added> {
     let one = |[path, old, new]: Place| Added {
         effect: effect.to_owned(),
@@ -40,7 +40,7 @@ pub(super) fn added(effect: &str, places: Vec<Place>) -> Vec<Added> {
     places.into_iter().map(one).collect()
 }
 
-/// What the effects of strain added; empty where there is no extended model.
+/// Returns the changes of the model by the effects of strain; empty without an extended model.
 pub(super) fn added_to_strain(
     job: &Job,
     frame: &StrainFrame,
@@ -61,7 +61,7 @@ pub(super) fn added_to_strain(
     effects.iter().flat_map(of).collect()
 }
 
-/// What the places of an effect are told from.
+/// Inputs for the places of an effect.
 struct Held<'a> {
     job: &'a Job,
     frame: &'a StrainFrame,
@@ -159,7 +159,7 @@ impl Held<'_> {
         }
     }
 
-    /// What the entry of a channel holds that undoes `correction`, and what those of the job held.
+    /// Returns the `[[correction]]` entry of a channel that undoes `correction`, with the value in the entries of the job.
     fn entry(&self, gauge: &str, correction: &Correction) -> Place {
         // A fault that acts before an exchange stands with the channel it is exchanged with.
         let has = |c: &&Corrected, name: &str| {
@@ -306,7 +306,7 @@ impl Held<'_> {
         )
     }
 
-    /// What was noted of a run, and what stands there now.
+    /// Returns the recorded values of a run that an effect corrects, with the old and the new value.
     fn record(&self, run: &str, noted: Noted) -> Vec<Place> {
         let frame = self.frame;
         let n_l = frame.n_loads();

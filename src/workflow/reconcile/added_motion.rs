@@ -1,4 +1,4 @@
-//! What the named effects of motion added to the job.
+//! Changes of the job by the named effects of motion.
 
 use super::added::{Added, Place, added};
 use super::extended::ExtendedModel;
@@ -7,7 +7,7 @@ use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome};
 use crate::units::number;
 use crate::vehicle::adjustment::Adjustment;
 
-/// What the effects added; empty where there is no extended model.
+/// Returns the changes by the effects; empty without an extended model.
 pub(super) fn added_to_motion(
     frame: &MotionFrame,
     outcome: &MotionOutcome,

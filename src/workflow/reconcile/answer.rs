@@ -1,4 +1,4 @@
-//! What `reconcile` answers: one type, whether strain, motion or causes were compared. What one of them alone has is `None` for the others.
+//! Answer of `reconcile`: one type for strain, motion and causes. Fields of one kind only are `None` for the other kinds.
 
 use super::added::Added;
 use super::extended::ExtendedModel;
@@ -29,37 +29,37 @@ pub struct Reconciled {
     pub named: Vec<String>,
     /// Named effects; empty unless named.
     pub effects: Vec<EffectFound>,
-    /// What came closest; `None` for causes.
+    /// Closest explanation that was tried; `None` for causes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub best_attempt: Option<Vec<EffectFound>>,
     /// Other explanations, nearest first.
     pub rivals: Vec<RivalFound>,
-    /// How far apart they are on what was not fitted.
+    /// Difference between model and measurement on data that were not fitted.
     pub gap: GapFound,
-    /// Log evidence of the named set (or best attempt) less that of no effect.
+    /// Log evidence of the named set (or best attempt) less the log evidence of no effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<f64>,
     /// Squared residual over what is allowed for, by number of readings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduced_chi2: Option<ReducedChi2>,
-    /// What remains, in words.
+    /// Residual after the named effects, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remains: Option<String>,
-    /// What would separate the first two explanations.
+    /// Measurement that would separate the first two explanations.
     pub next_measurement: String,
     /// Smallest sizes that would have been seen.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub detectable: Option<Vec<DetectableSize>>,
-    /// What only strain has.
+    /// Results for strain only.
     #[serde(flatten)]
     pub strain: Option<StrainPart>,
-    /// What only motion has.
+    /// Results for motion only.
     #[serde(flatten)]
     pub motion: Option<MotionPart>,
     /// Causes measured in every run, weighed.
     #[serde(skip)]
     pub causes: Option<CauseOutcome>,
-    /// What was added to the model: path, old and new value.
+    /// Changes of the model: path, old and new value.
     pub added: Vec<Added>,
     /// The job with the named effects in it; `None` where nothing was named or an effect can't be put into it.
     pub extended_model: Option<ExtendedModel>,
@@ -94,12 +94,12 @@ pub struct EffectFound {
     /// Place alone.
     #[serde(rename = "where")]
     pub place: Option<String>,
-    /// Its size; `None` for a cause.
+    /// Size of the effect; `None` for a cause.
     #[serde(flatten)]
     pub size: Option<SizeFound>,
-    /// Is the size one that occurs?
+    /// Whether the size is one that occurs in practice.
     pub plausible: bool,
-    /// By channel, what a cause does.
+    /// Response to a cause, by channel.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub channels: Option<BTreeMap<String, SlopeFound>>,
 }
@@ -107,7 +107,7 @@ pub struct EffectFound {
 /// Size of an effect.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SizeFound {
-    /// The first parameter; of a fault without one -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange.
+    /// First parameter. For a fault without a parameter: -1 for reversed polarity, 0 for a dead channel, 1 for an exchange.
     pub size: Option<f64>,
     /// One standard deviation of the first parameter.
     pub sigma: Option<f64>,
@@ -119,12 +119,12 @@ pub struct SizeFound {
     pub sigmas: Vec<f64>,
 }
 
-/// What a channel does under a cause.
+/// Response of a channel to a cause.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SlopeFound {
     /// Change of the reading per unit of the cause.
     pub per_unit: f64,
-    /// Its standard deviation.
+    /// Standard deviation of `per_unit`.
     pub sigma: f64,
 }
 
@@ -136,56 +136,56 @@ pub struct RivalFound {
     /// Places, joined by ` + `; `None` for causes.
     #[serde(rename = "where")]
     pub place: Option<String>,
-    /// Log evidence of the named set less that of this one.
+    /// Log evidence of the named set less the log evidence of this explanation.
     pub evidence_difference: f64,
-    /// Gap that it leaves.
+    /// Gap with this explanation.
     pub gap_after: f64,
-    /// These data can't tell it from what was named.
+    /// Whether these data can't distinguish this explanation from the named one.
     pub indistinguishable: bool,
 }
 
-/// The gap on what was not fitted.
+/// Gap on data that were not fitted.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GapFound {
-    /// What is measured by it.
+    /// Definition of the gap, in words.
     pub metric: String,
-    /// Of the analyst's model.
+    /// Gap of the analyst's model.
     pub before: f64,
-    /// With the named effects.
+    /// Gap with the named effects.
     pub after: f64,
-    /// What noise and stated uncertainty leave.
+    /// Expected gap from noise and stated uncertainty.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub floor: Option<f64>,
     /// (before^2 - after^2) / (before^2 - floor^2); zero where there is nothing to close.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub explained_share: Option<f64>,
-    /// What only strain has.
+    /// Results for strain only.
     #[serde(flatten)]
     pub strain: Option<StrainGap>,
-    /// What a gap of motion was judged on.
+    /// Kind of data on which a gap of motion was tested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub judged_by: Option<Proof>,
 }
 
-/// What a gap of strain has besides.
+/// Further numbers on a gap of strain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StrainGap {
-    /// Which runs it is judged on.
+    /// Kind of runs on which the gap is tested.
     pub basis: &'static str,
-    /// What the mesh alone makes; `None` where no finer one was solved.
+    /// Gap from the mesh alone; `None` if no finer mesh was solved.
     pub mesh: Option<f64>,
-    /// The same with the errors of the noted wheel loads found anew in every run.
+    /// Gaps with the errors of the recorded wheel loads estimated again in every run.
     pub loads_found: Option<GapNumbers>,
 }
 
 /// Reduced chi-square.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReducedChi2 {
-    /// What was fitted, the analyst's model.
+    /// Fitted data, analyst's model.
     pub before: f64,
-    /// What was fitted, effects in.
+    /// Fitted data, model with the effects.
     pub after: f64,
-    /// Held-out runs, effects in; strain alone, and only where runs were held out.
+    /// Held-out runs, model with the effects; for strain only, and only if runs were held out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub held_out: Option<f64>,
 }
@@ -201,14 +201,14 @@ pub struct DetectableSize {
     pub unit: String,
 }
 
-/// What only strain has.
+/// Results for strain only.
 #[derive(Serialize)]
 pub struct StrainPart {
-    /// Of 100 drawings of the runs, those whose best set holds every name.
+    /// Number of resampled run sets, out of 100, whose best explanation contains every named effect.
     pub wins_of_100: usize,
-    /// Noise that the readings show over the stated one.
+    /// Noise of the readings over the stated noise.
     pub noise_factor: f64,
-    /// The curve of a smooth error of the model, where one explains these data as well as any names.
+    /// Curve of a smooth error of the model, if one explains these data as well as any named effects.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub smooth: Vec<SmoothAt>,
     /// Joint covariance of the parameters of the named set (or best attempt), by rows.
@@ -217,49 +217,49 @@ pub struct StrainPart {
     pub sits: String,
     /// Gauges beyond their own floor before any effect, worst first.
     pub gauges_off_before: Vec<Misfit>,
-    /// Gauges beyond their own floor after.
+    /// Gauges beyond their own floor after the effects.
     pub gauges_off: Vec<Misfit>,
-    /// Runs beyond the floor after.
+    /// Runs beyond the floor after the effects.
     pub runs_off: Vec<Misfit>,
-    /// All that was found.
+    /// Complete outcome of the comparison.
     #[serde(skip)]
     pub outcome: StrainOutcome,
-    /// What was given.
+    /// Inputs of the comparison.
     #[serde(skip)]
     pub frame: StrainFrame,
-    /// What the model predicts as it was given, microstrain, `n_runs x n_gauges`.
+    /// Predictions of the given model, microstrain, `n_runs x n_gauges`.
     #[serde(skip)]
     pub predicted: Vec<f64>,
-    /// The same with the named effects (or best attempt) in, but for what differs from run to run.
+    /// Predictions with the named effects (or best attempt), without their parts that differ from run to run, microstrain, `n_runs x n_gauges`.
     #[serde(skip)]
     pub predicted_after: Vec<f64>,
     /// Deck and strain fields; `None` where S was given.
     #[serde(skip)]
     pub fields: Option<Fields>,
-    /// Where the stiffnesses of the named set (or best attempt) lie on the deck's model.
+    /// Positions of the stiffnesses of the named set (or best attempt) on the deck's model.
     #[serde(skip)]
     pub marked: Vec<MarkedStiffness>,
 }
 
-/// What only motion has.
+/// Results for motion only.
 #[derive(Serialize)]
 pub struct MotionPart {
     /// Where the gap of the analyst's model is largest, in words.
     pub sits: String,
-    /// By equation: in which band, when and at which size of the motion it is largest.
+    /// By equation: band, time and size of the motion at which the gap is largest.
     pub sits_at: Vec<GapSits>,
-    /// The same with the named effects (or best attempt) in.
+    /// By equation, with the named effects (or best attempt): band, time and size of the motion at which the gap is largest.
     pub sits_after: Vec<GapSits>,
     /// Joint covariance of the sizes of the named set (or best attempt), by rows.
     pub covariance: Vec<Vec<f64>>,
-    /// Measured wheel forces: what `identify` leaves over.
+    /// Measured wheel forces: residual of `identify`.
     pub wheel_force: Vec<WheelMisfit>,
     /// Both models simulated; `None` where nothing was named.
     pub simulation: Option<Simulation>,
-    /// All that was found.
+    /// Complete outcome of the comparison.
     #[serde(skip)]
     pub outcome: MotionOutcome,
-    /// What was given.
+    /// Inputs of the comparison.
     #[serde(skip)]
     pub frame: MotionFrame,
     /// The analyst's vehicle as identified, with its motion over the fitted record.
@@ -267,7 +267,7 @@ pub struct MotionPart {
     pub identified: Option<(Identification, Motion)>,
 }
 
-/// Misfit of a measured wheel force where `identify` judges it, as a share of its RMS.
+/// Misfit of a measured wheel force under `identify`, as a share of its RMS.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WheelMisfit {
     /// Channel.
@@ -292,7 +292,7 @@ pub enum Simulation {
 }
 
 impl Simulation {
-    /// What it gave.
+    /// Returns the result of the simulation, if it was possible.
     pub fn done(&self) -> Option<&SimulationFound> {
         match self {
             Self::Done(found) => Some(found),
@@ -304,9 +304,9 @@ impl Simulation {
 /// Both models simulated over the held-out record, else over the fitted one.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulationFound {
-    /// What is measured by it.
+    /// Definition of the error, in words.
     pub metric: String,
-    /// What both models were simulated on.
+    /// Kind of data on which both models were simulated.
     pub judged_by: Proof,
     /// By sensor.
     pub channels: Vec<SimulatedRow>,
@@ -319,11 +319,11 @@ pub struct SimulationFound {
 pub struct SimulatedRow {
     /// Channel.
     pub channel: String,
-    /// RMS of what was measured.
+    /// RMS of the measured signal.
     pub measured_rms: f64,
-    /// Of the analyst's model.
+    /// Error of the analyst's model.
     pub before: f64,
-    /// Of the named one.
+    /// Error of the named model.
     pub after: f64,
 }
 

@@ -1,4 +1,4 @@
-//! What is never exact: where and at what angle gauges sit, and the mesh.
+//! Errors that are always present: position and angle of gauges, and the mesh.
 
 use super::influence::influence;
 use super::model_part::ModelPart;
@@ -8,14 +8,14 @@ use crate::job::Job;
 use crate::model::Model;
 use crate::reconcile::strain::Scatter;
 
-/// A technician glues to half a degree, 1 sd, where the job states no tolerance. Of places nothing is assumed: near a bracket a
-/// millimetre is worth several percent, and a floor that high hides everything else.
+/// Error of the angle of a gauge, 1 sd, if the job states no tolerance: a technician glues to half a degree. No error of the place is assumed. Near a
+/// bracket a millimetre changes strain by several percent, and such a high floor hides all other effects.
 const ANGLE_DEG: f64 = 0.5;
-/// Of what halving the mesh changed, this much may still be to come, 1 sd. Where strain is smooth a third of it is (errors fall with the
-/// square of the width), at a point load or a corner as much again.
+/// Remaining mesh error, 1 sd, over the change by halving the mesh. Where strain is smooth it is a third of the change (errors fall with the square
+/// of the width). At a point load or a corner it is as large as the change.
 const STILL_TO_COME: f64 = 1.0;
-/// The same where the mesh was divided round the gauges alone, which sees two thirds of the whole in open rails; single coefficients err besides
-/// as where no finer mesh was solved.
+/// Remaining mesh error, 1 sd, over the change if the mesh was divided around the gauges only. In open rails this change is two thirds of the whole
+/// change. Single coefficients have the error of [`ENTRY_SHARE`] in addition, as without a finer mesh.
 const STILL_TO_COME_IN_PART: f64 = 1.5;
 /// Where no finer mesh was solved: share of the stated model uncertainty that single coefficients have besides the common factor.
 pub(super) const ENTRY_SHARE: f64 = 0.5;

@@ -9,11 +9,11 @@ use std::collections::BTreeMap;
 
 /// A change of the deck's stiffness, and its factor.
 pub(super) enum Changed {
-    /// Of a bush, by id.
+    /// Stiffness of a bush, by id.
     Bush(String, f64),
-    /// Of the moduli of some shells.
+    /// Moduli of some shells.
     Shells(Vec<usize>, f64),
-    /// Of the thickness of some PSHELL cards.
+    /// Thickness of some PSHELL cards.
     Thickness(Vec<u32>, f64),
 }
 

@@ -8,7 +8,7 @@ use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::StrainFrame;
 use toml::{Table, Value};
 
-/// What turns the readings of a channel, as the job has them, into strain of the model: `(reading - offset) / factor`.
+/// Conversion of the readings of a channel, as the job has them, into strain of the model: `(reading - offset) / factor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Undo {
     offset: f64,
@@ -25,13 +25,13 @@ impl Undo {
         angle_deg: 0.0,
     };
 
-    /// The same with `offset` taken off what it gives.
+    /// Subtracts `offset` from the converted strain.
     fn less(&mut self, offset: f64) {
         self.offset += self.factor * offset;
     }
 }
 
-/// What the weight of a mass at a place gains by the deck that is written, microstrain per kg by gauge.
+/// Name of a place, and change of the strain of a mass's weight there by the written deck, microstrain per kg by gauge.
 pub(super) type Weight = (String, Vec<f64>);
 
 /// Corrections of the named effects; `deck` of a job with a deck. `None` where they can't be said as entries of a job: channels exchanged in

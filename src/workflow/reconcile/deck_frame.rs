@@ -139,7 +139,7 @@ pub(super) fn read(
     Ok((part, deck))
 }
 
-/// The same gauges turned by 45 and by 90 degrees: what they read at three angles holds their in-plane strain.
+/// Lays the gauges turned by 45 and by 90 degrees. Their readings at three angles determine the in-plane strain.
 fn turned(
     work: &mut Work,
     job: &Job,
@@ -177,7 +177,7 @@ fn plane_strain([at_0, at_45, at_90]: [&[f64]; 3], n_columns: usize) -> Vec<Plan
         .collect()
 }
 
-/// What the job says of the gauges, with their places on the model.
+/// Returns the properties of the gauges from the job, with their places on the model.
 fn gauge_facts(job: &Job, channels: &[String], gauges: &[Gauge]) -> Vec<GaugeFacts> {
     let length_m = job.units.length_m();
     let one = |(channel, laid): (&String, &Gauge)| GaugeFacts {

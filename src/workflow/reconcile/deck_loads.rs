@@ -194,9 +194,9 @@ pub(super) fn unit(job: &Job, grid: GridIx, component: Component, size: f64) -> 
     }
 }
 
-/// What the job says of its loads.
+/// Loads of the job.
 struct JobLoads {
-    /// Name and grid of each load that is asked for.
+    /// Name and grid of each wanted load.
     wheels: Vec<(String, GridIx)>,
     /// Columns of the influence matrix: each of these loads per kN or kN m, then the payload per kg: its weight, and the moments that
     /// moving it by a metre forward and to the left brings (W dx about y, -W dy about x).
@@ -207,12 +207,12 @@ struct JobLoads {
 /// A nuisance load of the job.
 struct JobNuisance {
     name: String,
-    /// Of size `applied`.
+    /// Load of size `applied`.
     load: UnitLoad,
     applied: f64,
     /// One standard deviation, in the units of `applied`.
     size: f64,
-    /// Its set, where it is one of the deck.
+    /// Id of the load set, if the load is a set of the deck.
     set: Option<u32>,
 }
 

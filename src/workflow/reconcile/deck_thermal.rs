@@ -103,7 +103,7 @@ impl Heated {
         gauges.iter().map(of).collect()
     }
 
-    /// Those there are, even first.
+    /// Returns the unit loads that exist: even temperature first, then the pattern.
     pub(super) fn loads(&self) -> Vec<UnitLoad> {
         self.even.iter().chain(&self.pattern).cloned().collect()
     }

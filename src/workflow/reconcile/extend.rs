@@ -1,4 +1,4 @@
-//! What the named effects of strain change: readings, S, what acts in the runs, the deck.
+//! Changes by the named effects of strain: readings, S, loads of the runs, the deck.
 
 use super::corrected::{Weight, corrections, turned};
 use super::deck_frame::DeckFrame;
@@ -150,7 +150,7 @@ pub(super) fn extended(
     }))
 }
 
-/// What the weights of named masses gain by the deck that is written.
+/// Returns the change of the weight strain of each named mass by the written deck.
 fn weights_in(
     job: &Job,
     deck: &DeckFrame,
@@ -233,17 +233,17 @@ pub(super) fn effect_not_in_model(id: &str, why: &str) -> Finding {
     )
 }
 
-/// What becomes of the deck.
+/// Result of editing the deck.
 enum Edited {
-    /// It stays as it is.
+    /// The deck needs no change.
     Unchanged,
-    /// It holds the effects.
+    /// Deck with the effects.
     Deck(Vec<u8>),
-    /// Its cards can't be edited.
+    /// The cards of the deck can't be edited.
     Refused,
 }
 
-/// The deck with the effects that it can hold.
+/// Edits the deck to contain the effects that a deck can contain.
 fn deck_with(job: &Job, deck: &DeckFrame, outcome: &Outcome) -> Edited {
     let mut stiffness: Vec<NamedStiffness> = Vec::new();
     let mut masses: Vec<(String, f64)> = Vec::new();
@@ -279,7 +279,7 @@ fn changes_notes(e: &Extension) -> bool {
     )
 }
 
-/// What is noted of the runs with `effects` in them, whose `state` says what acts.
+/// Returns the recorded loads and payload of the runs with `effects` in them; `state` contains the acting loads.
 fn runs_with(frame: &StrainFrame, effects: &[NamedEffect], state: &StrainState) -> ExtendedRuns {
     let (n_l, n_c) = (frame.n_loads(), frame.n_columns().max(1));
     let rows = || state.columns.chunks_exact(n_c);

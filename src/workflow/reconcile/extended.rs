@@ -15,10 +15,10 @@ pub const STRAIN: &str = "strain_extended.csv";
 pub const SENSITIVITY: &str = "sensitivity_extended.csv";
 /// Signature of the payload.
 pub const PAYLOAD: &str = "payload_extended.csv";
-/// What acts in each run.
+/// Recorded loads and payload of each run.
 pub const RUNS: &str = "runs_extended.csv";
 
-/// The job with the named effects in it, and what its files hold; in `result.json` its path.
+/// Job with the named effects in it, and the content of its files; in `result.json` its path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExtendedModel {
     /// File name of the job.
@@ -27,17 +27,17 @@ pub struct ExtendedModel {
     pub path: String,
     /// Text of the job as it was read.
     pub job_text: String,
-    /// The deck, where it changes.
+    /// Deck; `None` if it does not change.
     pub deck: Option<Vec<u8>>,
-    /// Faults of channels, put right in every reading.
+    /// Corrections of channels, which apply to every reading.
     pub corrections: Vec<Corrected>,
-    /// Readings, microstrain, `n_runs x n_gauges`, where corrections can't say what is wrong with them.
+    /// Corrected readings, microstrain, `n_runs x n_gauges`; `None` if [`Self::corrections`] can express the faults.
     pub readings: Option<Vec<f64>>,
-    /// Nominal x of the payload, m, where it stands elsewhere than every run says.
+    /// Nominal x of the payload, m, if the payload is at another place than recorded in every run.
     pub nominal_x_m: Option<f64>,
-    /// S, where it is given and changes.
+    /// S; `None` if it is not given or does not change.
     pub sensitivity: Option<ExtendedS>,
-    /// What is noted of the runs, where it changes.
+    /// Recorded loads and payload of the runs; `None` if they do not change.
     pub runs: Option<ExtendedRuns>,
 }
 
@@ -57,7 +57,7 @@ impl ExtendedModel {
         }
     }
 
-    /// Its path once it is written into `folder`.
+    /// Sets the path of the job for output into `folder`.
     pub(super) fn put_into(&mut self, folder: &Path) {
         let path = folder.join(self.name);
         self.path = path.display().to_string().replace('\\', "/");
@@ -70,24 +70,24 @@ impl Serialize for ExtendedModel {
     }
 }
 
-/// What puts the readings of a channel right: `(reading - offset) / factor`, as `[[correction]]` has it.
+/// Correction of the readings of a channel: `(reading - offset) / factor`, as in `[[correction]]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Corrected {
     /// Gauge.
     pub gauge: String,
-    /// What it reads of the strain, its sign included.
+    /// Reading over strain, sign included.
     pub factor: f64,
-    /// What it reads without strain, microstrain.
+    /// Reading without strain, microstrain.
     pub offset_microstrain: f64,
-    /// The gauge whose channel it has.
+    /// Gauge that this gauge's channel is exchanged with.
     pub exchanged_with: Option<String>,
-    /// What it is turned by, degrees.
+    /// Rotation of the gauge, degrees.
     pub angle_deg: f64,
-    /// Whether it is left out.
+    /// Whether the channel is left out.
     pub ignore: bool,
 }
 
-/// What is noted of the runs, with effects in it.
+/// Recorded loads and payload of the runs, with the effects in them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExtendedRuns {
     /// Wheel loads, kN and kN m, `n_runs x n_loads`.

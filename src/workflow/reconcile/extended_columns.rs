@@ -10,9 +10,9 @@ use crate::units::{KILO, Quantity, ReportUnits};
 
 /// A column of S.
 pub struct ExtendedColumn {
-    /// The load.
+    /// Name of the load.
     pub load: String,
-    /// Its column.
+    /// Name of the column.
     pub column: String,
     /// Microstrain per unit of the job's `per`, by gauge.
     pub values: Vec<f64>,

@@ -171,8 +171,8 @@ impl DeckFrame {
 }
 
 impl DeckFrame {
-    /// What the strain of a kilogram's weight at grid `id` gains by the deck that is written, microstrain by gauge: under inertia relief a mass
-    /// that is in the model is accelerated with it.
+    /// Returns the change of the strain of a kilogram's weight at grid `id` by the written deck, microstrain by gauge. Under inertia relief a mass in
+    /// the model accelerates with the model. `None` if the grid does not exist.
     ///
     /// # Errors
     /// What stops the solver.

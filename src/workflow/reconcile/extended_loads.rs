@@ -27,11 +27,11 @@ const COMPONENTS: [Component; 5] = [
     Component::MY,
     Component::MZ,
 ];
-/// Moment of the payload per weight where no place is noted: half a metre off its grid, one standard deviation.
+/// Moment of the payload per weight if no place is recorded: half a metre off its grid, one standard deviation.
 const OFF_GRID_M: f64 = 0.5;
-/// What a weighed payload may differ from its note, one standard deviation, as a share: two per cent of a vehicle's scale.
+/// Error of a recorded payload mass, one standard deviation, as a share: two per cent of a vehicle's scale.
 const NOTED: f64 = 0.02;
-/// What its noted place may be off, m, one standard deviation.
+/// Error of a recorded payload place, m, one standard deviation.
 const NOTED_PLACE_M: f64 = 0.05;
 
 /// Side loads of the effects, by the grids of the job's wheels.

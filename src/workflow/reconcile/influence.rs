@@ -1,4 +1,4 @@
-//! What gauges read of a solution: rows of the influence matrix.
+//! Rows of the influence matrix: readings of the gauges in a solution.
 
 use crate::fe::{
     Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, solve_unit_loads_on,
@@ -70,7 +70,7 @@ pub(super) fn solve(
     solved.map(|s| s.0).map_err(|e| of_solver(job, &e))
 }
 
-/// What `read` tells of each variant of the model under these loads.
+/// Solves each variant of the model under these loads and returns the results of `read`.
 ///
 /// # Errors
 /// What stops the solver.
@@ -110,7 +110,7 @@ fn until(stop: &Stop) -> SolveOptions {
     }
 }
 
-/// What stopped the solver.
+/// Converts an error of the solver into faults.
 pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     match e {
@@ -119,7 +119,7 @@ pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
     }
 }
 
-/// Where the payload stands.
+/// Returns the grid of the payload.
 pub(super) fn payload_grid(job: &Job, model: &Model) -> Option<GridIx> {
     model.grid_ix(job.payload_grid()?)
 }

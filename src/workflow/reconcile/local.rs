@@ -171,7 +171,7 @@ struct Readings<'a> {
 }
 
 impl Readings<'_> {
-    /// What halving the stiffness of each region does to the influence matrix, to first order; gauges that are not counted change by nothing.
+    /// Returns the first-order change of the influence matrix for half the stiffness of each region; zero for gauges that are not counted.
     fn by_halving(&self, job: &Job, regions: &[Region]) -> Result<Vec<Vec<f64>>, Faults> {
         let sets: Vec<&[usize]> = regions.iter().map(|r| r.shells.as_slice()).collect();
         let changes = self

@@ -6,11 +6,11 @@ use crate::estimate::median;
 use crate::model::{Model, Shell, Vec3};
 use crate::reconcile::strain::StrainFrame;
 
-/// Radii of the first look, of the gauges' distance.
+/// Radii of the first regions, over the distance between gauges.
 const WIDTHS: [f64; 3] = [0.35, 1.2, 3.0];
-/// Of the wide regions, one for as many small ones.
+/// Number of small regions for each wide region.
 const WIDER: usize = 3;
-/// A region is one of as many shells as it holds, at least: more are the structure, no place in it.
+/// Smallest ratio of all shells to the shells of a region. A larger region is the structure, not a place in it.
 const FEW: usize = 4;
 
 /// Where regions may lie.

@@ -9,12 +9,12 @@ use crate::reconcile::NamedEffect;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::strain::StiffnessOf;
 
-/// A stiffness that is off, on the model.
+/// Wrong stiffness, with its position on the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MarkedStiffness {
     /// Id of the effect, with place.
     pub id: String,
-    /// What the stiffness is multiplied by.
+    /// Factor on the stiffness.
     pub factor: f64,
     /// Indices of the shells of a zone or a small region; empty for a joint.
     pub shells: Vec<usize>,

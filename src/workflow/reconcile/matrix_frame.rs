@@ -136,7 +136,7 @@ impl<'a> Tables<'a> {
             .collect()
     }
 
-    /// The same, payload columns after them.
+    /// Returns column and factor of each load, then of the payload columns.
     fn loads_and_payload(&self) -> Vec<(String, f64)> {
         let mut names = self.loads();
         names.extend(
@@ -148,7 +148,7 @@ impl<'a> Tables<'a> {
         names
     }
 
-    /// What a table of the user's own may give: a column by its name in S or by that of its load.
+    /// Returns the columns that a user's own table may contain, each by its name in S or by the name of its load.
     fn described(&self) -> Vec<TableColumn> {
         let one = |(name, column): &(String, String)| TableColumn {
             names: vec![column.clone(), name.clone()],

@@ -1,4 +1,4 @@
-//! What a model says to a static frame, from a deck or from tables.
+//! Model part of a static frame, from a deck or from tables.
 
 use crate::gauge::Bridge;
 use crate::job::Job;
@@ -7,7 +7,7 @@ use crate::reconcile::strain::{
 };
 use crate::sensitivity::Uncertainty;
 
-/// What the model says, however it was computed: the part of a frame that no run enters.
+/// Part of a frame that depends on the model and not on the runs, from a deck or from tables.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ModelPart {
     pub(super) gauges: Vec<GaugeFacts>,
@@ -41,17 +41,17 @@ pub(super) fn wiring(bridge: Bridge) -> Wiring {
     }
 }
 
-/// Nominal place of the payload, m, where the job states it.
+/// Returns the nominal x of the payload, m, if the job states it.
 pub(super) fn nominal_x_m(job: &Job) -> Option<f64> {
     Some(job.payload.as_ref()?.nominal_x? * job.units.length_m())
 }
 
-/// The same across.
+/// Returns the nominal y of the payload, m, if the job states it.
 pub(super) fn nominal_y_m(job: &Job) -> Option<f64> {
     Some(job.payload.as_ref()?.nominal_y? * job.units.length_m())
 }
 
-/// What the job says of a gauge.
+/// Returns the properties of a gauge from the job: wiring, angle, position in m.
 pub(super) fn facts(job: &Job, name: &str) -> GaugeFacts {
     let known = job.gauges.iter().find(|g| g.name == name);
     let metres = |x: [f64; 3]| x.map(|v| v * job.units.length_m());

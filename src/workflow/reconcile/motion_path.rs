@@ -29,7 +29,7 @@ use crate::workflow::vehicle::{
     VehicleRecords, preset_request, read_vehicle, section_of, vehicle_fault,
 };
 
-/// What motion says.
+/// Compares motion with the vehicle model and returns the answer of `reconcile`.
 ///
 /// # Errors
 /// Faults of the job and of its records.

@@ -1,4 +1,4 @@
-//! What the model says, joined with what was measured and noted of the runs.
+//! Static frame: the model part joined with the measured strain and the recorded loads of the runs.
 
 use super::model_part::ModelPart;
 use crate::finding::few;
@@ -14,7 +14,7 @@ use crate::units::{KILO, Quantity};
 /// Noise of a measured wheel force where the runs file states none: nothing is assumed better than this, kN.
 const LOAD_NOISE_KN: f64 = 0.05;
 
-/// Joins what the model says with what was measured.
+/// Joins the model part with the measurements.
 pub(super) fn frame(
     job: &Job,
     work: &mut Work,

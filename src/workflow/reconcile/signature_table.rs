@@ -9,9 +9,9 @@ use std::cell::RefCell;
 
 /// A column of a frame that a table may give.
 pub(super) struct TableColumn {
-    /// Its names: that of the column of S, then that of the load.
+    /// Names of the column: name of the column of S, then name of the load.
     pub(super) names: Vec<String>,
-    /// From the table's unit to microstrain per unit of the frame.
+    /// Factor from the table's unit to microstrain per unit of the frame.
     pub(super) factor: f64,
 }
 

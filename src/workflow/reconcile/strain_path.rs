@@ -25,7 +25,7 @@ use crate::reconcile::strain::{
 use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
 use crate::strain_chain::alternatives_of;
 
-/// What strain says.
+/// Compares the strain of the runs with the model, or with the causes, and returns the answer of `reconcile`.
 ///
 /// # Errors
 /// Faults of the job and of the files it names.

@@ -1,4 +1,4 @@
-//! What `recover` answers.
+//! Answer of `recover`.
 
 use super::compare::Comparison;
 use super::damage::LoadDamage;
@@ -101,7 +101,7 @@ impl Recovered {
     }
 }
 
-/// What was measured.
+/// Recovered loads of static runs, or of a record.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum States {
@@ -208,7 +208,7 @@ pub struct RecoveredRecord {
     /// Content of the loads against the first elastic mode, where that is known.
     #[serde(flatten)]
     pub content: Option<Content>,
-    /// What vibration was taken out of it.
+    /// Vibration that was removed from the record.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// Cycles and pseudo-damage by load, where they are asked for or the record is short.
@@ -231,12 +231,12 @@ pub struct RecoveredRecord {
     pub history: Option<History>,
 }
 
-/// What the loads of a record hold by frequency.
+/// Frequency content of the loads of a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Content {
     /// First elastic mode of the structure as the job holds it.
     pub first_elastic_mode_hz: f64,
-    /// Up to where each load has content; `None`: it can't be told from noise.
+    /// Highest frequency with content of each load; `None` if the content does not exceed the noise.
     pub content_hz: Vec<Option<f64>>,
 }
 

@@ -1,17 +1,17 @@
-//! What is listed of the loads: themselves, then the sums of `[[combination]]`, with their units.
+//! Listed loads: the loads of S, then the sums of `[[combination]]`, with their units.
 
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::job::{Combination, Job};
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{LoadUnits, load_units};
 
-/// Names and units of what is listed.
+/// Names and units of the listed loads.
 pub struct Listed {
     /// Loads, then combinations.
     pub names: Vec<String>,
     /// Units of both.
     pub units: Vec<LoadUnits>,
-    /// Columns of S and their factors, a list a combination.
+    /// Columns of S and their factors, one list per combination.
     pub sums: Vec<Vec<(usize, f64)>>,
 }
 

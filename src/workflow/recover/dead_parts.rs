@@ -15,13 +15,13 @@ use std::ops::Range;
 /// A record without the readings of gauges where they are dead.
 pub(super) struct Living {
     pub record: Record,
-    /// Of samples spread over it.
+    /// Readings of samples spread over the record.
     pub readings: Vec<Readings>,
     /// Dead parts: gauge of S, and samples.
     pub dead: Vec<(usize, Range<usize>)>,
 }
 
-/// The record without such readings, said as findings: where a gauge is dead, the others tell the loads.
+/// Removes such readings and reports them as findings. In these parts the loads come from the other gauges.
 ///
 /// # Errors
 /// A piece that can't be read.

@@ -27,28 +27,28 @@ const MARGIN: f64 = 1.25;
 /// Numbers of a record that are held in memory: 0.8 GB of readings and of what they are off by, and the readings again at rest.
 const MOST_NUMBERS: usize = 100_000_000;
 
-/// What the motion of the structure was taken for.
+/// Vibration that was removed from a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Motion {
-    /// Loads are recovered up to here.
+    /// Highest frequency of the recovered loads.
     pub up_to_hz: f64,
-    /// Modes that were taken; further ones are left to the intervals.
+    /// Frequencies of the modes used; the intervals contain the effect of further modes.
     pub modes_hz: Vec<f64>,
-    /// Time at either end of the record, and of every gap, in which no load is known.
+    /// Time without known loads at either end of the record and of every gap.
     pub blank_s: f64,
-    /// By load: root mean square of what the record taken as at rest would be off by, as a share of that of the load about its mean.
+    /// Error of each load without the correction, rms, as a share of the rms of the load about its mean.
     pub change_rel: Vec<Option<f64>>,
 }
 
-/// A record at rest, and what is to be known of it.
+/// Quasi-static record, and the errors of its readings.
 pub(super) struct Rested {
     pub record: Record,
     pub motion: Motion,
     /// Noise variance of a reading, in units of that of a reading as measured.
     pub noise_factor: f64,
-    /// What readings are off by beyond that.
+    /// Covariance of the readings beyond that noise.
     pub doubt: Doubt,
-    /// Samples by which noise is apart where it is independent.
+    /// Number of samples after which noise is independent.
     pub apart: usize,
     /// Samples blank for what is at rest alone.
     pub blank: usize,
@@ -247,7 +247,7 @@ fn motion_of(dynamics: &Dynamics, rested: &AtRest, step_s: f64) -> Motion {
     }
 }
 
-/// What was done to the record.
+/// Returns the finding on the vibration that was removed from the record.
 fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
     let known: Option<Vec<f64>> = motion.change_rel.iter().copied().collect();
     let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));

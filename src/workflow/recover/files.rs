@@ -9,9 +9,9 @@ use crate::job::{Job, LoadFile};
 use crate::recovery::Sums;
 use crate::series::rpc::Target;
 
-/// Samples of a history up to which every file is written without being asked for.
+/// Samples of a history up to which every file is written by default.
 const MOST_SAMPLES: usize = 200_000;
-/// The same for tables of Nastran, which hold a pair of numbers a sample as text.
+/// Samples of a history up to which tables of Nastran are written by default; these contain a pair of numbers per sample as text.
 const MOST_ROWS: usize = 20_000;
 
 /// Files that are made of a history of about so many samples.
@@ -41,7 +41,7 @@ pub(super) fn wanted(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults>
     Ok(files.clone())
 }
 
-/// What is to be known of the files made of a history.
+/// Returns the findings on the files made from a history.
 pub(super) fn findings(job: &Job, head: &RecordHead, sums: &Sums) -> Vec<Finding> {
     let mut out = Vec::new();
     if head.files.contains(&LoadFile::Rpc) {
@@ -79,7 +79,7 @@ pub fn rpc_targets(head: &RecordHead, sums: &Sums) -> Vec<Target> {
         .collect()
 }
 
-/// What 16 bits cost.
+/// Returns the finding on the error of 16-bit numbers.
 fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
     let steps: Vec<String> = rpc_targets(head, sums)
         .iter()

@@ -1,4 +1,4 @@
-//! What samples spread over a record say of it before all of it is read.
+//! Tests of a record on samples spread over it, before all of it is read.
 
 use super::answer::Content;
 use super::block::block;
@@ -24,7 +24,7 @@ const TYPICAL: usize = 20_000;
 /// Pieces whose content is looked at.
 const LOOKED_AT: usize = 8;
 
-/// What samples over the record say of the loads asked for, of the gauges, and of the intervals.
+/// Recovers samples spread over the record, and tests the wanted loads, the gauges and the intervals.
 pub(super) fn judge(
     work: &mut Work,
     task: &Task,
@@ -36,7 +36,7 @@ pub(super) fn judge(
     recover_samples_with_alternatives(s, readings, task.errors, (Vec::new(), &mut others))
 }
 
-/// The same of samples at rest, by number, and what they are off by.
+/// Recovers quasi-static samples, each with its number, and tests loads, gauges and intervals. `doubt`: covariance of their errors.
 pub(super) fn judge_at_rest(
     task: &Task,
     s: &Sensitivity,
@@ -65,11 +65,11 @@ pub(super) fn spread_readings(
     spread((task.noise_factor, 1), record, zero)
 }
 
-/// The same, the noise variance of a reading given, in units of that of a single one, and by how many samples noise has to be apart to be
-/// independent.
+/// Returns the readings of samples spread over the record, less `zero`, each with the number of its sample. `noise_factor`: noise variance of a
+/// reading in units of the variance of a single reading. `apart`: number of samples after which noise is independent.
 ///
 /// # Errors
-/// As [`spread_readings`].
+/// See [`spread_readings`].
 pub(super) fn spread(
     (noise_factor, apart): (f64, usize),
     record: &Record,

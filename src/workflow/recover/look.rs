@@ -1,4 +1,4 @@
-//! What `recover` says of measured strain before S weighs it: what `check` asks.
+//! Tests of measured strain before its loads are recovered, for `check`.
 
 use super::combined::listed;
 use super::task::{Task, task_of, without_reference};
@@ -51,12 +51,12 @@ pub(crate) fn look(
     faults
 }
 
-/// What is at hand of S.
+/// Known part of S.
 #[derive(Clone, Copy, PartialEq)]
 enum Known {
-    /// All that loads are recovered with.
+    /// Complete S, which loads are recovered with.
     S,
-    /// The names of its gauges.
+    /// Names of the gauges.
     Names,
 }
 

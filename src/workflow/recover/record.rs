@@ -360,7 +360,7 @@ fn in_groups(
     Ok(())
 }
 
-/// Everything in report units.
+/// Returns the answer in report units.
 fn answer(
     sensitivity: Sensitivity,
     head: Arc<RecordHead>,

@@ -73,7 +73,7 @@ impl Samples for Unheard {
     fn read(&self, _: usize, _: usize, _: &[usize], _: &mut Vec<f64>) {}
 }
 
-/// What is known of the loads of a record before the first of them.
+/// Description of the loads of a record before its first sample.
 #[derive(Debug)]
 pub struct RecordHead {
     /// The strain file, as the job names it.
@@ -90,7 +90,7 @@ pub struct RecordHead {
     pub step_s: f64,
     /// Every how many samples `loads.csv` has a row.
     pub stride: usize,
-    /// What is to be made of the history.
+    /// Files to make from the history.
     pub files: Vec<LoadFile>,
     /// Whether loads are compared with recorded ones or counted by section.
     pub is_compared: bool,
@@ -99,12 +99,12 @@ pub struct RecordHead {
 }
 
 impl RecordHead {
-    /// Number of loads, combinations among them.
+    /// Number of loads, including combinations.
     pub fn n_loads(&self) -> usize {
         self.names.len()
     }
 
-    /// The estimate of a sample in such a stretch; `None` where all gauges read.
+    /// Returns the estimate of a sample in such a stretch; `None` if all gauges read.
     pub fn estimate_at(&self, sample: usize) -> Option<&Gain> {
         let stretch = self.stretches.iter().find(|s| s.0.contains(&sample));
         stretch.map(|s| &*s.1)

@@ -90,7 +90,8 @@ pub(crate) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding>
     })
 }
 
-/// What the columns give over the record, looked at in ten pieces spread over it; what one gives in all of these is held against the rest.
+/// Returns whether each column has a signal, from ten pieces spread over the record. A column without a signal in these is tested on the whole
+/// record.
 fn columns_of_record(record: &Record) -> Result<Vec<Gives>, Faults> {
     let (n, pieces) = (record.n_columns(), record.n_pieces());
     let mut looked = Still::new(n);

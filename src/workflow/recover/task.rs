@@ -1,4 +1,4 @@
-//! What runs and records share: measured strain, S, zero and reference, stated errors.
+//! Inputs that runs and records share: measured strain, S, zero and reference, stated errors.
 
 use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
@@ -11,7 +11,7 @@ use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Prepared, stated_errors};
 use std::collections::HashSet;
 
-/// What runs and records share.
+/// Inputs that runs and records share.
 pub(super) struct Task<'a> {
     pub job: &'a Job,
     pub measured: &'a Measured,
@@ -52,7 +52,7 @@ pub(super) fn changes(measured: &Measured) -> Option<Finding> {
     })
 }
 
-/// What runs and records share: zero, reference, stated errors.
+/// Prepares the inputs that runs and records share: zero, reference, stated errors.
 pub(super) fn task_of<'a>(
     work: &mut Work,
     job: &'a Job,
@@ -67,7 +67,7 @@ pub(super) fn task_of<'a>(
     Ok(task)
 }
 
-/// The same, the strain of the reference state left out of the readings.
+/// Prepares these inputs without the strain of the reference state.
 pub(super) fn without_reference<'a>(
     work: &mut Work,
     job: &'a Job,

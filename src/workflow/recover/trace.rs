@@ -1,4 +1,4 @@
-//! What can be drawn of a history of any length: by span of samples the smallest, mean and largest of each load.
+//! Data for drawings of a history of any length: smallest, mean and largest value of each load by span of samples.
 
 use super::sink::Block;
 
@@ -14,7 +14,7 @@ pub struct Spans {
     list: Vec<Span>,
 }
 
-/// Some samples on end.
+/// Consecutive samples.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Span {
     /// Time of the first and the last, s.

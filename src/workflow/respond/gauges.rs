@@ -13,10 +13,11 @@ use crate::strain_chain::Prepared;
 use crate::units::MICROSTRAIN;
 use serde::Serialize;
 
-/// Residual over measured rms of a gauge from which its prediction is poor.
+/// Limit of residual over measured rms of a gauge above which its prediction is poor.
 const POOR: f64 = 0.1;
-/// The same from which the loads explain next to nothing of what it measured: a model is off by some tens of per cent at its worst gauges, and
-/// loads of another run, or in pounds for newtons (a residual of .78 or 3.4) or in another power of ten, leave more than half at most gauges.
+/// Limit of residual over measured rms of a gauge above which the loads explain almost nothing of its reading. A model is off by some tens of per
+/// cent at its worst gauges. Wrong loads leave more than half at most gauges: loads of another run, in pounds for newtons (a residual of .78 or 3.4),
+/// or in another power of ten.
 const MISSED: f64 = 0.5;
 
 /// One gauge over all states, microstrain.
@@ -24,13 +25,13 @@ const MISSED: f64 = 0.5;
 pub struct GaugeCheck {
     /// Gauge.
     pub name: String,
-    /// Root mean square of what it measured.
+    /// Root mean square of the measured strain.
     #[serde(rename = "measured_rms_microstrain")]
     pub measured_rms: f64,
-    /// Root mean square of measured less predicted.
+    /// Root mean square of measured less predicted strain.
     #[serde(rename = "residual_rms_microstrain")]
     pub residual_rms: f64,
-    /// Between the two; `None` where one of them does not vary.
+    /// Correlation of measured and predicted strain; `None` if one of them does not vary.
     pub correlation: Option<f64>,
 }
 

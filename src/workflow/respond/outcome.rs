@@ -1,4 +1,4 @@
-//! What `respond` answers.
+//! Answer of `respond`.
 
 use super::gauges::{Check, GaugeCheck};
 use crate::estimate::NORMAL_95;

@@ -217,22 +217,22 @@ fn key_of(t: &Table) -> (usize, Key) {
     }
 }
 
-/// Where in the table the loads stand.
+/// Columns of the table of loads.
 struct Columns {
     key: usize,
     kind: Key,
-    /// Of each load its value and its interval.
+    /// Value and interval columns of each load.
     loads: Vec<LoadColumns>,
     without_interval: Vec<String>,
 }
 
-/// Columns of a load: its value, and where the table has them the ends of its interval.
+/// Columns of a load: its value, and the ends of its interval if the table has them.
 struct LoadColumns {
     value: Sized,
     interval: Option<[Sized; 2]>,
 }
 
-/// A column with what it measures and the SI units of one of its numbers, and the number of report units in one of these.
+/// Column with its quantity, the SI units of one of its numbers, and the number of report units in one of its numbers.
 #[derive(Clone, Copy)]
 struct Sized {
     at: usize,

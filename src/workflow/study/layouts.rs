@@ -22,9 +22,9 @@ const RANDOM_LAYOUTS: usize = 50;
 pub(super) struct LayoutOf {
     /// `given`, `random`, `D`, `Ds`.
     pub name: String,
-    /// How many.
+    /// Number of gauges.
     pub gauges: usize,
-    /// What the members index.
+    /// Gauges that `members` index.
     pub pool: Vec<PoolGauge>,
     /// One layout, or many random ones.
     pub members: Vec<Vec<usize>>,

@@ -10,7 +10,7 @@ use crate::sensitivity::{Load, LoadCaseOf, Sensitivity};
 use crate::strain_chain::{Fields, WantedAt, corrected_spec_of, read_fields};
 use crate::study::PoolGauge;
 
-/// What the layouts are made of.
+/// Gauges, loads and model for the layouts.
 pub(super) struct Prepared {
     /// Columns.
     pub loads: Vec<Load>,
