@@ -22,13 +22,13 @@ const ANGLES: i32 = 1800;
 
 /// Log marginal likelihoods of a gauge's readings under each cause, in addition to the ordinary error of the model.
 struct Rivals {
-    /// Every load by the same factor.
+    /// Wrong gain: the readings of all loads have one factor.
     gain: f64,
-    /// Turned by some angle.
+    /// Gauge turned by some angle.
     angle: f64,
-    /// Moved along the surface.
+    /// Gauge moved along the surface.
     place: f64,
-    /// Any other row of the same size.
+    /// Any other row of equal size.
     other: f64,
 }
 

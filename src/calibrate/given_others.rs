@@ -9,7 +9,7 @@ use crate::linalg::spd;
 pub(super) struct ByGauge {
     /// Loads of unit size.
     pub phi: Vec<f64>,
-    /// Reading by gauge at these loads; NaN where there is none.
+    /// Reading by gauge at these loads; NaN without a reading.
     pub y: Vec<f64>,
     /// Variance of the reading by gauge, without the uncertainty of S.
     pub variance: Vec<f64>,

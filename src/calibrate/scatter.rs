@@ -29,7 +29,7 @@ pub(super) struct Left {
     pub q2: f64,
     /// Variance of each reading from other known sources: noise, errors of the loads.
     pub explained: Vec<f64>,
-    /// Runs with the same number are repeats of each other.
+    /// Group of the run: runs with one number are repeats of each other.
     pub group: usize,
 }
 

@@ -32,11 +32,11 @@ pub struct KnownRun {
     pub run: String,
     /// Strain by gauge, zero subtracted; NaN where a gauge gave nothing.
     pub strain: Vec<f64>,
-    /// Noise variance of these readings in units of that of a single one.
+    /// Noise variance of these readings in units of the variance of a single reading.
     pub noise_factor: f64,
     /// Known loads.
     pub loads: KnownLoads,
-    /// Runs with the same number are repeats of each other.
+    /// Group of the run: runs with one number are repeats of each other.
     pub group: usize,
 }
 
@@ -115,7 +115,7 @@ pub struct Task {
     pub loads: Vec<Load>,
     /// Noise of a reading, strain, 1 sd.
     pub noise: f64,
-    /// Noise of the gauges in units of it; `None` where each has that noise, independent of the others.
+    /// Noise of the gauges in units of `noise`; `None` if each gauge has this noise, independent of other gauges.
     pub gauge_noise: Option<GaugeNoise>,
     /// The model, where there is one.
     pub model: Option<ModelPrior>,
@@ -123,7 +123,7 @@ pub struct Task {
     pub runs: Vec<KnownRun>,
     /// Sums of loads whose intervals count too when runs are left out: coefficients by load.
     pub sums: Vec<Vec<f64>>,
-    /// Strain that gauges read without load, alike in all runs.
+    /// Strain of the gauges without load, equal in all runs.
     pub common_zero: CommonZero,
     /// Relative error, 1 sd, that the known loads of all runs share.
     pub scale_sd: f64,
@@ -223,15 +223,15 @@ pub struct ModelError {
 pub struct Calibration {
     /// Posterior mean, with covariance and scatter.
     pub sensitivity: Sensitivity,
-    /// Relative error of the model as used: stated, corrected by what the runs say; `None` without a model.
+    /// Relative error of the model as used: the stated error, corrected by the runs; `None` without a model.
     pub model_error: Option<ModelError>,
-    /// Strain without load, by gauge; empty for a model through zero. S and its intervals are those of readings less it.
+    /// Strain without load, by gauge; empty for a model through zero. S and its intervals apply to readings less this strain.
     pub common_zero: Vec<f64>,
     /// Tests of further terms.
     pub lack_of_fit: LackOfFit,
     /// By gauge: how far it moved.
     pub shifts: Vec<GaugeShift>,
-    /// By gauge: where it sits; empty where no tolerance is stated.
+    /// Installed position and gain by gauge; empty if no tolerance is stated.
     pub as_glued: Vec<AsGlued>,
     /// Scatter between repeats of one loading over the strain, root mean square over gauges; `None` without repeats.
     pub repeat_scatter_rel: Option<f64>,
@@ -241,7 +241,7 @@ pub struct Calibration {
     pub left_out: Vec<LeftOut>,
     /// Their tally.
     pub coverage: Coverage,
-    /// Runs that contradict the others beyond doubt and were not used, by number.
+    /// Runs that clearly contradict the other runs and were not used, by number.
     pub refused: Vec<usize>,
     /// Range of the loads and readings of the runs that were used.
     pub range: CalibratedRange,

@@ -33,7 +33,7 @@ pub struct ModeRow {
     pub residual: f64,
     /// Bound on the relative error of the frequency.
     pub frequency_error: f64,
-    /// Distance to the nearest other mode, as a share of 1 / omega^2; null where there is none.
+    /// Distance to the nearest other mode, as a share of 1 / omega^2; null without another mode.
     #[serde(serialize_with = "or_null")]
     pub gap: f64,
     /// Modal effective mass along x, y, z and about axes through the centre of gravity.
@@ -53,11 +53,11 @@ pub struct Modes {
     pub modes: Vec<ModeRow>,
     /// Support of the structure, in words.
     pub support: String,
-    /// Rigid motions that nothing holds; they are no modes.
+    /// Number of unsupported rigid motions, which are not modes.
     pub rigid_motions: usize,
     /// Names of the gauges, as in `gauge_microstrain`.
     pub gauges: Vec<String>,
-    /// Units of masses: those of the job's system; null for a deck, which doesn't say.
+    /// Units of masses, from the job's system; null for a deck, which states no units.
     pub model_units: StatedUnits,
     /// Mass of the model, WTMASS applied.
     pub mass: Option<f64>,

@@ -29,7 +29,7 @@ pub struct Sensed {
     pub loads: Vec<String>,
     /// Report unit of each load.
     pub report_units_of_loads: Vec<String>,
-    /// By gauge, what the deck's mesh makes, where the job asks for it: S is without it.
+    /// Mesh error by gauge, if the job asks for it; S is corrected for it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
     /// S itself, with the model and the gauges it was made of.

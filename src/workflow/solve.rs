@@ -43,7 +43,7 @@ pub struct SolvedCases {
     pub smallest_pivot: f64,
     /// Nastran's epsilon of the worst case before and after refinement: |u'(f - K u)| / |u'f|.
     pub epsilon: [f64; 2],
-    /// Units of mass, balance and reactions: those of the job's system; null for a deck, which doesn't say.
+    /// Units of mass, balance and reactions, from the job's system; null for a deck, which states no units.
     pub model_units: StatedUnits,
     /// By load case: applied loads, inertia loads, remaining imbalance.
     pub balance: Vec<Balance>,
@@ -51,11 +51,11 @@ pub struct SolvedCases {
     pub mass: Option<MassAndCentre>,
     /// Support of the structure under the unit loads of a job, in words; `None` for a deck, whose subcases state their support.
     pub support: Option<String>,
-    /// By load case: resultants of what acts and of the reactions, and the reactions grid by grid, basic frame; empty where nothing is held.
+    /// By load case: resultants of the applied loads and of the reactions, and the reactions by grid, basic frame; empty without a support.
     pub reactions: Vec<Reactions>,
     /// First elastic frequencies, per unit of time.
     pub elastic_modes_hz: Vec<f64>,
-    /// Largest resident memory of the process so far, bytes; `None` where the system does not tell.
+    /// Largest resident memory of the process so far, bytes; `None` if the system does not report it.
     pub peak_memory_bytes: Option<u64>,
     /// Title of the report.
     #[serde(skip)]

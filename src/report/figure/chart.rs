@@ -3,12 +3,12 @@
 use maud::{Markup, PreEscaped, Render, html};
 use serde_json::{Value, json};
 
-/// Traces and axes, in words of their own that `page/chart.js` draws as SVG and `report::pdf` on paper.
+/// Traces and axes in a common form, which `page/chart.js` draws as SVG and `report::pdf` on paper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
     /// Description of the figure for screen readers and tests.
     pub label: String,
-    /// By choice: name and traces. A single one is drawn without asking. `ytitle` of a trace says what its axis is where that differs by choice.
+    /// Name and traces of each choice. A single choice is drawn without a selector. `ytitle` of a trace is its axis title, if this differs by choice.
     pub choices: Vec<(String, Vec<Value>)>,
     /// Axes.
     pub layout: Value,

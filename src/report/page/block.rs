@@ -135,7 +135,7 @@ pub enum Block {
     Text(String),
     /// A paragraph that begins with stressed words.
     Stressed(String, String),
-    /// A paragraph in the background: how to read what stands above it.
+    /// A paragraph in the background: explanation of the block above it.
     Note(String),
     /// A table.
     Table(Table),
@@ -147,7 +147,7 @@ pub enum Block {
     Lines(String),
     /// Cards side by side; one alone is as wide as the page.
     Cards(Vec<Card>),
-    /// Links of a page to files beside it: words, path.
+    /// Links of a page to files next to it: words, path.
     Links(Vec<(String, String)>),
     /// Content for some readers only: collapsed under `summary` on a screen, in full on paper.
     Folded {
@@ -266,7 +266,7 @@ pub struct CellLink {
     pub row: usize,
     /// Column, from 0.
     pub column: usize,
-    /// Path of the file, from the working folder; [`Page::beside`] makes it one from the folder of the page.
+    /// Path of the file, from the working folder; [`Page::beside`] converts it to a path from the folder of the page.
     pub path: String,
     /// Text shown when the pointer is on the cell.
     pub title: String,

@@ -39,7 +39,7 @@ impl Part {
 pub(super) struct Drawn {
     /// By grid of the part: its vertex.
     pub vertex_of: Vec<u32>,
-    /// By vertex: the grid of the part that stands for it.
+    /// By vertex: the grid of the part that it represents.
     pub vertices: Vec<u32>,
     /// Corners, indices into `vertices`.
     pub triangles: Vec<[u32; 3]>,

@@ -17,7 +17,7 @@ pub struct Scene<'a> {
     pub fields: Vec<Field<'a>>,
     /// Loads to choose from.
     pub arrows: Vec<ArrowSet>,
-    /// Unit of length; empty where the deck does not say.
+    /// Unit of length; empty if the deck states none.
     pub length: &'static str,
     /// Planning by pointing that the scene allows.
     pub pointing: Pointing,

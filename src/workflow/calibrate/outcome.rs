@@ -23,7 +23,7 @@ pub struct Calibrated {
     /// The model's S, where there is one.
     #[serde(skip)]
     pub model: Option<Matrix>,
-    /// Gauges where they sit, `None` for those on bars; empty where `[calibration]` states no tolerance.
+    /// Gauges at their installed positions, `None` for gauges on bars; empty if `[calibration]` states no tolerance.
     #[serde(skip)]
     pub glued: Vec<Option<GluedGauge>>,
     /// Complete result of the calibration.
@@ -152,7 +152,7 @@ pub struct GluedGauge {
     pub spec: GaugeSpec,
     /// Wiring, as a job writes it.
     pub bridge: &'static str,
-    /// Element and side of the other pair of a bridge.
+    /// Element and side of the second pair of a bridge.
     pub pair: Option<(u32, Surface)>,
     /// Factor on the readings.
     pub gain: f64,

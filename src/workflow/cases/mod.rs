@@ -54,7 +54,7 @@ const UNWANTED: [&str; 22] = [
 pub struct UnitLoadDeck {
     /// Support of the structure, in words.
     pub support: String,
-    /// By load: its subcase and what acts.
+    /// By load: its subcase and the applied load.
     pub subcases: Vec<Value>,
     /// The deck and the edits that make it.
     #[serde(skip)]

@@ -57,7 +57,7 @@ pub struct Kernel {
     pub zero: Vec<f64>,
     /// Stated errors.
     pub errors: ErrorModel,
-    /// Noise variance of a reading less zero, in units of that of a reading.
+    /// Noise variance of a reading less zero, in units of the variance of a single reading.
     pub noise_factor: f64,
     /// Range of each load of S in its calibration, job units; `None` where the job states none.
     pub ranges: Vec<Option<[f64; 2]>>,

@@ -19,7 +19,7 @@ pub struct MissionLoad {
     pub damage_low: f64,
     /// Upper end.
     pub damage_high: f64,
-    /// Standard deviation from the error of S, the same on all days.
+    /// Standard deviation from the error of S, which is common to all days.
     pub sigma_s: f64,
     /// Standard deviation from the scatter of noise.
     pub sigma_noise: f64,

@@ -24,7 +24,7 @@ pub struct VehicleLoadAnswer {
     pub load: String,
     /// Unit of `max`, `min`; damage is in its power.
     pub unit: String,
-    /// Hours in which it is known: those of its damage.
+    /// Hours in which the load is known, which its damage covers.
     pub hours: f64,
     /// Largest value, and its day.
     pub max: Option<f64>,
@@ -38,7 +38,7 @@ pub struct VehicleLoadAnswer {
     pub min_day: String,
     /// Record and time of the smallest value.
     pub min_at: Option<SampleOf>,
-    /// Cycles; those of the residue count half.
+    /// Cycles; cycles of the residue count half.
     pub cycles: f64,
     /// Damage, the bias of noise taken off.
     pub damage: f64,
@@ -50,21 +50,21 @@ pub struct VehicleLoadAnswer {
     pub damage_counted: f64,
     /// Expected damage that noise added.
     pub noise_bias: f64,
-    /// Standard deviation from the error of S, the same on all days.
+    /// Standard deviation from the error of S, which is common to all days.
     pub sigma_s: f64,
     /// Standard deviation from the scatter of noise, which averages out.
     pub sigma_noise: f64,
     /// Standard deviation of the noise bias that was subtracted.
     pub sigma_bias: f64,
-    /// Damage an hour over that of all vehicles together.
+    /// Damage per hour over the damage per hour of all vehicles together.
     pub relative: f64,
-    /// Damage an hour over that of the reference day.
+    /// Damage per hour over the damage per hour of the reference day.
     pub to_reference: Option<Ratio>,
-    /// Damage over the target's.
+    /// Damage over the damage of the target.
     pub to_target: Option<Ratio>,
-    /// Damage of each day by itself.
+    /// Damage of each day separately.
     pub by_day: Vec<f64>,
-    /// Share of it that days did whose loads can't be relied on.
+    /// Share of the damage from days whose loads are not reliable.
     pub doubtful_share: f64,
     /// Width of a class.
     #[serde(skip)]

@@ -38,7 +38,7 @@ pub struct Placed {
     pub cost: Option<f64>,
     /// Gauges that stay.
     pub kept: Vec<String>,
-    /// By gauge, what the deck's mesh makes, where the job asks for it: the layout is without it, and what may be left of it is weighed.
+    /// Mesh error by gauge, if the job asks for it. The layout is corrected for the mesh error, and the weights include its possible remainder.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub mesh_error: Vec<GaugeMeshError>,
     /// Rank and condition numbers of S.
@@ -53,12 +53,12 @@ pub struct Placed {
     pub worst_loss: WorstLoss,
     /// Gauges kept for validation.
     pub reserved: Vec<Reserved>,
-    /// The gauges that the job has, by the same measures.
+    /// Quality of the job's gauges by these measures.
     pub installed: Option<Installed>,
     /// Results with other numbers of gauges, if the job asks for them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub how_many: Vec<CurvePoint>,
-    /// S of the chosen gauges and of those that stay.
+    /// S of the chosen gauges and of the gauges that stay.
     #[serde(skip)]
     pub sensitivity: Sensitivity,
     /// Model and strain fields.

@@ -39,7 +39,7 @@ pub struct Reconciled {
     /// Log evidence of the named set (or best attempt) less the log evidence of no effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<f64>,
-    /// Squared residual over what is allowed for, by number of readings.
+    /// Squared residual over the allowed variance, per reading.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reduced_chi2: Option<ReducedChi2>,
     /// Residual after the named effects, in words.
@@ -301,7 +301,7 @@ impl Simulation {
     }
 }
 
-/// Both models simulated over the held-out record, else over the fitted one.
+/// Result of simulating both models over the held-out record, else over the fitted record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulationFound {
     /// Definition of the error, in words.

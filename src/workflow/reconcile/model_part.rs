@@ -22,7 +22,7 @@ pub(super) struct ModelPart {
     pub(super) thermal_gradient: Option<Vec<f64>>,
     pub(super) masses: Vec<MassSignature>,
     pub(super) stiffness: Vec<StiffnessSignature>,
-    /// Influence on the analyst's own mesh, where `influence` is that of a finer one.
+    /// Influence on the analyst's own mesh, if `influence` is from a finer mesh.
     pub(super) as_modelled: Option<Vec<f64>>,
     /// Errors that every gauge may have.
     pub(super) scatter: Vec<Scatter>,

@@ -195,7 +195,7 @@ pub struct RecoveredRecord {
     pub residual_rms_microstrain: f64,
     /// How well each gauge agrees.
     pub gauges: Vec<GaugeResidual>,
-    /// Samples, those with gaps among them.
+    /// Number of samples, including samples with gaps.
     pub samples: u64,
     /// Samples in which some gauge gave nothing.
     pub gaps: u64,
@@ -234,7 +234,7 @@ pub struct RecoveredRecord {
 /// Frequency content of the loads of a record.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Content {
-    /// First elastic mode of the structure as the job holds it.
+    /// Frequency of the first elastic mode of the structure with the job's support.
     pub first_elastic_mode_hz: f64,
     /// Highest frequency with content of each load; `None` if the content does not exceed the noise.
     pub content_hz: Vec<Option<f64>>,

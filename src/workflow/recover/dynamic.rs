@@ -44,13 +44,13 @@ pub struct Motion {
 pub(super) struct Rested {
     pub record: Record,
     pub motion: Motion,
-    /// Noise variance of a reading, in units of that of a reading as measured.
+    /// Noise variance of a reading, in units of the variance of a reading as measured.
     pub noise_factor: f64,
     /// Covariance of the readings beyond that noise.
     pub doubt: Doubt,
     /// Number of samples after which noise is independent.
     pub apart: usize,
-    /// Samples blank for what is at rest alone.
+    /// Number of samples that are blank in the quasi-static record only.
     pub blank: usize,
 }
 

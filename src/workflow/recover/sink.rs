@@ -94,7 +94,7 @@ pub struct RecordHead {
     pub files: Vec<LoadFile>,
     /// Whether loads are compared with recorded ones or counted by section.
     pub is_compared: bool,
-    /// Stretches of samples in which some gauges are dead, and the estimate from the others.
+    /// Stretches of samples in which some gauges are dead, and the estimate from the remaining gauges.
     pub stretches: Vec<(Range<usize>, Arc<Gain>)>,
 }
 

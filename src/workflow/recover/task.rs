@@ -23,7 +23,7 @@ pub(super) struct Task<'a> {
     pub estimating: Vec<usize>,
     /// Rows of S of the gauges that the estimate is compared with.
     pub validation: Vec<usize>,
-    /// Noise variance of a reading less zero, in units of that of a reading.
+    /// Noise variance of a reading less zero, in units of the variance of a single reading.
     pub noise_factor: f64,
 }
 
