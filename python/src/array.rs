@@ -1,4 +1,4 @@
-//! numpy arrays as slices, without a copy, or a sentence on what is wrong with them.
+//! Reads numpy arrays as slices, without a copy, or reports their fault.
 
 use crate::fault::{raise, wrong};
 use numpy::{PyArrayDescrMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArray};
@@ -6,14 +6,14 @@ use numpy::{PyUntypedArrayMethods, prelude::*};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// What an array is called and what its axes are.
+/// Name and axes of an array.
 #[derive(Clone, Copy)]
 pub(crate) struct Named<'a> {
-    /// The function that takes it.
+    /// The function that takes the array.
     pub function: &'a str,
-    /// Its name there.
+    /// Name of the argument.
     pub name: &'a str,
-    /// Its axes, `gauges x loads`.
+    /// Axes of the array, such as `gauges x loads`.
     pub axes: &'a str,
 }
 
@@ -54,13 +54,13 @@ impl Named<'_> {
         Ok(a.cast::<numpy::PyArray2<f64>>()?.try_readonly()?)
     }
 
-    /// One dimension.
+    /// Returns an array of one dimension.
     pub fn vector<'py>(&self, a: &Bound<'py, PyAny>) -> PyResult<PyReadonlyArray1<'py, f64>> {
         self.untyped(a, 1)?;
         Ok(a.cast::<numpy::PyArray1<f64>>()?.try_readonly()?)
     }
 
-    /// What is wrong with it.
+    /// Returns the error about the array.
     pub fn fault(&self, py: Python, said: &str, remedy: &str) -> PyErr {
         raise(py, wrong(self.function, self.name, said, remedy).into())
     }

@@ -36,12 +36,12 @@ const ON_JOB: [(&str, OnJob); 11] = [
     ("study", |j, cx| keep(strainbridge::study(j, cx)?)),
 ];
 
-/// Commands that ask files, or a job with more.
+/// Commands with arguments in addition to a job, or with files instead.
 const WITH_MORE: [&str; 7] = [
     "check", "fleet", "init", "modes", "solve", "strains", "verify",
 ];
 
-/// What a command is asked beside its job.
+/// Arguments of a command in addition to its job.
 struct More {
     files: Vec<PathBuf>,
     folder: PathBuf,
@@ -186,7 +186,7 @@ pub(crate) fn clean(py: Python, folder: Option<PathBuf>) -> PyResult<(PathBuf, u
     Ok((folder.path().to_owned(), removed, bytes))
 }
 
-/// What a finding means, as JSON: one code's, or every code's where `None`.
+/// Returns the explanation of a finding as JSON: of one code, or of every code if `None`.
 #[pyfunction]
 #[pyo3(signature = (code=None))]
 pub(crate) fn explain(py: Python, code: Option<&str>) -> PyResult<String> {

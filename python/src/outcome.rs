@@ -16,20 +16,20 @@ use strainbridge::workflow::recover::Recovered;
 use strainbridge::workflow::sensitivity::Sensed;
 use strainbridge::{Faults, Outcome};
 
-/// What can be asked of an outcome of any type.
+/// Methods of an outcome of any type.
 pub(crate) trait Kept: Send {
-    /// Writes the files of the command; the text of `result.json`.
+    /// Writes the files of the command, and returns the text of `result.json`.
     fn save(&self, folder: &Path) -> Result<String, Faults>;
 
-    /// The blocks of its report for a notebook.
+    /// Returns the blocks of the report for a notebook.
     fn piece(&self) -> String;
 
-    /// Names and values of the columns of a record's samples, where it has any.
+    /// Returns names and values of the columns of a record's samples, if it has any.
     fn history(&self) -> Option<Vec<(String, Vec<f64>)>> {
         None
     }
 
-    /// S, strain per job unit of each load, where the command gives one.
+    /// Returns S, strain per job unit of each load, if the command computes it.
     fn sensitivity(&self) -> Option<&Sensitivity> {
         None
     }
@@ -115,16 +115,16 @@ where
     }
 }
 
-/// An outcome with the type of its answer left behind.
+/// An outcome without the type of its answer.
 #[pyclass(frozen, name = "_Outcome", module = "strainbridge._strainbridge")]
 pub(crate) struct AnyOutcome {
     /// The text of `result.json`, without the tables that only files have.
     #[pyo3(get)]
     json: String,
-    /// Table and summary as on a terminal.
+    /// Table and summary as in a terminal.
     #[pyo3(get)]
     words: String,
-    /// What is worth knowing of the way.
+    /// Notes about the computation.
     #[pyo3(get)]
     notes: Vec<String>,
     kept: Mutex<Box<dyn Kept>>,

@@ -61,7 +61,7 @@ impl ReadDeck {
         Ok(Self(read.map_err(|f| raise(py, f.into()))?))
     }
 
-    /// Its mesh: `points` (n x 3, basic frame), `grid` (ids), and of the cells, as VTK has them, `connectivity`, `offsets` (ends), `types`, `element`.
+    /// Returns the mesh: `points` (n x 3, basic frame), `grid` (ids), and the cells as in VTK: `connectivity`, `offsets` (ends), `types`, `element`.
     fn mesh<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (out, model) = (PyDict::new(py), &self.0.model);
         let values = model.grids.iter().flat_map(|g| [g.x.x, g.x.y, g.x.z]);
@@ -102,13 +102,13 @@ impl ReadDeck {
         Ok(edited_files(&self.0.deck, &edits, &folder, stem))
     }
 
-    /// Number of cards by name.
+    /// Returns the number of cards by name.
     #[getter]
     fn counts(&self) -> BTreeMap<String, usize> {
         self.0.deck.counts.clone()
     }
 
-    /// Everything that is wrong with it, as the parts of faults.
+    /// Returns all faults of the deck, each as its parts.
     #[getter]
     fn faults(&self) -> Vec<(String, Option<u32>, String, String, String)> {
         let parts = |f: &Fault| {
@@ -118,7 +118,7 @@ impl ReadDeck {
         self.0.faults.iter().map(parts).collect()
     }
 
-    /// Ids and locations in the basic frame of its grids.
+    /// Returns ids of the grids, and their locations in the basic frame.
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let (out, grids) = (PyDict::new(py), &self.0.model.grids);
         put(&out, "id", ids(grids.iter().map(|g| i64::from(g.id))))?;
@@ -258,7 +258,7 @@ impl ReadResults {
         Ok(this)
     }
 
-    /// What its tables hold, as JSON.
+    /// Returns the headers of the result tables, as JSON.
     fn tables(&self, py: Python) -> PyResult<String> {
         self.with(py, |file| {
             let blocks = file.blocks().iter().map(|b| {

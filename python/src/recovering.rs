@@ -280,15 +280,15 @@ fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
 
 /// Loads of all rows.
 struct Rows {
-    /// `k` a row.
+    /// Loads, `k` a row.
     loads: Vec<f64>,
-    /// Rows whose intervals have another width, and those widths.
+    /// Rows whose intervals have another width, with these widths.
     others: Vec<(usize, Vec<f64>)>,
-    /// What the rows lack.
+    /// Counts of missing readings in the rows.
     missing: Missing,
 }
 
-/// Loads of runs as they were judged, and the widths of those that differ from `half`.
+/// Returns the loads of recovered runs, and the widths that differ from `half`.
 fn of_runs(judged: &Recovery, half: &[f64]) -> Rows {
     let mut missing = Missing::new(half.len());
     for r in &judged.runs {

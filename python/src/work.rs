@@ -17,22 +17,22 @@ use strainbridge::stop::Stop;
 
 /// Bytes of stack of a working thread, as in the command.
 const STACK: usize = 8 << 20;
-/// How often the calling thread looks for Ctrl-C and tells of progress.
+/// Period at which the calling thread checks for Ctrl-C and reports progress.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// On how many threads, and who hears of progress.
+/// Number of threads, and the callback for progress.
 #[derive(Default)]
 pub(crate) struct Asked {
-    /// As many as the machine has where `None`.
+    /// Number of threads; `None`: as many as the machine has.
     pub threads: Option<usize>,
-    /// Called with stage, parts done, parts in all (0: not known).
+    /// Callback with stage, completed parts and total parts (0: unknown).
     pub progress: Option<Py<PyAny>>,
 }
 
-/// What unwinds work that was stopped.
+/// Panic value that unwinds cancelled work.
 struct Stopped;
 
-/// What the work says of itself, and whether it is to stop.
+/// Progress of the work, and whether it is to stop.
 #[derive(Default)]
 pub(crate) struct Heard {
     stage: Mutex<String>,
@@ -85,10 +85,10 @@ impl Heard {
     }
 }
 
-/// What `work` returns.
+/// Runs `work` on its own threads and returns its result.
 ///
 /// # Errors
-/// `KeyboardInterrupt`, and what the one who hears of progress raises, once the work has stopped; `RuntimeError` where it panics.
+/// `KeyboardInterrupt`, and any exception of the progress callback, once the work has stopped; `RuntimeError` if it panics.
 pub(crate) fn run<T: Send>(
     py: Python,
     asked: &Asked,

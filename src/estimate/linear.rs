@@ -19,7 +19,7 @@ pub struct LinearGaussian<'a> {
     pub rows: &'a Matrix,
     /// Errors `e`.
     pub errors: ReadingErrors<'a>,
-    /// What is known of each parameter beforehand (mean 0); `None` where nothing is.
+    /// Standard deviation of each parameter before the measurement (mean 0); `None` if unknown.
     pub prior_sd: &'a [Option<f64>],
     /// Factors that bring the columns of `A` to comparable size.
     pub scales: &'a [f64],

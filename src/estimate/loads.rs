@@ -15,12 +15,12 @@ pub struct LoadEstimate {
     pub covariance: Vec<f64>,
     /// Factor on sigma that gives the 95 % interval (normal or Student t).
     pub coverage_factor: f64,
-    /// What the estimate says of itself.
+    /// Findings on the estimate.
     pub findings: Vec<Finding>,
 }
 
 impl LoadEstimate {
-    /// One standard deviation of load `i`.
+    /// Returns one standard deviation of load `i`.
     pub fn sigma(&self, i: usize) -> f64 {
         let n = self.values.len();
         self.covariance

@@ -17,27 +17,27 @@ fn of(x: f64, tail: impl Fn(f64) -> Option<f64>) -> f64 {
     }
 }
 
-/// Chance of a stated interval or region to contain the truth.
+/// Probability that a stated interval or region contains the truth.
 pub const COVERAGE: f64 = 0.95;
-/// Chance of so few intervals that hold, under which they are too narrow.
+/// Probability of the number of intervals that contain the truth, below which intervals are too narrow.
 pub const TOO_FEW: f64 = 0.01;
 
-/// Returns the chance that at most `held` of `of` independent 95 % intervals contain the truth; 1 of none.
+/// Returns the probability that at most `held` of `of` independent 95 % intervals contain the truth; 1 for none.
 pub fn chance_of_so_few(held: usize, of: usize) -> f64 {
     Binomial::new(COVERAGE, of as u64).map_or(1.0, |b| b.cdf(held as u64))
 }
 
-/// Of chi-square with `dof` degrees of freedom; 1 without any.
+/// Returns the upper tail probability of chi-square with `dof` degrees of freedom; 1 without any.
 pub fn chi_square_tail(chi2: f64, dof: f64) -> f64 {
     of(chi2, |x| Some(ChiSquared::new(dof).ok()?.sf(x)))
 }
 
-/// Of Student's t, one side; 1 without degrees of freedom.
+/// Returns the upper tail probability of Student's t, one side; 1 without degrees of freedom.
 pub fn student_tail(t: f64, dof: f64) -> f64 {
     of(t, |x| Some(StudentsT::new(0.0, 1.0, dof).ok()?.sf(x)))
 }
 
-/// Of a ratio of variances with `dof` and `from` degrees of freedom; 1 where either has none.
+/// Returns the upper tail probability of a ratio of variances with `dof` and `from` degrees of freedom; 1 if either has none.
 pub fn f_tail(ratio: f64, dof: f64, from: f64) -> f64 {
     of(ratio, |x| Some(FisherSnedecor::new(dof, from).ok()?.sf(x)))
 }

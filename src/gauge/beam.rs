@@ -17,10 +17,10 @@ pub(super) struct BeamSeat {
     pub(super) station: f64,
 }
 
-/// Sine of the angle to the axis up to which a gauge counts as along it: what is left is 3e-4 of its strain.
+/// Sine of the angle to the axis up to which a gauge counts as along it: the difference is 3e-4 of its strain.
 const ALONG: f64 = 0.0175;
 
-/// What of a gauge is not along the axis of its beam.
+/// Returns, in words, the part of a gauge that is not along the axis of its beam.
 fn across(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
     let turned = |d: &Vec3| d.cross(axis).norm() > ALONG * d.norm();
     if spec.bridge == Bridge::Shear {
@@ -38,7 +38,7 @@ fn across(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
     }
 }
 
-/// The gauge at a recovery point.
+/// Builds the gauge at a recovery point.
 ///
 /// A bending bridge pairs the point with the one across the neutral axis, which bends by the same strain with its sign turned: it reads
 /// twice (half bridge) or four times (full bridge) the strain of the point less that of the neutral axis.

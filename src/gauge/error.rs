@@ -40,13 +40,13 @@ pub enum GaugeError {
         /// Length of the part along the axis of the grid, through its middle.
         part: f64,
     },
-    /// A gauge on a bar or beam that reads across its axis: recovery points have the strain along it alone.
+    /// A gauge on a bar or beam that reads across its axis: recovery points only have the strain along it.
     AcrossBeam {
         /// Name.
         gauge: String,
         /// Element id.
         element: u32,
-        /// What it reads, in words.
+        /// Description of the gauge.
         what: &'static str,
     },
 }

@@ -1,7 +1,7 @@
-//! What a gauge reads of a strain field.
+//! Reading of a gauge in a strain field.
 //!
-//! [`GaugeSpec`] says where it is glued and how it is wired; [`build`] lays it onto the model's surface and gives [`Gauge`]s: lists of arms,
-//! each a linear functional of the strain at one place, so that `reading = sum coefficient . strain`.
+//! [`GaugeSpec`] states installed position and wiring. [`build`] places it on the model's surface and returns [`Gauge`]s: lists of arms.
+//! Each arm is a linear functional of the strain at one place, so that `reading = sum coefficient . strain`.
 
 mod arms;
 mod bar_run;

@@ -1,4 +1,4 @@
-//! What a gauge reads more when it is glued a little way off.
+//! Change of a gauge's reading with its position.
 
 use super::arms::{Arm, Gauge, Spot};
 use super::grid_average::about_centre;
@@ -8,9 +8,9 @@ use super::surface::centre;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::model::{Model, Vec3};
 
-/// A gauge that reads the change of `gauge` per unit of length (that of the deck) when all its arms move along `direction` (basic frame,
-/// laid onto each arm's shell): the gradient that fits the neighbours of the shell best. `None` for arms on bars, at corners of shells, and
-/// on shells without neighbours in that direction.
+/// Returns a gauge that reads the change of `gauge` per unit of length (of the deck) if all its arms move along `direction` (basic frame,
+/// projected onto each arm's shell). It is the gradient that fits the neighbours of the shell best. `None` for arms on bars, at corners of shells,
+/// and on shells without neighbours in that direction.
 pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
     let mut arms = Vec::new();
     for arm in &gauge.arms {

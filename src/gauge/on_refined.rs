@@ -7,8 +7,8 @@ use crate::fe::{BeamField, CaseResult, PlaneStrain, ShellField};
 use crate::model::{Model, RefinedModel, ShellIx};
 use rayon::prelude::*;
 
-/// The same gauge on `fine`, the refinement of `coarse`: the mean over the four parts of its shell, so that it reads the same place and
-/// the same length; an arm at a corner stays at that corner. `None` where a shell has no area.
+/// Returns `gauge` on `fine`, the refinement of `coarse`: the mean over the four parts of its shell, so that place and length are unchanged.
+/// An arm at a corner remains at that corner. `None` if a shell has no area.
 pub fn on_refined(gauge: &Gauge, coarse: &Model, fine: &RefinedModel) -> Option<Gauge> {
     let mut arms = Vec::new();
     for arm in &gauge.arms {

@@ -93,7 +93,7 @@ impl Manifest {
         gone.filter(|n| !self.holds(n)).map(PathBuf::from).collect()
     }
 
-    /// As text.
+    /// Returns the manifest as text.
     pub(crate) fn text(&self) -> String {
         let line = |(command, name): &(String, String)| match self.digest(name) {
             Some(digest) => format!("{command}\t{name}\t{digest}\n"),

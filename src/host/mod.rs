@@ -1,4 +1,4 @@
-//! What a command meets outside: files read and checked, kept solutions, the output folder, progress, bad input, and the outcome it gives.
+//! Inputs and outputs of commands: files read and checked, stored solutions, the output folder, progress, bad input, and the outcome.
 
 pub mod context;
 pub mod fault;

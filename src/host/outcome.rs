@@ -1,4 +1,4 @@
-//! What a question comes to: the answer of its own type, with units, inputs, findings and seconds. `result.json` is it, serialised.
+//! Outcome of a command: the answer of its own type, with units, inputs, findings and seconds. `result.json` is its serialised form.
 
 use super::words::counted;
 use crate::finding::{Finding, Severity, few, worst};
@@ -15,7 +15,7 @@ pub const SCHEMA: u32 = 1;
 
 /// Answer of a command. Each command has its own type of answer.
 pub trait Answer: Serialize {
-    /// The command that asks.
+    /// Name of the command.
     const COMMAND: &'static str;
     /// Name of the result, as the subject of a sentence: `The recovered loads`.
     const RESULT: &'static str;

@@ -97,7 +97,7 @@ fn moment(cell: &calamine::ExcelDateTime) -> String {
     format!("{year:04}-{month:02}-{day:02} {time}")
 }
 
-/// As above.
+/// Returns the error that this build can't read a spreadsheet.
 #[cfg(not(feature = "xlsx"))]
 pub(crate) fn csv_of_sheet(_: &[u8]) -> Result<String, String> {
     Err("a spreadsheet, which this build can't read (feature `xlsx`)".to_owned())

@@ -1,4 +1,4 @@
-//! What a workflow collects on its way to an outcome: files read, findings, seconds of its stages, notes.
+//! State of a command in progress: files read, findings, seconds of its stages, notes.
 
 use crate::finding::Finding;
 use crate::host::context::Context;
@@ -8,7 +8,7 @@ use crate::host::outcome::{Findings, Outcome, Seconds, StatedUnits};
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// A question on its way to its answer.
+/// A command in progress, with the data of its outcome.
 pub struct Work<'a> {
     /// Context of the command.
     pub cx: Context<'a>,

@@ -15,19 +15,20 @@ const UNIT: f64 = 4.0;
 const SIGN: f64 = -1.0 / 3.0;
 /// Standard deviations from which a gauge's readings determine the factor of a load.
 const DETERMINED: f64 = 5.0;
-/// Share of the largest answer of any gauge to a load from which a gauge counts for it.
+/// Share of the largest response of any gauge to a load from which a gauge counts for it.
 const ANSWERS: f64 = 0.1;
-/// Share of the sum of squares between readings and model that a fault of the records leaves at most, once it is undone.
+/// Largest share of the sum of squares between readings and model that a fault of the records leaves after its correction.
 const UNDONE: f64 = 0.25;
-/// The same for exchanged records. An effect of the model may look like exchanged wheels: without a payload in the model, two exchanges left 5 %.
+/// Largest such share that exchanged records leave. An effect that the model lacks may look like exchanged wheels: without a payload in the model,
+/// two exchanges left 5 %.
 const EXCHANGED: f64 = 0.02;
 /// Share of the largest eigenvalue of the loads' squares from which the runs separate the loads.
 const SEPARATED: f64 = 1e-6;
-/// Sum of squares between readings and model over that of the noise up to which nothing is wrong.
+/// Sum of squares between readings and model, over the sum for noise, up to which there is no fault.
 const BEYOND: f64 = 4.0;
-/// Loads up to which two exchanged pairs are searched for: some thousand combinations.
+/// Number of loads up to which two exchanged pairs are searched for: some thousand combinations.
 const PAIRED: usize = 12;
-/// How close a factor comes to that of a pair of units to be called after it.
+/// Largest distance of a factor from the factor of a pair of units that it identifies.
 const NEAR: f64 = 0.15;
 
 /// Factors between what readings show and what the records make of them, with what each stands for.
@@ -54,11 +55,11 @@ pub struct RecordedRuns<'a> {
     pub readings: Vec<Vec<f64>>,
     /// Strain of the model: of `gauge` in `run` under the load of the third number, its size taken from the record of the fourth.
     pub strain_of: Box<dyn Fn(usize, usize, usize, usize) -> f64 + Sync + 'a>,
-    /// What each load measures: records of one quantity may be exchanged. `None`: its record can't be that of another load.
+    /// Quantity of each load: records of one quantity may be exchanged. `None`: its record can't be another load's.
     pub quantities: Vec<Option<Quantity>>,
-    /// Whether the record of a load in a run is known well enough to compare.
+    /// Whether the record of a load in a run is accurate enough to compare.
     pub known: Vec<bool>,
-    /// Gauges that are wrong themselves and do not count.
+    /// Gauges with their own faults, which do not count.
     pub excluded: Vec<usize>,
     /// Noise of a reading, 1 sd.
     pub noise: f64,

@@ -182,7 +182,7 @@ impl Row<'_> {
         None
     }
 
-    /// What the word in a column means; `None` where it is blank, or unknown: a fault then.
+    /// Parses the word in a column; `None` if it is blank or unknown. An unknown word is a fault.
     fn word<T>(
         &mut self,
         name: &str,

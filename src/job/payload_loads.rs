@@ -1,14 +1,14 @@
-//! Loads that are a payload's: its weight, and the moments of that about its nominal place.
+//! Loads of a payload: its weight, and the moments of the weight about its nominal place.
 
 use super::types::{Component, Job, LoadActs};
 
-/// Names of the loads where no model stands behind them: the weight, downwards, and its moments about x and y.
+/// Names of these loads without a model: the weight, downwards, and its moments about x and y.
 pub const NAMES: [&str; 3] = ["payload", "payload.MX", "payload.MY"];
 
-/// How much of the weight `W`, of `W dx` and of `W dy` each of [`NAMES`] is: `MX = -W dy`, `MY = W dx`, z upwards.
+/// Coefficients of the weight `W`, of `W dx` and of `W dy` in each of [`NAMES`]: `MX = -W dy`, `MY = W dx`, z upwards.
 pub const PARTS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
 
-/// What the load of this name is of a payload, as [`PARTS`] says; `None` where it is none of its loads. A load at `[payload] grid` counts upwards.
+/// Returns the coefficients of a load by its name, as in [`PARTS`]; `None` if it is not a payload load. At `[payload] grid`, up is positive.
 pub fn part_of(job: &Job, name: &str) -> Option<[f64; 3]> {
     let by_name = || Some(PARTS[NAMES.iter().position(|n| *n == name)?]);
     match job.loads.iter().find(|l| l.name == name).map(|l| l.acts) {

@@ -1,11 +1,11 @@
-//! What a load's name says of it.
+//! Quantity of a load, from its name.
 
 use crate::units::Quantity;
 
-/// Parts of a name that say that a load is a moment.
+/// Parts of a name that identify a moment.
 const MOMENTS: [&str; 3] = ["MX", "MY", "MZ"];
 
-/// Force or moment by the parts of a load's name (`LF.MX`, `MX_LF` and `M_LF` are moments); a force where the name does not tell.
+/// Returns force or moment by the parts of a load's name (`LF.MX`, `MX_LF` and `M_LF` are moments); force if the name does not state it.
 pub fn quantity_of_name(name: &str) -> Quantity {
     let is_moment = name
         .split(['.', '_', ' '])

@@ -6,7 +6,7 @@ use serde_json::{Map, Value, json};
 
 /// The keys: path, meaning, unit, default, words.
 const KEYS: &str = include_str!("keys.txt");
-/// What stands in the table for the names of vehicle models.
+/// Placeholder in the table for the names of vehicle models.
 const MODELS: &str = "@models";
 
 /// Meaning of a key of a job.
@@ -20,7 +20,7 @@ pub struct Key {
     pub unit: Option<&'static str>,
     /// Default in words; `None` for sections, and for keys of which one of several is required.
     pub default: Option<&'static str>,
-    /// The words that it takes, where only those will do.
+    /// Allowed words, if only these are valid.
     pub words: Vec<&'static str>,
 }
 

@@ -40,7 +40,7 @@ pub fn remedy<'a>(word: &str, names: impl IntoIterator<Item = &'a str> + Clone) 
     }
 }
 
-/// What to do about a table without the column that names its rows: the header that is meant by `word`, else what to do in general.
+/// Returns the remedy for a table without the column that names its rows: `general`, with the header closest to `word` if there is one.
 pub fn header_remedy<'a>(
     word: &str,
     headers: impl IntoIterator<Item = &'a str>,
@@ -52,8 +52,8 @@ pub fn header_remedy<'a>(
     )
 }
 
-/// What to do about gauges without a column: the columns that may be meant, each next to its gauge, else what to do in general. A column that
-/// comes close to several gauges is named for the closest of them alone.
+/// Returns the remedy for gauges without a column: the closest columns, each with its gauge, or a general remedy. A column that
+/// comes close to several gauges is listed only for the closest gauge.
 pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
     let mut pairs: Vec<(usize, &str, &str)> = Vec::new();
     for gauge in gauges {

@@ -29,11 +29,11 @@ pub fn read_table(file: &str, text: &str) -> Result<Table, Faults> {
     whole.ok_or_else(|| Faults::from(empty(file)))
 }
 
-/// The same, `most` rows at a time: fields of a long table take many times its text. `take` gets the last rows too, and a table without
-/// rows once.
+/// Reads a table in parts of `most` rows: fields of a long table take many times the memory of its text. `take` also gets the last part, and a table
+/// without rows once.
 ///
 /// # Errors
-/// As [`read_table`]; `take` may have seen rows before a fault was met.
+/// Every error of [`read_table`]; `take` may have received rows before a fault was found.
 pub fn each_part(
     file: &str,
     text: &str,

@@ -139,7 +139,7 @@ impl Cholesky {
     }
 }
 
-/// Memory to work by blocks; `None` where these don't pay, or where there is no room for it: a plain loop takes none.
+/// Returns memory for blocks; `None` if blocks are slower, or without room for it: a plain loop needs none.
 fn workspace(n: usize, size: StackReq) -> Option<MemBuffer> {
     (n >= BLOCKED)
         .then(|| MemBuffer::try_new(size).ok())
@@ -150,7 +150,7 @@ fn parameters() -> Spec<LltParams, f64> {
     Spec::new(<LltParams as Auto<f64>>::auto())
 }
 
-/// Replaces the lower triangle of `a`, by columns, by its factor; what is not positive definite leaves pivots that are no numbers.
+/// Replaces the lower triangle of `a`, by columns, by its factor; a matrix that is not positive definite gives pivots that are NaN.
 fn factor_by_columns(a: &mut [f64], n: usize) {
     for j in 0..n {
         let (before, rest) = a.split_at_mut(j * n);
@@ -166,7 +166,7 @@ fn factor_by_columns(a: &mut [f64], n: usize) {
     }
 }
 
-/// The same by blocks; `None` where the matrix is not positive definite.
+/// Replaces the lower triangle of `a` by its factor, by blocks; `None` if the matrix is not positive definite.
 fn factor_by_blocks(a: &mut [f64], n: usize, memory: &mut MemBuffer) -> Option<()> {
     cholesky_in_place(
         MatMut::from_column_major_slice_mut(a, n, n),

@@ -62,7 +62,7 @@ pub fn find_gauge_columns(
     Ok(named.collect())
 }
 
-/// The fault of a gauge's unit that is none of strain.
+/// Returns the fault of a gauge whose unit is not a unit of strain.
 pub fn no_strain(file: &str, column: &Column) -> Fault {
     let units = [&column.header.bracket, &column.stated];
     let unit = units.into_iter().find(|u| microstrain_in(u).is_none());
@@ -74,11 +74,11 @@ pub fn no_strain(file: &str, column: &Column) -> Fault {
     )
 }
 
-/// Which names are whose.
+/// Names of gauges and strain columns, to match both.
 struct Names<'a> {
-    /// The job's gauges; none where it doesn't tell.
+    /// Gauges of the job; empty if it states none.
     known: HashSet<&'a str>,
-    /// Those that no column is called in whole, by their name before the bracket.
+    /// Gauges whose whole name no column has, by their name before the bracket.
     split: HashMap<String, Vec<(Header, &'a str)>>,
     /// Names of columns of strain.
     held: HashSet<&'a str>,
@@ -116,15 +116,15 @@ impl<'a> Names<'a> {
     }
 }
 
-/// What a column holds.
+/// Content of a column.
 enum Holds {
     /// A gauge, and microstrain in one of its numbers.
     Gauge(String, f64),
-    /// Something else.
+    /// Another quantity.
     Other,
 }
 
-/// Why a column that should be a gauge's can't be.
+/// Reasons why a column can't be read as a gauge's.
 enum Wrong {
     /// The unit is not a unit of strain.
     NoStrain,
@@ -181,8 +181,8 @@ fn holder(column: &Column, names: &Names) -> Result<Holds, Wrong> {
     }
 }
 
-/// What a column is called, and microstrain in one of its numbers, where no gauge's name tells: what is no unit in brackets is part of the
-/// name, `None` where it is a unit that is none of strain.
+/// Returns the name of a column and microstrain in one of its numbers, if no gauge has this name. Text in brackets that is not a unit is part of the
+/// name; `None` for a unit that is not a unit of strain.
 fn by_itself(column: &Column) -> (String, Option<f64>) {
     let header = &column.header;
     if column.clash().is_some() {

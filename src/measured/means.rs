@@ -1,4 +1,4 @@
-//! What a strain file comes to where only its means count: sums over the rows, of a record passed over once, however long it is.
+//! Means of a strain file: sums over the rows of a record in one pass, however long it is.
 
 use super::open::is_record;
 use super::record::Record;
@@ -10,7 +10,7 @@ use crate::job::{Job, NamedFile};
 use crate::recovery::net::Series;
 use crate::series::record::is_format;
 
-/// Text beyond which a record is passed over rather than read whole: its samples would take as much again.
+/// Bytes of text beyond which a record is read in one pass, not as a whole: its samples would take as much memory again.
 const LARGE: usize = 16 << 20;
 
 /// A strain file.

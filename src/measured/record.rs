@@ -118,7 +118,7 @@ impl Record {
         Self { blank, ..self }
     }
 
-    /// The samples of a part in which a gauge (the column that is read by its number) is dead.
+    /// Returns the samples of a part in which a gauge (a column by its number) is dead.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -128,7 +128,7 @@ impl Record {
         found.map_err(|e| record_fault(&self.file, &e))
     }
 
-    /// What the gauges give in all of the record, of which the rows in `looked` are some.
+    /// Returns the content of each gauge's column in all of the record, of which the rows in `looked` are a part.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -138,7 +138,7 @@ impl Record {
         found.map_err(|e| record_fault(&self.file, &e))
     }
 
-    /// The readings of every column that is read, strain, a column each.
+    /// Returns the readings of every column that is read, strain, a column each.
     ///
     /// # Errors
     /// A piece that can't be read.
@@ -155,7 +155,7 @@ impl Record {
         Ok(out)
     }
 
-    /// The same record with other readings, strain, a column each; the first sample and the time between samples, s.
+    /// Returns this record with other readings, strain, a column each; the pair is the first sample's time and the time between samples, s.
     ///
     /// # Errors
     /// A record without samples.

@@ -57,12 +57,12 @@ fn no_rows(file: &str) -> Fault {
     )
 }
 
-/// What has been read so far.
+/// Content of a file read so far.
 struct Reading {
     key: usize,
-    /// Seconds in one of the times.
+    /// Seconds in one unit of the times.
     second: f64,
-    /// Columns of strain, and microstrain in one of each.
+    /// Columns of strain, and microstrain in one unit of each.
     columns: Vec<(usize, f64)>,
     gauges: Vec<String>,
     is_runs: bool,

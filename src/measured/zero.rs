@@ -125,8 +125,8 @@ pub(crate) fn note_columns(
     work.findings.extend(new);
 }
 
-/// Readings less their zero, judged as `recover` judges its own: what is no strain becomes no reading, and findings say so, once of the
-/// same gauges.
+/// Returns readings less their zero, tested as `recover` tests its own: a reading that is not strain becomes missing. Findings report it, once for
+/// the same gauges.
 pub(crate) fn judged(
     work: &mut Work,
     measured: &Measured,
@@ -147,12 +147,12 @@ pub(crate) fn judged(
     kept
 }
 
-/// Whether readings are strain by what the job says of S: with a model or a given S. What S is learnt from alone may be any signal.
+/// Whether readings are strain according to the job: with a model or a given S. Readings for a calibration alone may be any signal.
 pub(crate) fn reads_strain(job: &Job) -> bool {
     job.model.is_some() || job.sensitivity.is_some()
 }
 
-/// As [`judged`], of a job that may have no S yet: its readings are held against their noise alone.
+/// Tests readings like [`judged`], for a job that may have no S yet: its readings are then tested against their noise alone.
 pub(crate) fn judged_to_learn(
     work: &mut Work,
     job: &Job,

@@ -8,7 +8,7 @@ use nastran::cards::{Cards, Param};
 use nastran::place::Place;
 use std::collections::{HashMap, HashSet};
 
-/// What is known while the model is being built.
+/// State of a model that is being built.
 pub(super) struct Builder<'a> {
     pub cards: &'a Cards,
     pub case_params: &'a [Param],
@@ -19,14 +19,14 @@ pub(super) struct Builder<'a> {
     pub grid_ix: HashMap<u32, GridIx>,
     pub material_ix: HashMap<u32, MaterialIx>,
     pub element_ids: HashMap<u32, (&'static str, Place)>,
-    /// Properties of bars (false) and beams (true) that stand in the deck and have a fault of their own: they are not missing.
+    /// Properties of bars (false) and beams (true) that are in the deck and have their own fault: they are not missing.
     pub refused_properties: HashSet<(bool, u32)>,
-    /// Grids that only say where a connector stands (GS).
+    /// Grids that only state the place of a connector (GS).
     pub points: Vec<GridIx>,
 }
 
 impl Model {
-    /// The model that the cards mean, and every fault found.
+    /// Builds the model of the cards, and lists every fault.
     ///
     /// Elements whose grids are missing are left out; a shell whose property is missing stays in the mesh without stiffness. A
     /// model with a fault of weight [`super::FaultWeight::Error`] is good for looking at, not for solving.

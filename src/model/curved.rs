@@ -109,7 +109,7 @@ pub(crate) fn solid_functions(shape: SolidShape, p: [f64; 3]) -> (Vec<[f64; 4]>,
     (corners, domain.edge_functions(p))
 }
 
-/// The same of a triangle or square, third parameter 0: what places a shell with mid-side grids.
+/// Returns corner and edge functions of a triangle or square with their derivatives, third parameter 0; they define a shell with mid-side grids.
 pub(crate) fn face_functions(n_corners: usize, p: [f64; 2]) -> (Vec<[f64; 4]>, Vec<[f64; 4]>) {
     let domain = if n_corners == 3 {
         Domain::Triangle

@@ -1,4 +1,4 @@
-//! What is wrong with a deck as a model.
+//! Faults of a deck as a model.
 
 use crate::finding::LISTED;
 use nastran::place::Place;
@@ -9,32 +9,32 @@ use std::fmt;
 pub struct ModelFault {
     /// Card, such as `CQUAD4 12`.
     pub card: String,
-    /// Field, such as `PID`; `card` where it is the card as a whole.
+    /// Field, such as `PID`; `card` if the fault concerns the whole card.
     pub field: &'static str,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
-    /// What is wrong.
+    /// Kind of the fault.
     pub kind: FaultKind,
 }
 
 /// Whether a fault stops a solution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum FaultWeight {
-    /// Worth knowing: the model is complete.
+    /// A remark: the model is complete.
     Note,
-    /// The model lacks what a card that is not carried defines: refuse to use it.
+    /// The model lacks the content of an unsupported card: refuse to use it.
     NotCarried,
-    /// The model can't be trusted: refuse to solve it.
+    /// The model is unreliable: refuse to solve it.
     Error,
 }
 
-/// What is wrong, with the numbers.
+/// Kinds of faults, with their numbers.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub enum FaultKind {
-    /// Another card that is referred to is missing.
+    /// Another card, to which this card refers, is missing.
     Missing { what: &'static str, id: i64 },
-    /// Card that others refer to and that the model does not carry.
+    /// Unsupported card to which other cards refer.
     NotCarried {
         /// Kind of card that the reference needs.
         what: &'static str,
@@ -45,7 +45,7 @@ pub enum FaultKind {
     },
     /// An id occurs twice.
     Duplicate { what: &'static str, first: Place },
-    /// A card is there twice with the same content, and is read once.
+    /// A card occurs twice with equal content, and is read once.
     Repeated { what: &'static str, first: Place },
     /// A temperature set that states no temperature of a grid, and none of all grids.
     NoTemperature {
@@ -124,7 +124,7 @@ impl ModelFault {
         }
     }
 
-    /// What to do about it.
+    /// Returns the remedy.
     pub fn remedy(&self) -> String {
         use FaultKind::*;
         match &self.kind {
@@ -179,14 +179,14 @@ impl ModelFault {
 }
 
 impl fmt::Display for ModelFault {
-    /// What is wrong with the card, without file, line and remedy.
+    /// Formats the message about the card, without file, line and remedy.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: {}", self.card, self.kind)
     }
 }
 
 impl fmt::Display for FaultKind {
-    /// What is wrong.
+    /// Formats the message about the fault.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         use FaultKind::*;
         match self {

@@ -3,7 +3,7 @@
 use super::types::*;
 use crate::linalg::Matrix6;
 
-/// What a model weighs.
+/// Mass and centre of gravity of a model.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weight {
     /// Mass, PARAM,WTMASS applied.

@@ -1,6 +1,6 @@
-//! What a deck means: ids resolved, coordinates in the basic frame, defaults applied, faults found.
+//! Model of a deck: ids resolved, coordinates in the basic frame, defaults applied, faults listed.
 //!
-//! [`Model::from_cards`] builds it, one file a kind of card; [`ModelFault`] says what is wrong; [`Model::weight`] weighs it.
+//! [`Model::from_cards`] builds it, with one file for each kind of card. [`ModelFault`] describes a fault; [`Model::weight`] computes the mass.
 
 mod beam;
 mod beam_property;

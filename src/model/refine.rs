@@ -1,4 +1,4 @@
-//! The same model on a mesh half as wide: how much of an answer is the mesh.
+//! Refines a model to half the mesh width, which shows the mesh error of a result.
 
 use super::types::{
     FrameIx, Grid, GridIx, Load, LoadSet, Model, MpcSet, Shell, ShellIx, SpcSet, TemperatureSet,
@@ -7,7 +7,7 @@ use nastran::cards::{CoordKind, Dofs, ShellShape};
 use nastran::place::Place;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A model whose shells, all or some, are divided in four, and where each went.
+/// A model whose shells, all or some, are divided in four, with the children of each.
 #[derive(Clone, Debug)]
 pub struct RefinedModel {
     /// The finer model. Load sets that act on elements are left out: they would have to be divided too. New grids have the mean
@@ -274,11 +274,11 @@ struct Builder {
     grids: Vec<Grid>,
     middles: BTreeMap<(GridIx, GridIx), GridIx>,
     next_id: u32,
-    /// Of each grid that was made.
+    /// Parents of each new grid.
     parents: Vec<Vec<GridIx>>,
-    /// Sides along which other elements go.
+    /// Sides to which other elements connect.
     ties: BTreeSet<(GridIx, GridIx)>,
-    /// Grids made on those.
+    /// New grids on these sides.
     tied: BTreeSet<GridIx>,
 }
 

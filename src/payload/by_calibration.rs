@@ -8,13 +8,13 @@ use crate::recovery::unlike::{check, estimate_loosely, is_unlike};
 use crate::recovery::{ErrorModel, Readings};
 use crate::sensitivity::{Load, Sensitivity, Uncertainty};
 
-/// One run.
+/// Payload of one run by a calibrated S.
 pub(super) struct Found {
-    /// Of `p = (F, F dx, F dy)`, those that the calibration has columns of: value and number.
+    /// Components of `p = (F, F dx, F dy)` with a column in the calibration: number and value.
     pub p: Vec<(usize, f64)>,
-    /// Covariance of these, by rows.
+    /// Covariance of these components, by rows.
     pub covariance: Vec<f64>,
-    /// Degrees of freedom behind it.
+    /// Degrees of freedom of the covariance.
     pub dof: f64,
     /// Factor on sigma of a 95 % interval.
     pub coverage_factor: f64,

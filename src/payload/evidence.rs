@@ -1,10 +1,10 @@
-//! What is known of a payload before it is weighed: how gauges and wheels answer to it, and what they read.
+//! Inputs of weighing a payload: the response of gauges and wheels to it, and their readings.
 
 use crate::linalg::Matrix;
 use crate::sensitivity::{GaugeNoise, Uncertainty};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-/// How gauges and wheels answer, by unit of weight (model units) and weight times shift from the nominal place.
+/// Response of gauges and wheels to a unit of weight (model units), and to weight times shift from the nominal place.
 ///
 /// A payload of weight `F` at a shift `(dx, dy)` in plan gives, with `p = (F, F dx, F dy)` and wheel forces `R` (changes, up):
 /// `strain = wheels R + payload p`, and on a flat floor `R = floor p`; equilibrium: `sum R = F`, `sum R arm = F (dx, dy)`.
@@ -16,13 +16,13 @@ pub struct PayloadModel {
     pub wheels: Matrix,
     /// `n_gauges x 3`, strain per unit of `p` with the wheels unloaded.
     pub payload: Matrix,
-    /// `n_wheels x 3`, reactions on a flat floor per unit of `p`; `None` where no model tells.
+    /// Reactions on a flat floor per unit of `p`, `n_wheels x 3`; `None` without a model.
     pub floor: Option<Matrix>,
-    /// Wheels from the nominal place, in plan; `None` where unknown.
+    /// Positions of the wheels from the nominal place, in plan; `None` if unknown.
     pub arms: Option<Vec<[f64; 2]>>,
-    /// What runs of known payload leave uncertain of `payload`, its three columns being the loads; `None` where a model or a table gives them.
+    /// Uncertainty of `payload` from calibration runs, its three columns being the loads; `None` if a model or a table gives them.
     pub calibrated: Option<Uncertainty>,
-    /// Noise of the gauges, of which a run's errors have the correlation; `None` where they are independent of each other.
+    /// Noise of the gauges, which gives the correlation of a run's errors; `None` if the gauges are independent of each other.
     pub noise: Option<GaugeNoise>,
 }
 
@@ -35,7 +35,7 @@ pub struct PayloadRun {
     pub strain: Vec<f64>,
     /// Standard deviation of the readings by gauge.
     pub sigma: Vec<f64>,
-    /// Changes of the wheel forces, up; NaN where not measured, empty where none is.
+    /// Changes of the wheel forces, up; NaN if not measured, empty if none is measured.
     pub reactions: Vec<f64>,
     /// Shift of the payload where its place is known.
     pub shift: [f64; 2],
@@ -100,19 +100,19 @@ pub struct WeighedRun {
     pub force: f64,
     /// Standard deviation of the weight.
     pub sigma: f64,
-    /// Degrees of freedom behind it; infinite where it was not estimated.
+    /// Degrees of freedom of the standard deviation; infinite if it was not estimated.
     pub dof: f64,
-    /// 95 %.
+    /// 95 % interval of the weight.
     pub interval: [f64; 2],
     /// Shift from the nominal place: known or found.
     pub shift: [f64; 2],
     /// Covariance of the shift by rows; zeros where known.
     pub shift_covariance: [f64; 4],
-    /// Why the answer can't be used.
+    /// Reason why the result is not usable.
     pub refused: Option<Refusal>,
-    /// What each gauge alone says; NaN where it can't.
+    /// Payload estimate of each gauge alone; NaN if the gauge gives none.
     pub estimates: Vec<f64>,
-    /// Standard deviation of that.
+    /// Standard deviations of these estimates.
     pub estimate_sigma: Vec<f64>,
 }
 

@@ -2,14 +2,14 @@
 
 use std::f64::consts::TAU;
 
-/// What one gauge alone says: its reading over its sensitivity, a value a run.
+/// Payload estimates of one gauge alone: its reading over its sensitivity, a value a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeEstimates {
     /// Gauge name.
     pub name: String,
     /// Estimated payload force, a value a run; NaN where the run has no reading.
     pub estimates: Vec<f64>,
-    /// Stated noise over sensitivity, a value a run; `None` where nothing is known of the gauge's noise.
+    /// Stated noise over sensitivity, a value a run; `None` if the gauge's noise is unknown.
     pub sigma: Option<Vec<f64>>,
 }
 

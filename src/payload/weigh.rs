@@ -106,8 +106,8 @@ pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Wei
     }
 }
 
-/// The same with what the whole covariance of a calibrated S makes of it, where the payload's columns are its own: weight and place as `recover`
-/// takes them, by the gauges that count. A place that the calibration has no column for stays.
+/// Replaces weight and place by estimates with the whole covariance of a calibrated S, if the payload's columns are its own. It uses the gauges that
+/// count, like `recover`. A place without a column in the calibration is unchanged.
 fn calibrated(
     model: &PayloadModel,
     runs: &[PayloadRun],
@@ -171,7 +171,7 @@ fn undetermined(run: &PayloadRun, n: usize) -> WeighedRun {
     }
 }
 
-/// What each gauge alone says of a run: its reading, less what measured wheel forces cause, over its answer to a unit weight.
+/// Estimates the payload of a run from each gauge alone: reading, less strain by measured wheel forces, over the response to a unit weight.
 fn alone(
     model: &PayloadModel,
     run: &PayloadRun,
@@ -211,7 +211,7 @@ fn alone(
         .unzip()
 }
 
-/// What each gauge alone says of a run on the floor, with the model's error for a payload of about this size.
+/// Estimates the payload of a run on the floor from each gauge alone, with the model's error for a payload of about this size.
 fn alone_on_floor(
     model: &PayloadModel,
     run: &PayloadRun,

@@ -201,7 +201,7 @@ fn stations(fields: &[&BeamField], beam: BeamIx) -> Vec<f64> {
     all
 }
 
-/// What is to be said of elements without rows.
+/// Returns the findings on elements without rows.
 fn left_out(anisotropic: usize, absent: usize) -> Vec<Finding> {
     let mut findings = Vec::new();
     if anisotropic > 0 {

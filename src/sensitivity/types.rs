@@ -19,7 +19,7 @@ pub struct Load {
 }
 
 impl Load {
-    /// A wanted load without a stated size.
+    /// Returns a wanted load without a stated size.
     pub fn named(name: impl Into<String>) -> Self {
         Self {
             name: name.into(),
@@ -29,7 +29,7 @@ impl Load {
         }
     }
 
-    /// What is known of it beforehand, 1 sd about zero: the stated size of a nuisance load, `None` for a wanted one.
+    /// Returns the prior standard deviation of the load about zero: the stated size of a nuisance load, `None` for a wanted one.
     pub fn prior(&self) -> Option<f64> {
         self.expected.filter(|e| !self.wanted && *e > 0.0)
     }
@@ -44,9 +44,9 @@ pub struct Sensitivity {
     pub loads: Vec<Load>,
     /// Values.
     pub values: Matrix,
-    /// How far a calibrated S may be off; `None` where only the stated error of a model is known.
+    /// Uncertainty of a calibrated S; `None` if only the stated error of a model is known.
     pub uncertainty: Option<Uncertainty>,
-    /// Noise of the gauges; `None` where each has the stated noise, independent of the others.
+    /// Noise of the gauges; `None` if each has the stated noise, independent of the other gauges.
     pub noise: Option<GaugeNoise>,
 }
 

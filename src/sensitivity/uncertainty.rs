@@ -7,31 +7,31 @@ use crate::linalg::Matrix;
 pub struct Uncertainty {
     /// Covariance of the entries of S, `(n k) x (n k)` by rows, entry `g k + l` for gauge `g` and load `l`; strain^2 per load^2.
     pub covariance: Vec<f64>,
-    /// `C`, `n x n` by rows: covariance over gauges of what repeats of one loading scatter by, in units of `q^2`: scatter grows with the
+    /// `C`, `n x n` by rows: covariance over gauges of the scatter between repeats of one loading, in units of `q^2`. Scatter grows with the
     /// load.
     pub scatter: Vec<f64>,
     /// `S' S / n` of all calibrated gauges, `k x k` by rows: `q(f)^2 = f' (S' S / n) f` is the mean square of the predicted strain.
     pub mean_square: Vec<f64>,
-    /// Factor on the sigma of recovered loads, learnt from runs left out; 1 where they fall as far off as expected.
+    /// Factor on the sigma of recovered loads, from runs that were left out; 1 if their errors are as large as expected.
     pub scale: f64,
-    /// Degrees of freedom behind scatter and scale: the 95 % interval takes Student's factor; infinite where nothing was estimated.
+    /// Degrees of freedom of scatter and scale: the 95 % interval takes Student's factor; infinite if nothing was estimated.
     pub dof: f64,
-    /// Those behind the scatter in a pattern over the gauges that no loads make, such as a fault of one gauge; more than `dof`, as the
+    /// Degrees of freedom of the scatter in a pattern over the gauges that no loads make, such as a fault of one gauge. It exceeds `dof`, as the
     /// scatter of all such patterns was estimated together.
     pub dof_outside: f64,
-    /// Whether runs of one load alone, without a model, are all that taught it.
+    /// Whether S was calibrated only with runs of one load each, without a model.
     pub one_by_one: bool,
-    /// `A`, `n x n` by rows: covariance of the readings at any load, from a common zero or from what a straight line leaves; empty: zero.
+    /// `A`, `n x n` by rows: covariance of the readings at any load, from a common zero or the misfit of a straight line; empty: zero.
     pub additive: Vec<f64>,
-    /// Loads at which the errors of S do not count, because the strain there is what the runs determine; empty: no load.
+    /// Loads at which the errors of S do not count, because the runs determine the strain there; empty: no load.
     pub center: Vec<f64>,
-    /// Whether runs that were left out tested the intervals; `false` where each run was needed to determine S.
+    /// Whether runs that were left out tested the intervals; `false` if each run was needed to determine S.
     pub is_tested: bool,
 }
 
 impl Uncertainty {
-    /// Of a model whose influence coefficients err by `model_rel` each, by as much again a load as a whole, and by `off` (what is left of a
-    /// mesh's error, `n x k`) each, as much again by a factor common to all gauges of a load, and by the share `own_rel` each:
+    /// Returns the uncertainty of a model. Each influence coefficient errs by `model_rel`, and by as much again for a load as a whole. It errs by
+    /// `off` (remaining mesh error, `n x k`), and by as much again by a factor common to all gauges of a load. It also errs by the share `own_rel`:
     /// `Cov(S_gl, S_hm) = [l = m] ((off_gl off_hl + model_rel^2 S_gl S_hl) (1 + [g = h]) + own_rel^2 S_gl^2 [g = h])`.
     pub fn of_model(s: &Matrix, model_rel: f64, (off, own_rel): (&Matrix, f64)) -> Self {
         let (n, k) = s.shape();
@@ -64,8 +64,8 @@ impl Uncertainty {
         }
     }
 
-    /// Adds the error of a scale that all known loads of S share, relative, 1 sd: `Cov(S_gl, S_hm) += sd^2 S_gl S_hm`. The factor that runs left
-    /// out show does not apply to it: they were weighed on the same scale.
+    /// Adds the error of a scale that all known loads of S share, relative, 1 sd: `Cov(S_gl, S_hm) += sd^2 S_gl S_hm`. The factor from runs that were
+    /// left out does not apply to it: they were weighed on the same scale.
     pub fn add_common_scale(&mut self, s: &Matrix, sd: f64) {
         if sd == 0.0 {
             return;

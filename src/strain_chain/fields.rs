@@ -102,7 +102,7 @@ impl Fields {
     }
 }
 
-/// The loads of a job with their cases.
+/// Pairs the loads of a job with their cases.
 fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<LoadCaseOf<'a>> {
     job.loads
         .iter()
@@ -120,7 +120,7 @@ fn of_loads<'a>(job: &Job, cases: impl Iterator<Item = &'a CaseResult>) -> Vec<L
         .collect()
 }
 
-/// Reads the model and finds the case of every load; strain without what the mesh makes, where the job asks for that, is made `at` these places.
+/// Reads the model and finds the case of every load. If the job requests strain without mesh error, it is computed `at` these places.
 ///
 /// # Errors
 /// Faults of the deck, unreadable results, loads without a case.
@@ -128,10 +128,11 @@ pub fn read_fields(work: &mut Work, job: &Job, at: WantedAt) -> Result<Fields, F
     read_fields_beside(work, job, at, None)
 }
 
-/// As [`read_fields`], and solves for the loads `beside` with the same factor; elastic modes are then left out, which nobody asks for there.
+/// Reads the model like [`read_fields`], and solves for the loads `beside` with the same factor. Elastic modes are then left out, since no caller
+/// needs them.
 ///
 /// # Errors
-/// As [`read_fields`]; those of `beside`.
+/// Every error of [`read_fields`] and of `beside`.
 pub fn read_fields_beside(
     work: &mut Work,
     job: &Job,

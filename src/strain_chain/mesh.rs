@@ -1,8 +1,8 @@
-//! What the mesh makes of the strain: the same loads on a mesh half as wide, and what the strain tends to as it gets finer.
+//! Mesh error of the strain, from its change on a mesh half as wide.
 //!
-//! With strain `e(h)` on a mesh of width `h`, what halving the width changes is `e(h/2) - e(h)`. Where errors fall with the square of the width
-//! the error at `h` is 4/3 of that; at folds, edges and corners they fall otherwise. The error is taken as [`WHOLE`] times the change.
-//! It is taken out of the strain of the built-in solver, and what may be left of it is a part of the covariance of S.
+//! Strain `e(h)` on a mesh of width `h` changes by `e(h/2) - e(h)` if the width is halved. If errors fall with the square of the width
+//! the error at `h` is 4/3 of this change; at folds, edges and corners they fall otherwise. The error is taken as [`WHOLE`] times the change.
+//! It is subtracted from the strain of the built-in solver. The error that may remain is a part of the covariance of S.
 //!
 //! # Reference
 //! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
@@ -19,27 +19,26 @@ use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::solved::{support_of_job, unit_loads_kept};
 use serde::Serialize;
 
-/// Beyond this many shells four times as many would take their time: those round the gauges are divided alone.
+/// Number of shells beyond which only shells round the gauges are divided: four times as many would take too long.
 const MOST_SHELLS: usize = 40_000;
-/// Rows of elements round a gauge's that are divided with it, the first that [`MOST_SHELLS`] allows: the error that a mesh makes farther off and
-/// sends to the gauge (a rail that twists too little) is not seen, a third of the whole in open rails with ten rows
-/// (docs/reference/verification.md).
+/// Rows of elements round a gauge's element that are divided with it, the first that [`MOST_SHELLS`] allows. They do not show the mesh error from
+/// farther away (a rail that twists too little). It is a third of the whole in open rails with ten rows (docs/reference/verification.md).
 const ROWS: [usize; 4] = [10, 8, 6, 4];
-/// The error of a mesh over what halving its width changes. Richardson's 4/3 overshoots where the finer mesh meets a corner or the thickness
-/// of the shell: on open, closed and kicked frames of 40 mm against 13 mm errors fall nearly with the cube of the width, and this leaves least
-/// (docs/reference/verification.md).
+/// Error of a mesh over its change by halving the width. Richardson's 4/3 is too large where the finer mesh meets a corner or the thickness
+/// of the shell. On open, closed and kicked frames of 40 mm against 13 mm errors fall nearly with the cube of the width. This value leaves
+/// the least error (docs/reference/verification.md).
 const WHOLE: f64 = 1.1;
-/// Share of the error that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern of each load as a whole: where
-/// errors fall with the width itself two thirds are left, which is 1.96 of these.
+/// Share of the error that may remain after subtraction, 1 sd. It applies to each entry of S separately and to the pattern of each load as a
+/// whole. If errors fall with the width itself two thirds remain, which is 1.96 of these.
 const LEFT: f64 = 1.0 / 3.0;
-/// Share of the strain itself that may be off besides, 1 sd, each entry by itself: gauges that `place` finds are those where halving the width
-/// changes next to nothing, by chance too, and what is left there has nothing to do with the change (the same frames).
+/// Further error as a share of the strain itself, 1 sd, each entry separately. Gauges that `place` finds are where halving the width
+/// changes almost nothing, partly by chance. The error that remains there does not depend on the change (the same frames).
 const SLIGHT: f64 = 0.003;
-/// The same where the mesh was divided round the gauges alone: what that doesn't see comes on top, half of what it sees.
+/// Share of the error that may remain, 1 sd, if only the mesh round the gauges was divided. The unseen error adds half of the seen one.
 const LEFT_IN_PART: f64 = 0.5;
-/// Beyond this a gauge's mesh error is more than angle, place and gauge factor of a gauge glued with care make together.
+/// Mesh error above which it exceeds the errors of angle, place and gauge factor of a carefully installed gauge together.
 const LARGE: f64 = 0.05;
-/// Entries of S, beyond which their covariance would take more than 128 MB: the rest of the error is then not weighed.
+/// Number of entries of S beyond which their covariance would take more than 128 MB: the remaining error is then not weighted.
 const MOST_ENTRIES: usize = 4_000;
 
 /// The mesh error of a gauge.
@@ -47,10 +46,10 @@ const MOST_ENTRIES: usize = 4_000;
 pub struct GaugeMeshError {
     /// Gauge or channel.
     pub name: String,
-    /// Root mean square over the loads at their expected size of the deck's mesh less the limit, over that of the reading; positive where the
-    /// mesh reads too much.
+    /// RMS mesh error (deck's mesh less the limit) over the RMS reading, both over the loads at their expected size. It is positive if the mesh
+    /// reads too much.
     pub mesh_error_rel: f64,
-    /// By load.
+    /// Mesh error by load.
     pub by_load: Vec<LoadMeshError>,
 }
 
@@ -221,8 +220,8 @@ fn subtract(from: &mut ShellField, what: &ShellField) {
     }
 }
 
-/// What may be left of the error of a mesh that was divided everywhere in a reading, 1 sd, strain: root of the sum of squares over loads of the
-/// size `scales`; 0 without `errors`.
+/// Returns the error of a reading that may remain if the mesh was divided everywhere, 1 sd, strain. It is the root of the sum of squares over
+/// loads of the size `scales`; 0 without `errors`.
 pub fn left_in_reading(
     gauge: &Gauge,
     (loads, errors): (&[LoadCaseOf], &[LoadCaseOf]),

@@ -1,4 +1,4 @@
-//! What the strain commands share: the model with its unit-load strain, gauges laid onto it, S from there or from a table.
+//! Common stages of the strain commands: the model with its unit-load strain, its gauges, and S from both or from a table.
 
 mod alternative_rows;
 pub(crate) mod combined_subcases;
@@ -75,18 +75,18 @@ impl Prepared {
     }
 }
 
-/// S of the job's gauges: from the table of `[sensitivity]`, else from the model and its results.
+/// Returns S of the job's gauges: from the table of `[sensitivity]`, else from the model and its results.
 ///
 /// # Errors
-/// Every fault on the way.
+/// Every fault of these stages.
 pub fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     prepare_beside(work, job, None)
 }
 
-/// As [`prepare`], and solves the model for the loads `beside` where the built-in solver makes S ([`Fields::beside`]).
+/// Returns S like [`prepare`], and solves the model for the loads `beside` if the built-in solver computes S ([`Fields::beside`]).
 ///
 /// # Errors
-/// As [`prepare`]; those of `beside`.
+/// Every error of [`prepare`] and of `beside`.
 pub fn prepare_beside(
     work: &mut Work,
     job: &Job,
@@ -164,7 +164,7 @@ pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults>
     Ok(given)
 }
 
-/// What `[measured]` states of errors: those of the model stand in the uncertainty of S where that has one.
+/// Returns the stated errors of `[measured]`. The model's error is 0 if the uncertainty of S contains it.
 pub fn stated_errors(measured: &Measured, s: &Sensitivity, fields: Option<&Fields>) -> ErrorModel {
     let in_s = s.uncertainty.is_some() && fields.is_some_and(|f| f.mesh_error.is_some());
     ErrorModel {
@@ -177,7 +177,7 @@ pub fn stated_errors(measured: &Measured, s: &Sensitivity, fields: Option<&Field
     }
 }
 
-/// Whether the job's S is a calibrated one.
+/// Whether the job's S is calibrated.
 pub fn has_covariance(job: &Job) -> bool {
     let given = job.sensitivity.as_ref();
     given.is_some_and(|s| s.covariance.is_some())

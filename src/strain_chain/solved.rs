@@ -377,7 +377,7 @@ fn displacements_kept(
     })
 }
 
-/// A solution of so many grids and fields from the cache, or solved and put there.
+/// Returns a solution of so many grids and fields from the cache, or solves and stores it.
 fn kept(
     work: &mut Work,
     identity: &str,
@@ -448,8 +448,8 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
     None
 }
 
-/// Everything that the displacements depend on: the program's version, sources, dependencies and features (`build.rs`), the bytes of the
-/// deck and its includes, the load cases.
+/// Returns the text that identifies displacements by their inputs. These are the program's version, sources, dependencies and features (`build.rs`),
+/// the bytes of the deck and its includes, and the load cases.
 fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -> String {
     let mut text = format!(
         "strainbridge {} {} {made}\n",

@@ -1,9 +1,9 @@
-//! Numbers as a reader wants them.
+//! Formats numbers for reports.
 
-/// What stands where a number is not known.
+/// Text for an unknown number.
 const UNKNOWN: &str = "-";
 
-/// Four significant digits; a dash where it is not known.
+/// Formats a number with four significant digits; a dash if it is unknown.
 pub fn number(x: f64) -> String {
     if x.is_nan() {
         return UNKNOWN.into();

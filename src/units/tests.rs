@@ -66,7 +66,7 @@ fn a_number_that_is_not_known_is_a_dash() {
     );
 }
 
-/// Of two wrong systems the modulus alone is that of some material: 2.1e5 psi is a plastic, 3e7 kPa a light metal.
+/// Tests two wrong systems in which the modulus alone fits some material: 2.1e5 psi is a plastic, 3e7 kPa a light metal.
 #[test]
 fn densities_of_no_material_are_an_error_where_all_is_a_metal_in_another_system() {
     let judged = |declared, unitsys, e, rho| {

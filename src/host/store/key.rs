@@ -1,4 +1,4 @@
-//! What a solution is kept under.
+//! Key of a stored solution.
 
 use sha2::{Digest, Sha256};
 
@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 pub struct Key(pub(super) [u8; 32]);
 
 impl Key {
-    /// The key of everything a solution depends on, in words.
+    /// Returns the key of a text that states all inputs of a solution.
     pub fn of(identity: &str) -> Self {
         Self(Sha256::digest(identity.as_bytes()).into())
     }

@@ -171,7 +171,7 @@ pub(super) fn decode(bytes: &[u8], Key(hash): &Key, grids: usize, cases: usize) 
     })
 }
 
-/// What is left to be read.
+/// Bytes that are not read yet.
 struct Cursor<'a>(&'a [u8]);
 
 impl<'a> Cursor<'a> {

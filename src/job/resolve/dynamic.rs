@@ -5,10 +5,10 @@ use super::super::raw::RawDynamic;
 use super::super::spanned::Spanned;
 use super::super::types::Dynamic;
 
-/// One standard deviation of a frequency that a model computes, where none is stated: what density, thickness and joints leave open in a model
+/// One standard deviation of a computed frequency if none is stated, relative to the frequency. It covers density, thickness and joints of a model
 /// that was not fitted to measured modes.
 const FREQUENCY: f64 = 0.02;
-/// The same of a damping that was not measured.
+/// One standard deviation of a damping that was not measured, relative to the damping.
 const DAMPING: f64 = 0.5;
 
 pub(super) fn dynamic(c: &mut Collector, raw: Option<&Spanned<RawDynamic>>) -> Option<Dynamic> {

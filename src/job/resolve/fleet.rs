@@ -6,15 +6,15 @@ use super::super::spanned::Spanned;
 use super::super::types::*;
 use std::collections::BTreeSet;
 
-/// How far a share may be from what is meant, written with three digits: three of .333 are thirds, six of .167 sixths. Rounding alone moves the
-/// sum by no more than this times their number.
+/// Largest rounding error of a share with three digits: three of .333 are thirds, six of .167 sixths. Rounding alone changes the
+/// sum by at most this times the number of shares.
 const ROUNDED: f64 = 0.0005;
-/// How far shares may be from 1 in sum however many they are: they are divided by their sum, and more would no longer be the job's shares.
+/// Largest error of the sum of the shares, whatever their number: they are divided by their sum, and a larger error would change the job's shares.
 const ROUNDED_IN_SUM: f64 = 0.01;
 
-/// Keys of the section that damage is held against: no record is counted otherwise for them.
+/// Keys of the section for comparing damage: they do not change the count of a record.
 const OF_MERGE: [&str; 4] = ["reference", "target", "mission", "mission_hours"];
-/// What no record is counted by: the title, and sections that other commands alone ask.
+/// Keys that do not change the count of a record: the title, and sections that only other commands use.
 const OF_OTHERS: [&str; 7] = [
     "title",
     "ballast",
@@ -25,7 +25,7 @@ const OF_OTHERS: [&str; 7] = [
     "study",
 ];
 
-/// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still a number.
+/// Largest load range of a knee: no structure bears it in any unit, and its power of 20 is still finite.
 const LARGEST_KNEE: f64 = 1e12;
 
 pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Option<Fleet> {

@@ -249,7 +249,7 @@ fn is_kt(x: f64) -> bool {
     x.abs() < 0.5
 }
 
-/// What must hold for a gauge, wherever it is written.
+/// Checks the values of a gauge, wherever it is written, and adds the faults.
 pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
     let mut fault = |field: &str, wrong: &str, remedy: &str| {
         faults.push(Fault::at(

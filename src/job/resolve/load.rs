@@ -55,12 +55,12 @@ fn support(c: &mut Collector, raw: &S<NumberOrWord>) -> SupportChoice {
 
 const SUPPORT_REMEDY: &str = "write \"deck\" for the set that case control selects, \"free\" for inertia relief, or the set's id";
 
-/// What stands behind the loads of a job.
+/// Source of the strain by the loads of a job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Behind {
-    /// A model: a load acts somewhere on it.
+    /// A model: a load acts at a place of it.
     Model,
-    /// A given S: a name is enough.
+    /// A given S: the name of a load is sufficient.
     Table,
 }
 

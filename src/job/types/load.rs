@@ -44,7 +44,7 @@ impl Component {
         }
     }
 
-    /// A force or moment of `size` as a vector in the axes of the load.
+    /// Returns a force or moment of `size` as a vector in the axes of the load.
     pub fn vector(self, size: f64) -> [f64; 3] {
         let mut v = [0.0; 3];
         v[self.dof() % 3] = size;
@@ -52,7 +52,7 @@ impl Component {
     }
 }
 
-/// What a load is as a job states it, by ids of the deck; [`crate::fe::UnitLoad`] is what a solution takes: vectors in the basic frame.
+/// Action of a load as a job states it, by ids of the deck. A solution uses [`crate::fe::UnitLoad`], with vectors in the basic frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LoadActs {
     /// A component at a grid, in the axes of `cid` (0 basic) at that grid.
@@ -66,7 +66,7 @@ pub enum LoadActs {
     },
     /// A load set of the deck.
     Set(u32),
-    /// A column of a given S: nothing but its name is known.
+    /// A column of a given S: only its name is known.
     Named,
 }
 

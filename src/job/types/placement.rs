@@ -6,23 +6,23 @@ use crate::placement::Loss;
 /// Gauges of the job that stay.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Keep {
-    /// None: the layout is new.
+    /// No gauge: the layout is new.
     None,
-    /// All of them.
+    /// All gauges.
     All,
-    /// These.
+    /// The named gauges.
     Named(Vec<String>),
 }
 
-/// What placement is to maximise, by the word of a job alone: [`crate::placement::Criterion`] holds the columns and weights that it takes there,
-/// and has one form for several of these words.
+/// Optimality criterion of a placement, as a job states it. [`crate::placement::Criterion`] also contains the columns and weights, and one of its
+/// forms serves several of these criteria.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Optimality {
     /// Determinant for all loads.
     D,
     /// Determinant for the wanted loads, nuisance loads estimated along.
     Ds,
-    /// Least sum of the wanted loads' weighed variances, each in shares of its expected size.
+    /// Least sum of the wanted loads' weighted variances, each in shares of its expected size.
     A,
     /// Least mean variance of the strain predicted at the candidates.
     I,

@@ -58,7 +58,7 @@ fn what_is_not_positive_definite_or_no_number_has_no_factor() {
     }
 }
 
-/// What is done where there is no memory to work by blocks.
+/// Tests the method without memory for blocks, for an order at which blocks are used.
 #[test]
 fn columns_do_for_orders_for_which_there_are_blocks() {
     let n = 150;

@@ -11,15 +11,15 @@ use super::symbolic::Symbolic;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What a branch leaves.
+/// Terms and errors of a branch that remain for the top.
 struct Left<E> {
-    /// Terms that reach into the top, with their numbers.
+    /// Terms with rows in the top, with their numbers.
     terms: Vec<(usize, DenseTerm)>,
     errors: Vec<(usize, E)>,
 }
 
 impl BlockMatrix {
-    /// The sum of terms, formed by `term` from their numbers; `groups` are those of each term, all joined in the graph.
+    /// Returns the sum of terms, which `term` forms from their numbers; `groups` are the groups of each term, all joined in the graph.
     ///
     /// # Errors
     /// Every error of `term`, in the order of the terms.

@@ -64,9 +64,9 @@ impl<'a> Factor<'a> {
     }
 }
 
-/// What was noticed on the way.
+/// Lost pivots and smallest pivot of a factorisation.
 struct Found {
-    /// Elimination order.
+    /// Lost pivots, numbered in elimination order.
     lost: Vec<usize>,
     smallest_pivot: f64,
 }

@@ -10,20 +10,20 @@ use super::symbolic::Symbolic;
 use faer::{Accum, MatMut, MatRef};
 use rayon::prelude::*;
 
-/// Pivots of the scaled matrix below this are lost to rounding: the unknown is held by nothing. Of a mechanism that moves other unknowns a
-/// thousand times as far rounding leaves so much; a part that is held at all is a thousand times stiffer (Nastran stops at a ratio of 1e7).
+/// Pivots of the scaled matrix below this are lost to rounding: nothing supports the unknown. Rounding leaves as much in a mechanism that moves other
+/// unknowns a thousand times as far. Any support at all is a thousand times stiffer (Nastran stops at a ratio of 1e7).
 const TINY_PIVOT: f64 = 1e-12;
-/// Lost pivots of a front that are held one by one; then all its unknowns are.
+/// Largest number of lost pivots of a front that are held one by one; with more, all its unknowns are held.
 pub(super) const MOST_LOST: usize = 12;
 
-/// What a supernode leaves to its parent: the lower triangle of a matrix over its rows, by columns.
+/// Contribution of a supernode to its parent: the lower triangle of a matrix over its rows, by columns.
 #[derive(Debug)]
 pub(super) struct Update {
     pub(super) node: usize,
     values: Vec<f64>,
 }
 
-/// Memory that was used up: of updates, and of the columns of a front.
+/// Memory for reuse: of updates, and of the columns of a front.
 #[derive(Debug, Default)]
 pub(super) struct Spare {
     updates: Vec<Vec<f64>>,
@@ -224,7 +224,7 @@ impl<'a> Front<'a> {
         runs
     }
 
-    /// What a child adds to the supernode's own columns.
+    /// Adds the contribution of a child to the supernode's own columns.
     fn add_to_panel(&self, panel: &mut [f64], child: &Update, runs: &[Run]) {
         let (rows, order) = (self.own + self.below, order(runs));
         for (r, run) in runs.iter().enumerate().take_while(|r| r.1.to < self.own) {
@@ -236,7 +236,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// The sum of what children leave to rows below.
+    /// Sums the contributions of children to the rows below.
     fn collect(&self, left: &mut [f64], children: &[Update], runs: &[Vec<Run>], tiles: Tiles) {
         let n = self.below;
         // Child and place there, by column.

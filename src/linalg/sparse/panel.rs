@@ -76,7 +76,7 @@ impl Panel<'_> {
         })
     }
 
-    /// What of these columns stands below the rows of all `N`.
+    /// Returns the part of these columns below the rows of all `N`.
     #[inline(always)]
     fn lower<'a, const N: usize>(columns: &[&'a [f64]; N], below: usize) -> [&'a [f64]; N] {
         std::array::from_fn(|a| &columns[a][N - a..][..below])

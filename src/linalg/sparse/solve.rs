@@ -10,27 +10,27 @@ use std::ops::Range;
 /// Right-hand sides substituted together: the factor is read once for all of them, and a row of them stays in registers.
 const TOGETHER: usize = 12;
 
-/// How well a solution satisfies its equation: Nastran's epsilon before and after refinement.
+/// Accuracy of a solution: Nastran's epsilon before and after refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Refined {
-    /// As substituted.
+    /// Epsilon after substitution.
     pub first: f64,
-    /// As given back.
+    /// Epsilon of the returned solution.
     pub last: f64,
 }
 
-/// What is left of some right-hand sides.
+/// Residuals of some right-hand sides.
 struct Remainder {
-    /// The first of its columns.
+    /// First column of these right-hand sides.
     first: usize,
-    /// By column.
+    /// Epsilon by column.
     epsilon: Vec<f64>,
-    /// Row by row, elimination order.
+    /// Residuals, row by row, in elimination order.
     rows: Vec<f64>,
 }
 
 impl Factor<'_> {
-    /// Replaces right-hand sides by solutions: `x` holds columns of `n_unknowns` each, caller's numbering.
+    /// Replaces right-hand sides by solutions: `x` contains columns of `n_unknowns` each, caller's numbering.
     pub fn solve(&self, x: &mut [f64]) {
         self.each_part(x, |part, k| {
             let mut y = self.scaled(part, k);
@@ -39,11 +39,11 @@ impl Factor<'_> {
         });
     }
 
-    /// As [`Factor::solve`], and tells how well each column satisfies its equation; a column that does so badly is corrected by
-    /// one step of iterative refinement.
+    /// Solves like [`Factor::solve`], and returns how well each column satisfies its equation. One step of iterative refinement corrects
+    /// inaccurate columns.
     ///
     /// The measure is Nastran's epsilon, |x'(b - A x)| / |x'b|: the share of the work of the loads that rounding lost.
-    /// Columns above `limit` are refined, x + A^-1 (b - A x), and the correction kept where it helps.
+    /// Columns above `limit` are refined, x + A^-1 (b - A x), and the correction is kept if it improves them.
     pub fn solve_refined(&self, x: &mut [f64], limit: f64) -> Vec<Refined> {
         let mut told = Vec::new();
         self.each_part(x, |part, k| {
@@ -55,7 +55,7 @@ impl Factor<'_> {
         told
     }
 
-    /// Calls with columns that go together and their number.
+    /// Calls `call` with groups of columns and the number of columns in each.
     fn each_part(&self, x: &mut [f64], mut call: impl FnMut(&mut [f64], usize)) {
         let n = self.symbolic.n_unknowns();
         if n == 0 || x.is_empty() {

@@ -1,4 +1,4 @@
-//! What the elimination tree says of factoring on many threads, without doing it.
+//! Estimates the work of factoring on many threads from the elimination tree, without factoring.
 
 use super::branches::work;
 use super::eliminate::longest_chain;
@@ -8,15 +8,15 @@ use super::symbolic::Symbolic;
 /// Multiplications of a factorisation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TreeWork {
-    /// All of them.
+    /// Multiplications of the whole factorisation.
     pub total: f64,
-    /// Those of the longest chain that must be done one after the other: a branch by one thread, then every front above it up to the root, column
+    /// Multiplications of the longest sequential chain: a branch by one thread, then every front above it up to the root, column
     /// block after column block. No number of threads is faster.
     pub longest: f64,
 }
 
 impl Symbolic {
-    /// Work and longest chain.
+    /// Returns total work and longest chain.
     pub fn tree_work(&self) -> TreeWork {
         let (branches, parent) = (&self.branches, &self.nodes.parent);
         let mut chain = vec![0.0_f64; self.nodes.len()];

@@ -13,11 +13,11 @@ const OUTSIDE: f64 = 0.02;
 pub(super) struct Patch {
     pub(super) grids: Vec<GridIx>,
     pub(super) x: Vec<Vec3>,
-    /// Of the shell; 0 where grids are named.
+    /// Thickness of the shell; 0 if grids define the patch.
     pub(super) thickness: f64,
 }
 
-/// Where a point meets a patch.
+/// Projection of a point onto a patch.
 #[derive(Clone, Debug)]
 pub(super) struct Foot {
     pub(super) x: Vec3,
@@ -27,7 +27,7 @@ pub(super) struct Foot {
 }
 
 impl Patch {
-    /// The shell's corners; `None` for shells with mid-side grids.
+    /// Returns the patch of the shell's corners; `None` for shells with mid-side grids.
     pub(super) fn of_shell(model: &Model, shell: &Shell) -> Option<Self> {
         if matches!(shell.shape, ShellShape::Quad8 | ShellShape::Tria6) {
             return None;

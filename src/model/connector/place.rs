@@ -9,15 +9,15 @@ use nastran::place::Place;
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-/// How often the diameter may be halved until the auxiliary points find the patch (NREDIA of SWLDPRM, which allows up to 4).
+/// Largest number of halvings of the diameter until the auxiliary points find the patch (NREDIA of SWLDPRM, which allows up to 4).
 const HALVINGS: u8 = 4;
 
-/// What an end may pierce.
+/// Shells that an end may pierce.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Where {
     /// A shell, by index.
     Shell(usize),
-    /// A shell, or those that share a grid with it.
+    /// A shell, or shells that share a grid with it.
     Around(usize),
     /// Shells of a property, by id.
     Property(u32),

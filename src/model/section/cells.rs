@@ -3,7 +3,7 @@
 use super::thin::Wall;
 use crate::linalg::{DMatrix, DVector};
 
-/// What closed walls are in torsion.
+/// Shear centre and torsion constant of closed walls.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cells {
     /// Shear centre (y, z).

@@ -1,4 +1,4 @@
-//! What all section types are put together from.
+//! Common parts of all section types: shapes, torsion constants, corners.
 
 use super::area::{Area, Rectangle};
 use crate::model::types::Section;

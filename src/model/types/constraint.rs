@@ -1,4 +1,4 @@
-//! What ties grids to each other and holds them.
+//! Rigid elements, and sets that constrain grids.
 
 use super::index::GridIx;
 use nastran::cards::Dofs;
@@ -13,7 +13,7 @@ pub struct Rigid {
     pub at: Place,
 }
 
-/// Which rigid element.
+/// Kinds of rigid elements.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RigidKind {
     /// RBE2, RBAR and RBE1: dependent dofs follow the rigid motion given by the independent ones.

@@ -11,7 +11,7 @@ macro_rules! index {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub struct $name(pub u32);
         impl $name {
-            /// As an array index.
+            /// Returns the index into an array.
             pub fn us(self) -> usize { self.0 as usize }
         }
     )+};

@@ -1,4 +1,4 @@
-//! What acts.
+//! Load sets and temperature sets.
 
 use super::index::{BeamIx, FrameIx, GridIx, ShellIx, Vec3};
 use nastran::cards::Dofs;
@@ -12,7 +12,7 @@ pub struct LoadSet {
     pub loads: Vec<(f64, Load)>,
 }
 
-/// One temperature set (TEMP, TEMPD): what TEMPERATURE(LOAD) selects.
+/// One temperature set (TEMP, TEMPD), which TEMPERATURE(LOAD) selects.
 #[derive(Clone, Debug, PartialEq)]
 #[allow(missing_docs)]
 pub struct TemperatureSet {

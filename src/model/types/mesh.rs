@@ -4,13 +4,13 @@ use super::index::{BeamPropertyIx, FrameIx, GridIx, Mat3, MaterialIx, ShellPrope
 use nastran::cards::{Dofs, ShellShape, SolidShape};
 use nastran::place::Place;
 
-/// What a point of the model is.
+/// Kind of a point of the model.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointKind {
     /// GRID: a place and six dofs.
     Grid,
-    /// SPOINT, or the end of a spring without a component: one dof and no place. It is carried as a grid at the origin of the basic
-    /// frame whose dofs 2 to 6 are constrained, so that the whole path from cards to answer is that of grids.
+    /// SPOINT, or the end of a spring without a component: one dof and no place. The model stores it as a grid at the origin of the basic
+    /// frame with constrained dofs 2 to 6. All code from cards to results treats it as a grid.
     Scalar,
 }
 
@@ -19,7 +19,7 @@ pub enum PointKind {
 pub struct Grid {
     /// Id in the file.
     pub id: u32,
-    /// Which of the two.
+    /// Grid or scalar point.
     pub kind: PointKind,
     /// Location, basic frame.
     pub x: Vec3,
@@ -27,7 +27,7 @@ pub struct Grid {
     pub cd: FrameIx,
     /// Permanent constraints.
     pub ps: Dofs,
-    /// Where it stands.
+    /// Place in the deck.
     pub at: Place,
 }
 
@@ -36,7 +36,7 @@ pub struct Grid {
 pub struct Frame {
     /// Id in the file, 0 basic.
     pub id: u32,
-    /// What its coordinates are.
+    /// Kind of the coordinates.
     pub kind: nastran::cards::CoordKind,
     /// Origin, basic frame.
     pub origin: Vec3,

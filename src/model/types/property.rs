@@ -1,9 +1,9 @@
-//! What elements are made of.
+//! Properties and materials of elements.
 
 use super::index::MaterialIx;
 use nastran::place::Place;
 
-/// What a shell is made of.
+/// Property of a shell.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShellProperty {
     /// Property id.
@@ -14,7 +14,7 @@ pub struct ShellProperty {
     pub nsm: f64,
     /// Stated fibre distances Z1 (bottom), Z2 (top) from the reference plane; `None`: half the local thickness ([`ShellProperty::fibres`]).
     pub z: [Option<f64>; 2],
-    /// Where it stands.
+    /// Place in the deck.
     pub at: Place,
 }
 
