@@ -18,12 +18,12 @@ const MIN_GRIDS: usize = 256;
 /// Share of the loads that held directions may take: the share in a solution whose equations are satisfied to six digits.
 const LOST: f64 = 1e-6;
 
-/// A direction at a grid that is held because nothing else holds it.
+/// A direction at a grid that gets a spring because it has no other stiffness.
 #[derive(Clone, Debug)]
 pub(crate) struct Weak {
-    /// The unknown that is held: the one that moves most along the direction.
+    /// Unknown with the spring: the one that moves most along the direction.
     pub(crate) unknown: usize,
-    /// Stiffness of the spring that holds it.
+    /// Stiffness of this spring.
     pub(crate) k: f64,
     /// Whether there is any stiffness along it, beyond rounding.
     pub(crate) some: bool,

@@ -70,7 +70,7 @@ pub enum FeError {
         grid: u32,
         /// 1 to 6.
         dof: u8,
-        /// Where the grid stands.
+        /// Place of the grid in the deck.
         at: Place,
     },
     /// Dofs without support although the supports should hold them: mechanisms.
@@ -81,12 +81,12 @@ pub enum FeError {
         count: usize,
         /// Descriptions of the parts that are not joined to the rest.
         parts: Vec<String>,
-        /// SPC set that holds the structure; `None`: none is selected.
+        /// SPC set that supports the structure; `None` if none is selected.
         spc: Option<u32>,
         /// Balance of the loads that no support takes.
         relief: Relief,
     },
-    /// A load acts on a dof that no element holds.
+    /// A load acts on a dof without any element.
     LoadOnNothing {
         /// Grid id.
         grid: u32,
@@ -122,7 +122,7 @@ pub enum FeError {
         /// Description of the tie to ground.
         what: String,
     },
-    /// SUPORT does not hold the rigid motions exactly once.
+    /// SUPORT does not constrain the rigid motions exactly once.
     Suport {
         /// Rigid motions that are free.
         free_motions: usize,
@@ -140,7 +140,7 @@ pub enum FeError {
     },
     /// Modes were asked for, and the structure has no mass.
     NoMassToVibrate,
-    /// Numbers that are infinite, not numbers, or larger than single precision (that of result files) holds.
+    /// Numbers that are infinite, not numbers, or too large for the single precision of result files.
     Overflow {
         /// Subcase id.
         subcase: u32,

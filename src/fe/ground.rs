@@ -17,7 +17,7 @@ pub(super) enum Ground {
     Bush(usize),
 }
 
-/// Whether each grid is a scalar point that a constraint, a spring of its own, or a chain of springs over other scalar points holds to ground.
+/// Returns whether each grid is a scalar point that is grounded by a constraint, a spring, or a chain of springs over other scalar points.
 pub(super) fn grounded_points(model: &Model, reduction: &Reduction) -> Vec<bool> {
     let state = |g: GridIx| reduction.state[6 * g.us()];
     let point =

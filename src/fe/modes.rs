@@ -52,7 +52,7 @@ pub struct Mode {
 pub struct ModalSolution {
     /// Modes, frequencies ascending; rigid motions are left out.
     pub modes: Vec<Mode>,
-    /// Rigid motions that no support holds.
+    /// Number of rigid motions without a support.
     pub rigid_motions: usize,
     /// Mass and centre of gravity.
     pub mass: Option<MassProperties>,

@@ -40,8 +40,8 @@ fn across(spec: &GaugeSpec, axis: &Vec3) -> Option<&'static str> {
 
 /// Builds the gauge at a recovery point.
 ///
-/// A bending bridge pairs the point with the one across the neutral axis, which bends by the same strain with its sign turned: it reads
-/// twice (half bridge) or four times (full bridge) the strain of the point less that of the neutral axis.
+/// A bending bridge pairs the point with the point across the neutral axis, whose bending strain has the opposite sign. It reads twice (half
+/// bridge) or four times (full bridge) the strain of the point less the strain of the neutral axis.
 ///
 /// # Errors
 /// A beam that is not there; a gauge that reads across its axis; a grid longer than the bars along it.

@@ -31,7 +31,7 @@ const PAIRED: usize = 12;
 /// Largest distance of a factor from the factor of a pair of units that it identifies.
 const NEAR: f64 = 0.15;
 
-/// Factors between what readings show and what the records make of them, with what each stands for.
+/// Factors between readings and recorded loads, with the cause of each.
 const UNITS: [(f64, &str); 9] = [
     (
         1e-3,

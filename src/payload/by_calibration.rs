@@ -22,8 +22,8 @@ pub(super) struct Found {
     pub unlike: Option<Finding>,
 }
 
-/// The payload of a run by the gauges that are `used`; `known`: covariance of the three columns of [`PayloadModel::payload`]. Where the place is
-/// known the one column is `b0 + dx b_dx + dy b_dy`, and its covariance goes with it. `None` where the gauges don't tell it.
+/// Estimates the payload of a run from the gauges that are `used`; `known`: covariance of the three columns of [`PayloadModel::payload`]. If the
+/// place is known the one column is `b0 + dx b_dx + dy b_dy`, with its covariance. `None` if the gauges don't determine the payload.
 pub(super) fn found(
     model: &PayloadModel,
     known: &Uncertainty,

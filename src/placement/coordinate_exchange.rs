@@ -15,7 +15,7 @@ use std::sync::OnceLock;
 pub(super) const LEAST_GAIN: f64 = 1e-9;
 /// Share of its determinant under which a block counts as lost by an exchange.
 const LEAST_PART: f64 = 1e-9;
-/// Sweeps after which the search gives up; it stops by itself long before.
+/// Number of sweeps after which the search gives up; it converges long before.
 const MAX_SWEEPS: usize = 200;
 /// Number of exchanges after which the tables are recomputed to remove rounding.
 const FRESH: usize = 400;

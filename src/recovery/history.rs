@@ -50,8 +50,8 @@ pub struct SampleLoads {
 }
 
 impl Filter {
-    /// The filter for `s` with `zero` (strain by gauge) subtracted; weights are those of the model's error at `typical` loads, intervals
-    /// those of `widening`. `None` where numbers are not finite.
+    /// Returns the filter for `s` with `zero` (strain by gauge) subtracted. Its weights include the model's error at `typical` loads, its intervals
+    /// `widening`. `None` if numbers are not finite.
     pub fn new(
         s: &Sensitivity,
         zero: Vec<f64>,

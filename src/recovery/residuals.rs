@@ -22,7 +22,7 @@ const UNCHECKED: f64 = 1e-9;
 pub struct Pattern {
     /// Gauges of S that read.
     pub used: Vec<usize>,
-    /// Noise variance in units of that of a single reading.
+    /// Noise variance relative to a single reading.
     pub noise_factor: f64,
     /// Runs.
     pub runs: Vec<usize>,

@@ -22,7 +22,7 @@ pub fn recover_samples(s: &Sensitivity, samples: Vec<Readings>, errors: ErrorMod
 }
 
 /// Recovers the loads of samples whose readings have errors beyond noise, and whose gauges may be installed otherwise. `beyond` is by sample, or
-/// empty. All gauges contribute to the record's loads, even if some contradict the others.
+/// empty. All gauges contribute to the record's loads, even if some contradict other gauges.
 pub fn recover_samples_with_alternatives(
     s: &Sensitivity,
     samples: Vec<Readings>,

@@ -7,12 +7,12 @@ use super::types::Widening;
 use crate::sensitivity::Sensitivity;
 use crate::series::still::Gives;
 
-/// Share of the samples looked at that a part holds at least: shorter ones are left to the judge of residuals.
+/// Divisor of the number of examined samples, for the shortest part to find: the test of residuals covers shorter parts.
 const PART: usize = 20;
 /// Samples of a part at least.
 const LEAST: usize = 10;
-/// Standard deviations of noise and model error by which the strain that the others expect must change: a reading that is rounded, coarsely as it
-/// may be, stands still within less.
+/// Least change of the strain predicted from the other gauges, in standard deviations of noise and model error. A working gauge shows such a change,
+/// however coarsely its reading is rounded.
 const CHANGES: f64 = 3.0;
 /// Share of the samples of a part in which another gauge must read to test this gauge.
 const READS: f64 = 0.9;
@@ -128,9 +128,9 @@ fn is_dead(
     gives == Gives::Nothing || changes()
 }
 
-/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) say that gauge `g`, which gives one value in all rows, is dead:
-/// the strain there changes by more than noise and the model's error make of the others' readings, or it is, in the mean, farther from that value
-/// than they make. Where the others don't tell it, whether any of theirs changes by more than noise.
+/// Whether the readings of the gauges `used` (strain by gauge of S, a row a sample) show that gauge `g`, which gives one value in all rows, is dead.
+/// It is dead if its strain predicted from the used gauges changes by more than noise and model error, or differs from that value, in the mean, by
+/// more. If they don't predict its strain, it is dead if any of them changes by more than noise.
 pub fn is_told_dead(
     s: &Sensitivity,
     used: &[usize],

@@ -5,7 +5,7 @@ use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
 use crate::sensitivity::{GaugeNoise, Sensitivity};
 
-/// Code of a finding on a gauge whose error stands out.
+/// Code of a finding on a gauge with a significant error.
 pub const GAUGE_SUSPECT: &str = "gauge-suspect";
 
 /// Readings of one static state.

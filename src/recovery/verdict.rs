@@ -202,9 +202,9 @@ fn judged<'a>(
     .collect()
 }
 
-/// A covariance that, taken as new in every run, is no smaller than that of errors which the runs of a pattern share: with `x` over the runs,
-/// `(sum_i x_i d_i)^2 <= sum_i x_i^2 sum_j d_j^2` (Cauchy), so that the sum over the runs stands for each of them. What they share is so judged on
-/// what it can't make. `None` where there is none.
+/// Returns a covariance that, if independent in every run, is no smaller than the covariance of errors that the runs of a pattern share. With `x`
+/// over the runs, `(sum_i x_i d_i)^2 <= sum_i x_i^2 sum_j d_j^2` (Cauchy), so the sum over the runs replaces each error. The test then finds only
+/// residuals that shared errors can't cause. `None` without such errors.
 fn together(pattern: &Pattern, beyond: &[Beyond]) -> Option<Matrix> {
     let mut runs = pattern.runs.iter().filter_map(|&i| beyond.get(i));
     let first = runs.next()?;

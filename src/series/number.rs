@@ -12,7 +12,7 @@ pub enum DecimalMark {
 }
 
 impl DecimalMark {
-    /// Whether a character stands between whole and fraction.
+    /// Whether a character is the mark between whole and fraction.
     #[inline(always)]
     fn is(self, b: u8) -> bool {
         (b == b'.' && self != Self::Comma) || (b == b',' && self != Self::Point)

@@ -183,7 +183,7 @@ pub fn has_covariance(job: &Job) -> bool {
     given.is_some_and(|s| s.covariance.is_some())
 }
 
-/// Rank and condition numbers of S, as they stand in `result.json`.
+/// Rank and condition numbers of S, as in `result.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conditioning {
     /// Rank.

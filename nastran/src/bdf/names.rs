@@ -28,7 +28,7 @@ pub struct Label {
     pub at: Place,
 }
 
-/// Keeps what a comment says about the card below it.
+/// Reads the comments above a card, for its names.
 #[derive(Debug, Default)]
 pub(super) struct NameReader {
     /// Name for the next property or material card.

@@ -29,7 +29,7 @@ pub enum H5Error {
         /// The field.
         field: &'static str,
     },
-    /// A table claims more than the file can hold.
+    /// A table claims more than the file can contain.
     #[error("`{path}`: {claimed} bytes claimed, at most {possible} possible: the file is damaged")]
     TooLarge {
         /// The table.

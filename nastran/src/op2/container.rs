@@ -2,7 +2,7 @@
 //!
 //! A file is an optional header (key 3 + date, key 7 + tape label, key 2 + version label, key -1), then tables. A table is
 //! key 2 + name, key -1, key 7 + trailer, and records. Record n starts with the keys -n, 1, type (0 table, 1 matrix column) and
-//! holds what follows positive keys; solvers split long records into several such pieces. The first record is the sub-table name.
+//! contains the data after positive keys; solvers split long records into several such pieces. The first record is the sub-table name.
 //! Key 0 ends the table. MSC 2020 and later put key 6 + 24 bytes (solver version) after the version label and after each name.
 
 use super::fortran::{Cursor, Physical, Stop};

@@ -126,12 +126,11 @@ pub struct Block {
     pub von_mises: bool,
     /// Whether the numbers are complex (rows are then not decoded).
     pub complex: bool,
-    /// SORT2 tables run over steps for one entity; rows are decoded in statics only, where there is one step and the same rows
-    /// often stand in a SORT1 block too.
+    /// SORT2 tables run over steps for one entity. Rows are decoded in statics only, which has one step; a SORT1 block often contains the same rows.
     pub sort2: bool,
     /// Words a row in the file; 0 where it has no meaning.
     pub num_wide: u32,
-    /// Number of file entries (elements, grids, or stations), as far as the sizes tell.
+    /// Number of file entries (elements, grids, or stations), as far as the sizes show it.
     pub entries: usize,
     /// TITLE, SUBTITLE, LABEL, trimmed.
     pub titles: [String; 3],

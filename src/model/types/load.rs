@@ -20,7 +20,7 @@ pub struct TemperatureSet {
     /// TEMPD: temperature of grids that `grids` leaves out.
     pub default: Option<f64>,
     pub grids: Vec<(GridIx, f64)>,
-    /// Temperatures of single elements by id (TEMPP1, TEMPRB): they go before those of their grids.
+    /// Temperatures of single elements by id (TEMPP1, TEMPRB): they take precedence over the temperatures of their grids.
     pub elements: std::collections::HashMap<u32, ElementTemperature>,
     /// Cards of this set that ask for more than is carried.
     pub unsupported: Vec<(String, Place)>,

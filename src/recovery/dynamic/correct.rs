@@ -14,7 +14,7 @@ const MOST_SETS: usize = 8;
 /// Numbers that the filters of all sets may hold: 256 MB.
 const MOST_NUMBERS: usize = 32_000_000;
 
-/// Readings at rest.
+/// Quasi-static readings of a record, with their errors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtRest {
     /// By gauge, every sample; NaN where nothing is known.

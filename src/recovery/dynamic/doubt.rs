@@ -24,7 +24,7 @@ pub struct Doubt {
     noise: Vec<(Vec<usize>, Matrix)>,
 }
 
-/// Covariance of the readings of one sample beyond that of independent noise, by gauge of S, `n x n`, strain^2.
+/// Covariance of the readings of one sample in addition to independent noise, by gauge of S, `n x n`, strain^2.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beyond {
     /// Covariance of noise, independent in every sample.

@@ -29,11 +29,11 @@ pub(super) struct Kernel {
     /// Samples to either side that a sample at rest hangs on.
     pub reach: usize,
     pub bins: Vec<Bin>,
-    /// By mode that errs: what a unit of each load moves it by at rest, `C`.
+    /// Static displacement of each uncertain mode by a unit of each load, `C`.
     pub moved: Vec<Vec<f64>>,
     /// The static gain, `k x n`.
     pub at_rest: Matrix,
-    /// Covariance of readings at rest for noise of variance 1, `n x n`.
+    /// Covariance of quasi-static readings for noise of variance 1, `n x n`.
     pub noise: Matrix,
     /// Count of numbers that the filter stores.
     pub numbers: usize,

@@ -17,7 +17,7 @@ pub(super) struct Plant<'a> {
     moved: ComplexMatrix,
     /// Static strain of unit loads beyond the strain by these modes, `S - Psi C`, `n x k`.
     pub rest: ComplexMatrix,
-    /// Variance of the noise over that of each load, 0 for loads without a stated size.
+    /// Variance of the noise over the variance of each load, 0 for loads without a stated size.
     ridge: Vec<f64>,
 }
 

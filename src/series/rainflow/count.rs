@@ -44,10 +44,10 @@ pub struct Reversal<T> {
 /// A rainflow count in progress. Its state is the reversals that no cycle has closed yet (the residue, in time order).
 ///
 /// A cycle from B to C closes when the reversal A before it and the one after it, D, reach at least as far. Of reversals of equal value the
-/// later counts as the higher, which makes the cycles of a history one set whatever the order in which they are found: the residues
-/// of the parts of a history, one after the other through another count, close exactly the cycles that the parts could not. Full
-/// cycles and the residue's ranges as half cycles together are the count of ASTM E1049 ([`Rainflow::finish`]); its half cycles of
-/// parts do not add up to those of the whole, the residues do.
+/// later counts as the higher, so the cycles of a history do not depend on the order in which they are found. If another count gets the residues
+/// of the parts of a history, in sequence, it closes exactly the cycles that the parts could not. Full cycles and the residue's ranges as half
+/// cycles are the count of ASTM E1049 ([`Rainflow::finish`]). The half cycles of parts do not add up to the half cycles of the whole; the
+/// residues do.
 ///
 /// # Reference
 /// C. Amzallag, J.P. Gerey, J.L. Robert, J. Bahuaud, Standardization of the rainflow counting method for fatigue analysis, Int. J. Fatigue

@@ -1,4 +1,4 @@
-//! Damage with an interval that holds over one day and over many.
+//! Damage with an interval that is valid over one day and over many.
 
 use super::bias::Bias;
 use super::tally::Tally;

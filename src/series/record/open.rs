@@ -20,7 +20,7 @@ pub struct Options {
     pub declared_hz: Option<f64>,
     /// Seconds in one stored time, for a file that states no unit of time.
     pub time_unit_s: Option<f64>,
-    /// Channels that must be among those sampled together, where a file holds several clocks; none: those of the group with most
+    /// Channels that must be among the channels sampled together, if a file contains several clocks. Empty: the channels of the group with most
     /// numbers.
     pub wanted: Vec<String>,
 }
