@@ -57,7 +57,7 @@ pub fn codes() -> &'static [Code] {
 }
 
 /// Former codes, each with the one that means the same today.
-const RENAMED: [(&str, &str); 7] = [
+const RENAMED: [(&str, &str); 9] = [
     ("dead_channel", "gauge-silent"),
     ("gauge-missing", "gauge-without-strain"),
     ("gauge_swap", "inputs-exchanged"),
@@ -65,6 +65,8 @@ const RENAMED: [(&str, &str); 7] = [
     ("gauges-exchanged", "inputs-exchanged"),
     ("known-loads-sign", "input-sign-reversed"),
     ("known-loads-unit", "input-unit"),
+    ("no-element-in-deck", "element-not-in-deck"),
+    ("no-grid-in-deck", "grid-not-in-deck"),
 ];
 
 /// Returns the entry of a code, or of the code that replaced it; `None` if no finding has the code.

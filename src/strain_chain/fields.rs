@@ -23,6 +23,7 @@ use crate::strain_chain::solved::{
     MODES, cases_of_job, is_combination, label_of, relief_of_job, solve_kept, static_case,
     support_of_job,
 };
+use crate::strain_chain::solver_check::check_against_solver;
 use nastran::bdf::Subcase;
 use nastran::results::ResultsFile;
 use std::collections::BTreeSet;
@@ -287,8 +288,10 @@ fn read_results(
     check_labels(job, &solutions, &of_load, &labels)?;
     let cases = of_load.iter().map(|(s, c)| &solutions[*s].cases[*c]);
     check_deck_loads(job, &deck, &units, cases.clone())?;
-    let supports = check_deck_supports(job, &deck, cases);
+    let supports = check_deck_supports(job, &deck, cases.clone());
     work.findings.extend(supports);
+    let contradiction = check_against_solver(work, job, &deck, &cases.collect::<Vec<_>>());
+    work.findings.extend(contradiction);
     work.findings.push(super::source_finding(
         &solutions
             .iter()

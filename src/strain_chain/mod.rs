@@ -16,6 +16,7 @@ pub(crate) mod named_results;
 pub(crate) mod not_solved;
 mod other_loads;
 pub(crate) mod solved;
+mod solver_check;
 mod specs;
 mod stated_noise;
 mod stated_points;

@@ -12,6 +12,7 @@ mod kinds;
 mod misled;
 mod mistakes;
 mod noise;
+mod other_results;
 mod payload;
 mod readings;
 mod supported;

@@ -132,11 +132,13 @@ fn lacking(
     if absent.is_empty() {
         return;
     }
-    let (severity, code) = match (what, absent.len() == theirs.len()) {
-        ("element", true) => (Severity::Error, "no-element-in-deck"),
-        (_, true) => (Severity::Error, "no-grid-in-deck"),
-        ("element", false) => (Severity::Warning, "element-not-in-deck"),
-        (_, false) => (Severity::Warning, "grid-not-in-deck"),
+    let severity = match absent.len() == theirs.len() {
+        true => Severity::Error,
+        false => Severity::Warning,
+    };
+    let code = match what {
+        "element" => "element-not-in-deck",
+        _ => "grid-not-in-deck",
     };
     let message = format!(
         "{} of {} {what}s with results are not in the deck: {}",

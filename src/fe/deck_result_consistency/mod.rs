@@ -3,17 +3,20 @@
 //! - [`ids`] elements and grids that one has and the other lacks;
 //! - [`coordinates`] grids that stand elsewhere;
 //! - [`output`] strain that was not asked for, PARAM,OMID;
-//! - [`freedom`] reactions in a job that should have none.
+//! - [`freedom`] reactions in a job that should have none;
+//! - [`strain`] strain that the built-in solver computes otherwise.
 
 mod coordinates;
 mod freedom;
 mod ids;
 mod output;
+mod strain;
 
 pub use coordinates::check_coordinates;
 pub use freedom::{Supports, check_free};
 pub use ids::check_ids;
 pub use output::check_output;
+pub use strain::StrainDifference;
 
 use crate::finding::Finding;
 use crate::model::Model;

@@ -247,7 +247,7 @@ fn what_does_not_fit_is_told_once_each() {
     for code in [
         "fibre-distance-differs",
         "element-not-in-deck",
-        "no-grid-in-deck",
+        "grid-not-in-deck",
         "no-strain-output",
         "not-static",
     ] {

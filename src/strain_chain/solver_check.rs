@@ -1,0 +1,144 @@
+//! Strain of result files compared with the strain that the built-in solver computes on the deck of the job.
+
+use crate::fe::deck_result_consistency::StrainDifference;
+use crate::fe::{CaseResult, Corners, SolveOptions};
+use crate::finding::{Finding, Severity, few};
+use crate::host::fault::Faults;
+use crate::host::work::Work;
+use crate::job::Job;
+use crate::strain_chain::deck::DeckModel;
+use crate::strain_chain::solved::{cases_of_job, solve_kept};
+use std::collections::BTreeMap;
+
+/// When results are compared with the built-in solver, and from which difference on they contradict the deck.
+struct Rules {
+    /// Grids of the largest deck that is solved for the comparison: below a second on two processors.
+    grids: usize,
+    /// Share of the strain ([`StrainDifference::share`]) by which two programs differ at most on one deck; an error from twice this share on.
+    /// On public decks with results of MSC, NX and MYSTRAN the share is 0 to 0.1, and 0.26 on a deck with an element of each kind alone.
+    share: f64,
+    /// Share of the strain of one shell: its surfaces or axes are others. On the public decks the largest share is 0.84.
+    of_shell: f64,
+    /// Cosine above which both fields differ by a factor alone.
+    cosine: f64,
+}
+
+const RULES: Rules = Rules {
+    grids: 15_000,
+    share: 0.27,
+    of_shell: 1.0,
+    cosine: 0.98,
+};
+
+/// Solves the loads of a job on its deck and compares the strain with the `results`, in the order of the loads.
+///
+/// Returns `None` where they agree, and where the deck is too large or contains what the solver does not carry; a note then states the reason.
+pub(super) fn check_against_solver(
+    work: &mut Work,
+    job: &Job,
+    deck: &DeckModel,
+    results: &[&CaseResult],
+) -> Option<Finding> {
+    let grids = deck.model.grids.len();
+    if grids > RULES.grids {
+        let limit = RULES.grids;
+        return skip(work, &format!("the deck has {grids} grids, limit {limit}"));
+    }
+    let cases = match cases_of_job(job, deck) {
+        Ok(cases) => cases,
+        Err(faults) => return skip(work, &first_of(&faults)),
+    };
+    let options = SolveOptions {
+        corners: Corners::Leave,
+        modes: 0,
+        ..SolveOptions::default()
+    };
+    let solved = match solve_kept(work, deck, &cases, options) {
+        Ok((solved, _)) => solved,
+        Err(faults) => return skip(work, &first_of(&faults)),
+    };
+    let pairs = results.iter().zip(&solved.cases);
+    let differences = pairs.map(|(result, solved)| StrainDifference::between(result, solved));
+    let differences: Vec<(&str, StrainDifference)> = job
+        .loads
+        .iter()
+        .zip(differences)
+        .filter_map(|(load, difference)| Some((load.name.as_str(), difference?)))
+        .collect();
+    of_loads(deck, &differences).or_else(|| of_single_shells(deck, &differences))
+}
+
+const CODE: &str = "strain-contradicts-deck";
+
+/// Returns a finding on the loads under which the whole strain differs.
+fn of_loads(deck: &DeckModel, differences: &[(&str, StrainDifference)]) -> Option<Finding> {
+    let found = differences.iter().filter(|(_, d)| d.share > RULES.share);
+    let mut found: Vec<&(&str, StrainDifference)> = found.collect();
+    found.sort_by(|a, b| b.1.share.total_cmp(&a.1.share));
+    let largest = found.first()?.1.share;
+    let named: Vec<String> = found
+        .iter()
+        .map(|(load, d)| format!("`{load}` {}", words_of(d)))
+        .collect();
+    let message = format!(
+        "the strain in the results differs from the strain that the built-in solver computes on this deck: {}",
+        few(&named)
+    );
+    let remedy = "give the deck of this run, or run the deck again: material, thickness, coordinates, normals, supports or the place of a load differ";
+    let severity = match largest > 2.0 * RULES.share {
+        true => Severity::Error,
+        false => Severity::Warning,
+    };
+    let finding = Finding::new(severity, CODE, &*deck.given, message, remedy);
+    Some(finding.with_numbers(largest, RULES.share))
+}
+
+/// Returns a finding on single shells whose strain differs in sign or direction.
+fn of_single_shells(deck: &DeckModel, differences: &[(&str, StrainDifference)]) -> Option<Finding> {
+    let mut largest: BTreeMap<u32, f64> = BTreeMap::new();
+    for (shell, share) in differences.iter().flat_map(|d| &d.1.of_shells) {
+        if let Some(shell) = deck.model.shells.get(shell.us())
+            && *share > RULES.of_shell
+        {
+            let of_shell = largest.entry(shell.id).or_default();
+            *of_shell = of_shell.max(*share);
+        }
+    }
+    let worst = largest.values().copied().reduce(f64::max)?;
+    let ids: Vec<&u32> = largest.keys().collect();
+    let message = format!(
+        "the strain in the results has another sign or direction than the built-in solver computes on this deck, in elements {}",
+        few(&ids)
+    );
+    let remedy = "give the deck of this run, or run the deck again: the order of the grids of these elements differs, and with it the upper surface or the element axes";
+    let finding = Finding::new(Severity::Error, CODE, &*deck.given, message, remedy);
+    Some(finding.with_numbers(worst, RULES.of_shell))
+}
+
+/// Returns the difference in words: a factor if that is all, otherwise the share.
+fn words_of(difference: &StrainDifference) -> String {
+    let StrainDifference {
+        share,
+        factor,
+        cosine,
+        ..
+    } = difference;
+    match cosine.abs() > RULES.cosine {
+        true => format!("is {factor:.3} times as large"),
+        false => format!("by {:.0} %", 100.0 * share),
+    }
+}
+
+fn first_of(faults: &Faults) -> String {
+    faults
+        .first()
+        .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong))
+}
+
+/// Notes that the results were not compared, and why.
+fn skip(work: &mut Work, why: &str) -> Option<Finding> {
+    work.notes.push(format!(
+        "the results were not compared with the built-in solver: {why}"
+    ));
+    None
+}
