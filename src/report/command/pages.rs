@@ -1,16 +1,18 @@
 //! `report.html`, `report.pdf` and spreadsheets of an outcome.
 
 use super::{Report, mistake};
+use crate::finding::Severity;
 use crate::host::fault::Faults;
 use crate::host::outcome::{Answer, Outcome};
-use crate::host::output::Output;
+use crate::host::output::{OtherResult, Output};
 use crate::job::Job;
 use crate::report::console::ConsoleTable;
-use crate::report::page::{FirstScreen, Table};
+use crate::report::page::{Block, Card, FirstScreen, Page, Section, Table};
 use crate::report::spreadsheet::{About, Sheet, UnitOf, spreadsheet};
 use crate::units::Quantity;
 
-/// Writes `report.html`, where there is a page, and with the feature `pdf`, where the page is meant for paper, `report.pdf`.
+/// Writes `report.html` if the outcome has a page, and `report.pdf` with the feature `pdf` if the page is meant for paper. Where the folder
+/// contains results of other commands too, `index.html` lists all of them.
 ///
 /// # Errors
 /// A file that can't be written.
@@ -21,10 +23,15 @@ where
     let Some(page) = outcome.page() else {
         return Ok(());
     };
-    let page = page
-        .with_summary(outcome.summary())
-        .with_first(first_screen(outcome))
-        .beside(out.folder());
+    let page = page.with_summary(outcome.summary()).beside(out.folder());
+    let others = out.other_results(A::COMMAND);
+    let mut first = first_screen(outcome);
+    if !others.is_empty() {
+        let index = index_of(&page, A::COMMAND, &others);
+        out.write_bytes(INDEX, index.to_html().as_bytes())?;
+        first.index = Some(INDEX);
+    }
+    let page = page.with_first(first);
     out.write_bytes("report.html", page.to_html().as_bytes())?;
     #[cfg(feature = "pdf")]
     if page.paper != crate::report::page::Paper::None {
@@ -49,7 +56,34 @@ where
         title,
         table,
         file: outcome.console().file,
+        index: None,
     }
+}
+
+/// Page that lists the results of all commands in a folder.
+const INDEX: &str = "index.html";
+
+/// Returns the page that lists the result just computed and those of other commands, with a link to each report.
+fn index_of(page: &Page, command: &str, others: &[OtherResult]) -> Page {
+    let newest = OtherResult {
+        command: command.to_owned(),
+        report: "report.html".to_owned(),
+        summary: page.summary.clone(),
+        has_errors: page.findings.iter().any(|f| f.severity == Severity::Error),
+    };
+    let results = std::iter::once(&newest).chain(others);
+    let cards = results.map(|r| Card {
+        title: r.command.clone(),
+        text: r.summary.clone(),
+        numbers: Vec::new(),
+        links: vec![("report".to_owned(), r.report.clone())],
+        is_bad: r.has_errors,
+        picture: None,
+    });
+    let sections = vec![Section::new("", vec![Block::Cards(cards.collect())])];
+    let count = others.len() + 1;
+    Page::new(&page.title, "The newest result is first.", &[], sections)
+        .with_summary(format!("This folder contains results of {count} commands."))
 }
 
 #[cfg(feature = "pdf")]
