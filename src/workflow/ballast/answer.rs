@@ -45,18 +45,25 @@ impl Answer for Ballasted {
 
     fn verdict(&self) -> String {
         let (mass, force) = (self.job.report_units.mass, self.job.report_units.force);
-        let off = self.reactions.iter().map(|r| (r.after - r.measured).abs());
+        let largest = |of: fn(&Reaction) -> f64| self.reactions.iter().map(of).fold(0.0, f64::max);
+        let off = largest(|r| (r.after - r.measured).abs());
+        let equal = match off <= 1e-6 * largest(|r| r.measured.abs()) {
+            true => "equals the measured one".to_owned(),
+            false => format!(
+                "is within {} {} of the measured one",
+                number(off),
+                force.name
+            ),
+        };
         let half = NORMAL_95 * self.together.mass_sigma;
         format!(
-            "{} of {} {} together: every reaction is within {} {} of the measured one.",
+            "{} of {} {} together: every reaction {equal}.",
             match self.masses.len() {
                 1 => "1 lumped mass".to_owned(),
                 n => format!("{n} lumped masses"),
             },
             plus_minus(self.together.mass, half),
             mass.name,
-            number(off.fold(0.0, f64::max)),
-            force.name
         )
     }
 }
