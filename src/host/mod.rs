@@ -6,6 +6,7 @@ pub mod file_read;
 pub mod files;
 pub mod half_written;
 pub(crate) mod manifest;
+pub mod other_results;
 pub mod outcome;
 pub mod output;
 pub(crate) mod sheet;

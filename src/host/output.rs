@@ -28,19 +28,6 @@ pub struct Output {
     tables: Tables,
 }
 
-/// Result of another command in the folder of an output.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct OtherResult {
-    /// Command.
-    pub command: String,
-    /// File name of the report.
-    pub report: String,
-    /// Sentence that states the result.
-    pub summary: String,
-    /// Whether findings include an error.
-    pub has_errors: bool,
-}
-
 impl Output {
     /// An output folder, created where missing.
     ///
@@ -238,31 +225,6 @@ impl Output {
         Ok(())
     }
 
-    /// Returns the results of other commands that the folder contains once the files of `command` are in place, sorted by command.
-    pub fn other_results(&self, command: &str) -> Vec<OtherResult> {
-        let written = Manifest::read(&self.folder);
-        let result = |(by, names): (&str, Vec<&str>)| {
-            let kept = |name: &str| format!("{by}.{name}");
-            let at = |name: &str| match names.contains(&name) {
-                true => Some(name.to_owned()),
-                false => names.contains(&kept(name).as_str()).then(|| kept(name)),
-            };
-            at("report.html")?;
-            let bytes = load(&self.folder.join(at("result.json")?)).ok()?;
-            let result: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
-            let findings = result.get("findings").and_then(|f| f.as_array());
-            let has_errors = findings.is_some_and(|f| f.iter().any(|f| f["severity"] == "error"));
-            Some(OtherResult {
-                has_errors,
-                command: by.to_owned(),
-                report: kept("report.html"),
-                summary: result.get("summary")?.as_str()?.to_owned(),
-            })
-        };
-        let others = written.of_others(command).into_iter();
-        others.filter_map(result).collect()
-    }
-
     /// Copies the answer and the report of another command, which this one writes over, to names that begin with that command: the writer and
     /// the name of each.
     fn keep_answers_of_others(
@@ -451,6 +413,7 @@ fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::host::other_results::{OtherResult, other_results};
 
     fn written(folder: &Path, text: &str) -> Result<(), Faults> {
         let mut out = Output::begin(folder)?;
@@ -466,7 +429,7 @@ mod tests {
             out.write_bytes("report.html", command.as_bytes()).unwrap();
             let json = format!("{{\"summary\": \"Done by {command}.\"}}");
             out.write_bytes("result.json", json.as_bytes()).unwrap();
-            let others = out.other_results(command);
+            let others = other_results(&folder, command);
             out.commit(command, &[]).unwrap();
             others
         };

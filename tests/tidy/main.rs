@@ -3,6 +3,7 @@
 
 mod declared_words;
 mod dependencies;
+mod doc_comments;
 mod english;
 mod imports;
 mod size;

@@ -3,8 +3,9 @@
 use super::{Report, mistake};
 use crate::finding::Severity;
 use crate::host::fault::Faults;
+use crate::host::other_results::{OtherResult, other_results};
 use crate::host::outcome::{Answer, Outcome};
-use crate::host::output::{OtherResult, Output};
+use crate::host::output::Output;
 use crate::job::Job;
 use crate::report::console::ConsoleTable;
 use crate::report::page::{Block, Card, FirstScreen, Page, Section, Table};
@@ -24,7 +25,7 @@ where
         return Ok(());
     };
     let page = page.with_summary(outcome.summary()).beside(out.folder());
-    let others = out.other_results(A::COMMAND);
+    let others = other_results(out.folder(), A::COMMAND);
     let mut first = first_screen(outcome);
     if !others.is_empty() {
         let index = index_of(&page, A::COMMAND, &others);
