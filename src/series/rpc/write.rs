@@ -33,12 +33,12 @@ impl Target {
     }
 }
 
-/// Writes `samples` samples, `dt` seconds apart; `next` appends those from .. to, one sample after the other. A number that is not
-/// finite (the format has none) repeats the one before it; the last frame is filled up with the last sample, and `SAMPLES` states
-/// where it ends. How many numbers were repeated.
+/// Writes `samples` samples, `dt` seconds apart, and returns the count of repeated numbers. `next` appends the samples from .. to, one sample after
+/// the other. A number that is not finite (the format has none) repeats the one before it. The last frame is filled up with the last sample, and
+/// `SAMPLES` states where it ends.
 ///
 /// # Errors
-/// What `out` says.
+/// An I/O error of `out`.
 pub fn write_rpc(
     out: &mut dyn Write,
     targets: &[Target],
