@@ -50,7 +50,7 @@ pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     columns_wanted(&job.corrections, &names)
 }
 
-/// Returns the readings of the job's gauges without a column in a strain file. A rosette may have one column of its own name instead of its legs.
+/// Returns the readings of the job's gauges without a column in a strain file. A rosette may have one column with its name instead of its legs.
 pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec<String> {
     let known: HashSet<&String> = columns.iter().collect();
     let has = |name: &String| known.contains(name);
