@@ -12,10 +12,10 @@ use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{Mat3, Model, Shell, Vec3};
 
-/// The channels of a gauge (three for a rosette) and what there is to say of them.
+/// Returns the channels of a gauge (three for a rosette) and the findings on it.
 ///
 /// # Errors
-/// Where it can't be laid onto the model.
+/// A gauge that can't be laid onto the model.
 pub fn build(
     model: &Model,
     spec: &GaugeSpec,
