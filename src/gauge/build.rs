@@ -12,10 +12,12 @@ use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{Mat3, Model, Shell, Vec3};
 
-/// Returns the channels of a gauge (three for a rosette) and the findings on it.
+/// Places a gauge on the model, and returns its channels (three for a rosette) with findings.
+///
+/// A channel is a linear functional of the strain at the places of its arms; [`reading`](super::reading) evaluates it in a load case.
 ///
 /// # Errors
-/// A gauge that can't be laid onto the model.
+/// Returns the reason why the gauge can't be placed on the model.
 pub fn build(
     model: &Model,
     spec: &GaugeSpec,

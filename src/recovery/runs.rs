@@ -12,10 +12,10 @@ use crate::finding::Finding;
 use crate::input_faults::Handling;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
-/// Recovers the loads of every run with intervals, and tests the residuals.
+/// Returns the loads of every run with intervals, and findings on the residuals.
 ///
-/// If the residuals are larger than stated noise and model error explain, all covariances are multiplied by `chi2 / dof` (Birge). The intervals take
-/// Student's factor, and a finding reports it. A single run with large residuals takes its own factor.
+/// If the residuals are larger than stated noise and model error explain, all covariances are multiplied by `chi2 / dof` (Birge). The
+/// intervals then take Student's factor, and a finding reports it. A single run with large residuals takes its own factor.
 ///
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.

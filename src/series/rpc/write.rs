@@ -33,12 +33,13 @@ impl Target {
     }
 }
 
-/// Writes `samples` samples, `dt` seconds apart, and returns the count of repeated numbers. `next` appends the samples from .. to, one sample after
-/// the other. A number that is not finite (the format has none) repeats the one before it. The last frame is filled up with the last sample, and
-/// `SAMPLES` states where it ends.
+/// Writes `samples` samples, `dt` seconds apart, as an RPC III file. `next` appends the samples from .. to, one sample after the other.
+///
+/// A number that is not finite repeats the number before it, because the format has no such numbers. The last sample fills up the last
+/// frame, and `SAMPLES` states the end. Returns how many numbers were repeated.
 ///
 /// # Errors
-/// An I/O error of `out`.
+/// Returns the errors of `out`.
 pub fn write_rpc(
     out: &mut dyn Write,
     targets: &[Target],
