@@ -17,7 +17,7 @@ use crate::model::{Mat3, Model, Shell, Vec3};
 /// A channel is a linear functional of the strain at the places of its arms; [`reading`](super::reading) evaluates it in a load case.
 ///
 /// # Errors
-/// Returns the reason why the gauge can't be placed on the model.
+/// Where it can't be laid onto the model.
 pub fn build(
     model: &Model,
     spec: &GaugeSpec,

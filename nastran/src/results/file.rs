@@ -6,7 +6,7 @@ use crate::h5::{H5, H5Error, is_h5};
 use crate::op2::{Op2, Op2Error, Solver};
 use crate::punch::{Punch, PunchError};
 
-/// Result file of any kind: OP2, punch or HDF5. The bytes determine the kind, and all kinds give the same blocks and rows.
+/// A result file of any kind that is read, told apart by content.
 #[derive(Debug)]
 pub enum ResultsFile<'a> {
     /// OP2.

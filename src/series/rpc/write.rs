@@ -39,7 +39,7 @@ impl Target {
 /// frame, and `SAMPLES` states the end. Returns how many numbers were repeated.
 ///
 /// # Errors
-/// Returns the errors of `out`.
+/// What `out` says.
 pub fn write_rpc(
     out: &mut dyn Write,
     targets: &[Target],
