@@ -22,7 +22,7 @@ pub struct Ballasted {
     pub run: String,
     /// Number of unknowns that the reactions determine.
     pub numbers_fixed: usize,
-    /// How many were asked for: three a mass.
+    /// Number of unknowns: three for each mass.
     pub numbers_asked: usize,
     /// All masses together, from statics alone.
     pub together: Together,

@@ -248,7 +248,7 @@ fn shifts_and_reactions(
     without
 }
 
-/// Returns whether the wheel forces count as evidence. Adds a finding if they don't, or if their noise is assumed.
+/// Returns whether the wheel forces count as evidence. Adds a finding if strain is used instead, or if their noise is assumed.
 fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
     let Some(runs) = &task.job.runs else {
         return false;
