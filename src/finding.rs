@@ -1,4 +1,4 @@
-//! What a stage has to say about its own result.
+//! Findings of a stage about its own result.
 
 mod bounded;
 pub mod explain;

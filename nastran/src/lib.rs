@@ -4,7 +4,7 @@
 //! - [`op2`], [`punch`] and [`h5`] read results; all three give the same [`results::Block`]s and [`results::Rows`].
 //! - [`cards`] holds one plain struct per card, filled from a deck or from the geometry blocks of an OP2.
 //!
-//! Cards say what the file says: a blank field is `None`, ids are the file's numbers, nothing is resolved.
+//! Cards contain the data of the file: a blank field is `None`, ids are the file's numbers, nothing is resolved.
 #![cfg_attr(not(test), warn(clippy::print_stdout, clippy::print_stderr))]
 
 pub mod bdf;

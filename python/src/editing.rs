@@ -77,8 +77,8 @@ impl Rows<'_, '_> {
     }
 }
 
-/// The edits that make the cards of `name` in the deck those of the columns: cards that differ are written anew, ids that are gone are taken
-/// out, new ones added.
+/// Adds the edits that make the cards of `name` in the deck equal to the columns. Cards that differ are replaced, missing ids are removed, new ids
+/// are added.
 pub(crate) fn edit(
     deck: &Deck,
     edits: &mut Edits,

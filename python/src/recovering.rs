@@ -33,7 +33,7 @@ const STRAIN: Named = Named {
     ..S
 };
 
-/// Runs up to which each is judged with its own residual, as the command does; a longer record is judged on as many samples.
+/// Number of runs up to which each is tested with its own residual, as in the command; a longer record is tested on so many samples.
 const MOST_RUNS: usize = 2000;
 /// Samples handled together.
 const BLOCK: usize = 8192;
@@ -243,7 +243,7 @@ fn unit_of(samples: &[f64]) -> f64 {
     }
 }
 
-/// Loads that can't be told apart are no answer.
+/// Returns faults if loads can't be separated.
 fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
     let (rank, k) = (s.rank(), s.loads.len());
     let errors = findings.iter().filter(|f| f.severity == Severity::Error);
@@ -257,7 +257,7 @@ fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
     Faults::check(faults)
 }
 
-/// The rows that are judged, with their numbers: all of a few runs, of a record as many samples, evenly spread.
+/// Returns the rows to test, with their numbers: all of a few runs; of a record [`MOST_RUNS`] samples, evenly spread.
 fn judged_rows(samples: &[f64], n: usize) -> impl Iterator<Item = (usize, &[f64])> {
     let runs = samples.len() / n;
     let judged = runs.min(MOST_RUNS);
@@ -267,7 +267,7 @@ fn judged_rows(samples: &[f64], n: usize) -> impl Iterator<Item = (usize, &[f64]
     })
 }
 
-/// The readings that are judged.
+/// Returns the readings to test.
 fn readings(samples: &[f64], n: usize, unit: f64) -> Vec<Readings> {
     judged_rows(samples, n)
         .map(|(at, row)| Readings {

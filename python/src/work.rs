@@ -1,5 +1,5 @@
-//! Work without the interpreter's lock, on threads of its own: Ctrl-C stops it between stages and between the cases, runs, files and trials
-//! of one, a bug in it is an exception.
+//! Work without the interpreter's lock, on separate threads. Ctrl-C stops it between stages and between the cases, runs, files and trials of a stage;
+//! a bug in it is an exception.
 //!
 //! Every call has its own pool, which ends with it: a process forked from this one finds no threads missing.
 
@@ -64,14 +64,14 @@ impl Progress for Heard {
 }
 
 impl Heard {
-    /// Leaves work that is to stop, from where it says how far it is: [`run`] ends the unwinding. What is half written is removed on the way.
+    /// Unwinds cancelled work from a point where it reports progress; [`run`] ends the unwinding. Half-written files are removed on the way.
     fn leave_if_stopped(&self) {
         if self.is_cancelled() && !std::thread::panicking() {
             resume_unwind(Box::new(Stopped));
         }
     }
 
-    /// Looks for Ctrl-C and tells of progress.
+    /// Checks for Ctrl-C and reports progress.
     fn look(&self, asked: &Asked) -> PyResult<()> {
         Python::attach(|py| {
             py.check_signals()?;

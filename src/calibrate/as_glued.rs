@@ -1,26 +1,26 @@
-//! Calibration of gauges that may sit off their drawing. A row of S is not linear in the moves of its gauge: it is taken anew where the
-//! gauge was found, until that settles.
+//! Calibration of gauges that may differ from their nominal position. A row of S is not linear in the moves of its gauge. It is computed again at the
+//! position that was found, until that settles.
 
 use super::fit::calibrate;
 use super::types::{Calibration, ModelPrior, Move, MoveKind, Task};
 use crate::linalg::Matrix;
 
-/// How far gauges may sit from their drawing, 1 sd.
+/// Tolerance of the position and angle of gauges, 1 sd.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GlueTolerance {
     /// Along and across, length.
     pub position: f64,
-    /// Turned, radians.
+    /// Rotation, radians.
     pub angle_rad: f64,
 }
 
-/// Rounds in which rows are taken where gauges were found.
+/// Number of rounds in which rows are computed at the positions that were found.
 const ROUNDS: usize = 4;
 /// Half step of the central differences over the tolerance: within it rows are near to straight.
 const STEP: f64 = 0.5;
 
-/// S from runs of known load with gauges that may sit off their drawing. `row(gauge, [along, across, angle])` is the model's row there,
-/// strain per job unit; `None` where there is none, and the gauge is taken as drawn.
+/// Computes S from runs of known load with gauges that may differ from their nominal position. `row(gauge, [along, across, angle])` is the model's
+/// row at this offset, strain per job unit; a gauge for which it is `None` keeps its nominal position.
 ///
 /// # Errors
 /// As [`calibrate`].

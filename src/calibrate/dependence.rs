@@ -77,17 +77,17 @@ fn with_slope(task: &Task, column: &[f64], slope_rel: f64) -> Option<Task> {
     Some(out)
 }
 
-/// Chance of a slope where there is none.
+/// Returns the probability of a slope of this size if there is no dependence.
 fn chance(slope_rel: f64, sigma: f64, dof: f64) -> f64 {
     (2.0 * student_tail((slope_rel / sigma).abs(), dof)).min(1.0)
 }
 
-/// Slope of recovered over known sum of the left-out runs against the column.
+/// Returns the slope of recovered over known sum of the left-out runs against the column.
 ///
-/// What the others taught of S has the column in it too. With `Z` the known loads of each run over their sum, whose factors the calibration
-/// fits, `H = Z (Z'Z)^-1 Z'` and `h = H_rr`, the others make `1 - h + h u` of a left-out run's ratio `u` theirs: `(u - 1) (1 - h) / (1 - h + h u)` is
-/// a residual of least squares with the run in it, and the slope is that of these residuals against `(I - H) x`, of which `R - rank Z - 1`
-/// are free.
+/// S from the other runs contains the effect of the column too. `Z` are the known loads of each run over their sum, whose factors the calibration
+/// fits; `H = Z (Z'Z)^-1 Z'` and `h = H_rr`. With a left-out run of ratio `u` included, S along its loads is `1 - h + h u` times S of the other runs.
+/// Then `(u - 1) (1 - h) / (1 - h + h u)` is a least-squares residual with the run included. The result is the slope of these residuals against
+/// `(I - H) x`, with `R - rank Z - 1` degrees of freedom.
 ///
 /// # Reference
 /// R. D. Cook, S. Weisberg, Residuals and Influence in Regression (1982), section 2.2 (left-out residuals), 2.3.2 (added variables).

@@ -8,33 +8,33 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 
-/// How many times less the runs must leave with two labels exchanged for these to be named. Runs of different loads look alike, as is needed
-/// for that, where gauges hardly tell the loads; what the runs leave then hardly falls.
+/// Smallest reduction factor of the residual for which runs are named as exchanged. A false exchange needs runs of different loads with similar
+/// strain, hence gauges that hardly separate the loads. The residual then hardly falls.
 const FEWER: f64 = 4.0;
-/// Two exchanges that leave as much as each other to this factor are not told apart.
+/// Largest ratio between the residuals of two indistinguishable exchanges.
 const AS_GOOD: f64 = 1.5;
-/// Share of what the runs leave that an exchange must explain to be looked at.
+/// Smallest share of the residual that an exchange must explain.
 const WORTH_A_LOOK: f64 = 0.1;
 
 /// Two runs whose labels are exchanged.
 pub(super) struct Exchanged {
-    /// By number.
+    /// Numbers of the runs.
     pub runs: [usize; 2],
-    /// How many times less the runs leave with these labels exchanged.
+    /// Residual of the runs (sum of squares) before the exchange of these labels over the residual after it.
     pub fewer: f64,
-    /// Whether each lies beyond doubt where the other one's label says, by all others.
+    /// Whether each run, recovered from all other runs, certainly contradicts its own label and agrees with the other label.
     pub certain: bool,
-    /// Two others whose exchange explains as much.
+    /// Two other runs whose exchange explains as much.
     pub or: Option<[usize; 2]>,
 }
 
-/// Two used runs, by their place among these, and what is left of all runs once their labels are exchanged.
+/// Two used runs, by index among the used runs, and the residual of all runs after the exchange of their labels.
 struct Pair {
     at: [usize; 2],
     left: f64,
 }
 
-/// The exchange that explains most, where it explains enough.
+/// Returns the exchange that explains most, if it explains enough.
 pub(super) fn find(task: &Task, state: &State) -> Option<Exchanged> {
     let (before, pairs) = left_by_pair(task, state)?;
     let best = pairs.iter().min_by(|a, b| a.left.total_cmp(&b.left))?;
@@ -56,7 +56,7 @@ pub(super) fn find(task: &Task, state: &State) -> Option<Exchanged> {
     })
 }
 
-/// Whether both runs, recovered by the others alone, are far from their own label and not from each other's.
+/// Returns whether both runs, recovered from the other runs alone, are far from their own label and not from each other's.
 fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool {
     let loads = at.map(|i| &task.runs[state.used[i]].loads);
     let far = |l: &LeftOut| chance(l, 1.0);
@@ -76,10 +76,10 @@ fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool 
     own * (tried as f64) < REFUSE
 }
 
-/// Sum of squares that all runs leave by least squares, and the same with each pair of different known loads exchanged:
+/// Returns the residual sum of squares of all runs by least squares, and its value with each pair of different known loads exchanged:
 ///
-/// with `X` the loads by run, `Y` the strain, `G = X'X`, `B = X'Y`, an exchange of rows `i` and `j` of `X` leaves `G` and adds
-/// `(x_i - x_j)(y_j - y_i)'` to `B`; what is left is `|Y|^2 - tr(B' G^-1 B)`.
+/// with `X` the loads by run, `Y` the strain, `G = X'X`, `B = X'Y`, an exchange of rows `i` and `j` of `X` does not change `G` and adds
+/// `(x_i - x_j)(y_j - y_i)'` to `B`; the residual is `|Y|^2 - tr(B' G^-1 B)`.
 fn left_by_pair(task: &Task, state: &State) -> Option<(f64, Vec<Pair>)> {
     let (n, k) = (state.posterior.n, state.posterior.k);
     let known: Vec<bool> = (state.used.iter())
@@ -136,7 +136,7 @@ fn left_by_pair(task: &Task, state: &State) -> Option<(f64, Vec<Pair>)> {
     Some((before, pairs))
 }
 
-/// In words: both were not used where that is certain; an error where it is not told which of two pairs it is.
+/// Returns the finding on an exchange. Neither run is used if the exchange is certain. The finding is an error if two pairs are indistinguishable.
 pub(super) fn finding(task: &Task, e: &Exchanged) -> Finding {
     let names = |runs: [usize; 2]| runs.map(|r| task.runs[r].run.as_str());
     let [a, b] = names(e.runs);

@@ -1,7 +1,7 @@
-//! Where each gauge sits, how it is turned and what gain it has, as the runs say.
+//! Position, angle and gain of each gauge, as determined from the runs.
 //!
-//! With `r` a row of S and `u = (gain, along, across, angle)`, the prior of a row is `r = r0 + D' u + e`: `D` holds the row itself and its
-//! change with each move, `e` is the model's error entry by entry. The posterior of `r`, mean `m` and covariance `V`, says of `u`
+//! With `r` a row of S and `u = (gain, along, across, angle)`, the prior of a row is `r = r0 + D' u + e`: `D` contains the row itself and its change
+//! with each move, `e` is the model's error entry by entry. From the posterior of `r`, mean `m` and covariance `V`, the posterior of `u` is
 //! `E = K (m - r0)`, `Cov = C - K D' C + K V K'` with `K = C D (D' C D + E_e)^-1`, C the prior of `u`.
 
 use super::state::State;
@@ -10,7 +10,7 @@ use crate::linalg::Matrix;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 
-/// Where each gauge sits as the posterior says; empty without stated moves. `all`: error of the model as learnt of all gauges.
+/// Returns the posterior position, angle and gain of each gauge; empty without stated moves. `all`: error of the model from all gauges.
 pub(super) fn as_glued(task: &Task, state: &State, all: Option<ModelError>) -> Vec<AsGlued> {
     let (Some(model), Some(all)) = (&task.model, all) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! Runs left out one by one: their loads recovered by what the others taught, held against what is known.
+//! Runs left out one by one: their loads recovered from the other runs, compared with the known loads.
 
 use super::common_zero::{less_zero, zero_of};
 use super::posterior::{Equation, Posterior, solve};
@@ -22,7 +22,7 @@ pub(super) const REFUSE: f64 = 1e-6;
 /// Chance, over all runs together, under which a run is named and does not widen the intervals of the others.
 pub(super) const SUSPECT: f64 = 1e-3;
 
-/// Every run that the others determine, recovered without itself.
+/// Recovers every run from the other runs, if these determine it.
 pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
     (0..state.used.len())
         .into_par_iter()
@@ -30,7 +30,7 @@ pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
         .collect()
 }
 
-/// Used run `i` recovered by what the others but those `beside` taught, and held against `loads`; `None` where they don't tell its loads.
+/// Recovers used run `i` with S from the other runs except `beside`, and compares it with `loads`; `None` if these do not determine its loads.
 pub(super) fn against(
     task: &Task,
     state: &State,
@@ -200,9 +200,9 @@ fn others_left(task: &Task, state: &State, out: &[usize], posterior: &Posterior)
     others.map(one).collect()
 }
 
-/// Operations up to which every left-out run gets a posterior of its own with its own scatter: about a second. Beyond, the scatter behind
-/// the covariance of S (not that of the run) keeps the run's own share, and each gauge's error is learnt of all runs where readings are
-/// correlated. No finding says so: the left-out run is judged a little too near to the others, and intervals that are applied don't change.
+/// Number of operations up to which every left-out run gets a separate posterior with separate scatter: about a second. Above it, the scatter behind
+/// the covariance of S (not the scatter of the run) includes the run's own share. Each gauge's error then comes from all runs if readings are
+/// correlated. No finding reports this: the left-out run appears slightly closer to the other runs, and applied intervals don't change.
 const AFFORDABLE: f64 = 1e9;
 
 /// The posterior of the runs other than `out` with this scatter.
@@ -281,9 +281,9 @@ fn expected_ratio(dof: f64) -> f64 {
     }
 }
 
-/// Factor where scatter was learnt: few left-out runs that are far off need not be significantly so. The variance of the intervals over that of the
-/// scatter is its posterior mean: `dof` degrees of freedom, with which the scatter is known, say 1, and the left-out runs say `z2`, their largest
-/// mean square. It is `(dof + runs z2) / (dof + runs)`, at least 1. The more runs, the less it adds to the test of [`judge`].
+/// Returns the factor for scatter estimated from runs. Few left-out runs that are far off need not be significant. The variance of the intervals
+/// relative to the scatter is its posterior mean, `(dof + runs z2) / (dof + runs)`, at least 1. The scatter, known with `dof` degrees of freedom,
+/// gives 1. The left-out runs give `z2`, their largest mean square. With more runs it adds less to the test of [`judge`].
 ///
 /// # Reference
 /// A. Gelman and others, Bayesian Data Analysis (3rd ed., 2013), section 2.6: a variance with a scaled inverse chi-square prior.
@@ -296,8 +296,8 @@ fn few_runs(scores: &[(f64, f64)], runs: usize, dof: f64) -> f64 {
     ((dof + runs * z2) / (dof + runs)).max(1.0).sqrt()
 }
 
-/// Tally and factor. The factor is that of few runs, or where left-out runs are farther off than expected, the loads each by itself or a sum, the
-/// root of the largest ratio.
+/// Returns the tally and the factor. The factor is the result of [`few_runs`]. If left-out runs are farther off than expected, in single loads or in
+/// a sum, it is at least the root of the largest ratio.
 pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
     let suspect = suspects(left_out);
     let kept = || left_out.iter().filter(|l| !suspect.contains(&l.number));
@@ -328,7 +328,7 @@ pub(super) fn judge(left_out: &[LeftOut], dof: f64) -> Coverage {
     }
 }
 
-/// Runs, by number, that lie farther off than the others' scatter makes likely.
+/// Returns the numbers of runs that are farther off than the scatter of the other runs makes likely.
 pub(super) fn suspects(left_out: &[LeftOut]) -> Vec<usize> {
     let scale = typical_scale(left_out);
     let most = SUSPECT / left_out.len().max(1) as f64;

@@ -1,7 +1,7 @@
-//! Lack of fit: whether the strain of the calibration runs has a common zero, or squares and products of the loads, beside `S f`.
+//! Lack of fit: whether the strain of the calibration runs has a common zero, or squares and products of the loads, in addition to `S f`.
 //!
-//! Gauge by gauge, by weighted least squares over the loadings (means of repeats, which share what S lacks): the term that explains most is added
-//! to the model of all gauges while it is significant. What the terms found change of the loads is passed on to the intervals.
+//! The test is weighted least squares, gauge by gauge, over the loadings (means of repeats, which share what S lacks). The term that explains most is
+//! added to the model of all gauges while it is significant. The effect of the terms on the loads enters the intervals.
 
 use super::common_zero::{less_zero, zero_of};
 use super::loading::{Loading, loadings};

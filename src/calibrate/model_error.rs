@@ -1,4 +1,4 @@
-//! How far the model is off, as the readings of the known runs say: an error of all gauges, and each gauge's own.
+//! Error of the model from the readings of the calibration runs: a common error of all gauges, and the error of each gauge.
 
 use super::evidence::{Normal, RowEvidence};
 use super::given_others::ByGauge;
@@ -6,26 +6,26 @@ use super::prior::{FLOORS, RowError, RowPrior, rows};
 use super::types::{ModelError, ModelPrior};
 use rayon::prelude::*;
 
-/// Steps from the stated error, in factors of the square root of two, that are tried.
+/// Number of steps from the stated error that are tried, in factors of the square root of two.
 const STEPS: i32 = 8;
-/// How far the stated error may be off, 1 sd of its natural logarithm: half or double is common.
+/// Uncertainty of the stated error, 1 sd of its natural logarithm: half or double is common.
 const STATED_LN_SD: f64 = 0.7;
-/// Degrees of freedom of Student's distribution over the gauges: most rows of a model are better than its error says, and a few, where strain
-/// changes fast, are off by several times as much. Four is the usual choice where few data can't tell it.
+/// Degrees of freedom of Student's distribution over the gauges. Most rows of a model are better than its error. A few, where strain changes fast,
+/// are off by several times as much. Four is the usual choice if few data can't determine it.
 ///
 /// # Reference
 /// K. L. Lange, R. J. A. Little, J. M. G. Taylor, J. Am. Stat. Assoc. 84 (1989) 881.
 const FREEDOM: f64 = 4.0;
-/// Steps of a gauge's own error from that of all, in factors of the square root of two, that are tried: 0.35 to 8 times. With [`FREEDOM`] of four a
-/// gauge's error is smaller than that once in 300 gauges, and larger once in 8,000.
+/// Steps from the common error to a gauge's own error that are tried, in factors of the square root of two: 0.35 to 8 times. With [`FREEDOM`] of four
+/// a gauge's error is smaller than this range once in 300 gauges, and larger once in 8,000.
 const OWN_STEPS: std::ops::RangeInclusive<i32> = -3..=6;
 
-/// A factor on the relative error: that of a step.
+/// Returns the factor on the relative error at a step.
 fn factor(step: i32) -> f64 {
     2_f64.powf(f64::from(step) / 2.0)
 }
 
-/// How probable each gauge's readings are with each relative error of the model that is tried.
+/// Probability of each gauge's readings for each relative error of the model that is tried.
 #[derive(Clone, Debug)]
 pub(super) struct ErrorEvidence {
     stated: ModelError,
@@ -48,20 +48,21 @@ struct Tried {
 /// A gauge, given the error of all.
 #[derive(Clone, Debug)]
 struct Own {
-    /// Log marginal likelihood of its readings.
+    /// Log marginal likelihood of the gauge's readings.
     log: f64,
     /// Error of the gauge's row: mean variance over all errors tried, weighted by their probability given the readings.
     error: RowError,
 }
 
 impl ErrorEvidence {
-    /// The relative error of the model that the readings of all gauges but some make most probable, near the stated one: maximum of the
-    /// marginal likelihood (each gauge by itself) times a log-normal prior around what was stated.
+    /// Returns the most probable relative error of the model, given the readings of all gauges except `without`. It is the maximum of the marginal
+    /// likelihood (separately for each gauge) times a log-normal prior around the stated error.
     pub fn most_probable(&self, without: &[usize]) -> ModelError {
         self.best(without).map_or(self.stated, |t| t.error)
     }
 
-    /// The error of each gauge, given the most probable one of all gauges but those in `without`; of these themselves, given that of all.
+    /// Returns the error of each gauge, given the most probable common error of all gauges except `without`. The gauges in `without` get the common
+    /// error of all gauges instead.
     pub fn by_gauge(&self, without: &[usize]) -> Vec<RowError> {
         let (all, others) = (self.best(&[]), self.best(without));
         let one = |g: usize| {
@@ -133,10 +134,10 @@ impl ErrorEvidence {
     }
 }
 
-/// The evidence of the runs on the model's relative error.
+/// Returns the evidence of the runs on the model's relative error.
 ///
-/// A gauge's error is that of all times a factor of its own, and goes with the entries or with the row ([`FLOORS`]), each as probable
-/// beforehand; its readings are as probable as the mean over these makes them.
+/// A gauge's error is the common error times a factor for the gauge. It is proportional to the entries or to the row ([`FLOORS`]), with equal prior
+/// probability. The probability of the gauge's readings is the mean over these cases.
 ///
 /// `runs`: each with loads of unit size.
 pub(super) fn error_evidence(
@@ -196,7 +197,7 @@ fn own_steps() -> Vec<(i32, f64)> {
     OWN_STEPS.map(|step| (step, log(step) - total)).collect()
 }
 
-/// A gauge, where the error of all is this one; `log`: log marginal likelihood of its readings with a floor and a step of its own error.
+/// Returns the evidence and error of a gauge for the common error `error`; `log`: log marginal likelihood of its readings by floor and step.
 fn of_gauge(own: &[(i32, f64)], error: ModelError, log: impl Fn(usize, usize) -> f64) -> Own {
     let floors = (FLOORS.len() as f64).ln();
     let steps = || own.iter().enumerate();

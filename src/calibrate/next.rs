@@ -1,4 +1,4 @@
-//! The next known load worth applying: the one whose readings would tell most of S.
+//! The next known load worth applying: the load whose readings give the most information on S.
 
 use super::types::Calibration;
 use crate::linalg::spd;

@@ -11,13 +11,13 @@ pub(super) struct RowPrior {
     pub covariance: Vec<f64>,
 }
 
-/// Standard deviation of an entry without a model over the largest strain measured: knows nothing, and still inverts.
+/// Standard deviation of an entry without a model over the largest strain measured: no information, but invertible.
 const DIFFUSE: f64 = 100.0;
-/// Share of a row's root mean square below which an entry's error no longer falls with the entry. The first where errors go with the entries
-/// themselves, as those of a stiffness do: an entry that is zero in the model is not known exactly. The second, the root mean square itself, where
-/// they go with all the strain around the gauge, as what a mesh leaves does: the errors of all entries below it are alike.
+/// Shares of a row's root mean square below which an entry's error no longer falls with the entry. The first is for errors proportional to the
+/// entries, as of a stiffness: an entry that is zero in the model is not known exactly. The second, the root mean square itself, is for errors
+/// proportional to all the strain around the gauge, as of a mesh: the errors of all entries below it are equal.
 pub(super) const FLOORS: [f64; 2] = [0.1, 1.0];
-/// A row's root mean square below this share of that of all rows says nothing of how near to zero its entries are.
+/// Share of the root mean square of all rows that replaces the root mean square of a smaller row. A smaller row gives no scale for entries near zero.
 const SMALL_ROW: f64 = 0.1;
 
 /// Error of one row, 1 sd.
@@ -30,7 +30,7 @@ pub(super) struct RowError {
 }
 
 impl From<ModelError> for RowError {
-    /// Both floors alike.
+    /// Splits the variance of the entries equally between both floors.
     fn from(error: ModelError) -> Self {
         Self {
             common: error.common,

@@ -35,11 +35,11 @@ pub(super) struct Left {
 
 /// Chance under which residuals count as larger than noise makes them.
 const SIGNIFICANT: f64 = 1e-3;
-/// Degrees of freedom under which scatter can't be told from the fit.
+/// Degrees of freedom below which the scatter can't be separated from the fit.
 const FEWEST: f64 = 0.9;
 
 impl Scatter {
-    /// No scatter besides noise.
+    /// Returns zero scatter, with readings that have noise alone.
     pub fn none(n: usize) -> Self {
         Self {
             covariance: vec![0.0; n * n],
@@ -49,8 +49,8 @@ impl Scatter {
         }
     }
 
-    /// Factor on the covariance of each of `repeats` runs of one group, with which they tell of S, counted as independent, what they tell
-    /// together: exact where they are of one loading and nothing but scatter counts.
+    /// Returns the factor on the covariance of each of `repeats` runs of one group. With it, the runs counted as independent give the same
+    /// information on S as the correlated runs together. It is exact for runs of one loading if only scatter counts.
     ///
     /// # Reference
     /// L. Kish, Survey Sampling (1965), eq. 5.4.1: the design effect `1 + (m - 1) rho`.
@@ -58,13 +58,13 @@ impl Scatter {
         1.0 + (repeats.max(1) - 1) as f64 * self.common
     }
 
-    /// From what runs leave; `fitted` is the number of runs' worth of freedom that the fit of S took from each gauge, `columns` those of S
-    /// by gauge.
+    /// Estimates the scatter from the residuals of runs. `fitted` is the number of runs' worth of freedom that the fit of S took from each gauge.
+    /// `columns` are the columns of S by gauge.
     ///
-    /// Scatter is of two kinds: patterns that loads make (size and place of the load: dynamic share, lateral place), which decide how far
-    /// recovered loads scatter, and all others. The sample is shrunk towards one with these kinds apart: the block within the span of S,
-    /// itself shrunk towards its mean, and the mean of the rest; their cross terms vanish. What it then says too well of
-    /// loads is added ([`overfit`]).
+    /// Scatter is of two kinds: patterns that loads make (size and place of the load: dynamic share, lateral place), which determine the scatter of
+    /// recovered loads, and all other patterns. The sample is shrunk towards a target that separates these kinds: the block within the span of S,
+    /// shrunk towards its mean, and the mean of the rest, without cross terms. The result underestimates the scatter of loads; [`overfit`] gives the
+    /// difference, which is added.
     ///
     /// # Reference
     /// Weight of the target: Y. Chen, A. Wiesel, Y. C. Eldar, A. O. Hero, IEEE Trans. Signal Process. 58 (2010) 5016, eq. 23 (oracle

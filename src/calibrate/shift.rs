@@ -17,9 +17,9 @@ const DEAD: f64 = 0.1;
 /// Noise sd that the largest reading of a live gauge exceeds.
 const LIVE: f64 = 3.0;
 
-/// Difference from the row that a cause makes, over the change it makes, up to which the cause explains a row.
+/// Largest difference from the row of a cause, over the change that the cause makes, at which the cause explains a row.
 const SAME: f64 = 0.3;
-/// Posterior sd over the change that a cause makes, up to which the runs tell it from none.
+/// Largest posterior sd, over the change that a cause makes, at which the runs separate the cause from no change.
 const TOLD: f64 = 0.2;
 
 /// A gauge's row in loads of unit size: as the model has it and as calibrated, with the latter's covariance.
@@ -53,7 +53,7 @@ impl Row {
         }
     }
 
-    /// Distance of the calibrated row from `wanted`, strain, where the runs tell the two apart and it explains the row.
+    /// Returns the distance of the calibrated row from `wanted`, strain, if `wanted` explains the row and the runs separate it from the model's row.
     fn explained_by(&self, wanted: &[f64]) -> Option<f64> {
         let change: Vec<f64> = wanted.iter().zip(&self.model).map(|(w, m)| w - m).collect();
         let size = spd::dot(&change, &change).sqrt();
@@ -172,7 +172,7 @@ pub(super) fn wrongly_wired(shifts: &[GaugeShift]) -> Vec<usize> {
     }
 }
 
-/// Without a model the dead ones alone can be told.
+/// Returns the shifts without a model, which detect dead gauges only.
 fn without_model(task: &Task) -> Vec<GaugeShift> {
     let one = |(g, name): (usize, &String)| GaugeShift {
         name: name.clone(),
@@ -186,7 +186,7 @@ fn without_model(task: &Task) -> Vec<GaugeShift> {
     task.gauges.iter().enumerate().map(one).collect()
 }
 
-/// Whether a gauge was read, and read nothing in any run.
+/// Returns whether a gauge has readings, all of them below [`LIVE`] times the noise.
 fn silent(task: &Task, g: usize) -> bool {
     let readings = task.runs.iter().filter_map(|r| r.strain.get(g));
     let mut readings = readings.filter(|v| v.is_finite()).peekable();

@@ -15,8 +15,9 @@ pub(super) fn is_known(run: &KnownRun, sizes: &[f64]) -> bool {
     })
 }
 
-/// S from the runs whose loads are known, where there are others and these tell all loads; `None` else. What a run weighed by its sum carries
-/// where is told by S alone: begun with none, all loads look alike, and what tells them apart is taken for scatter.
+/// Computes S from the runs with known loads. Returns `None` if all runs have known loads, or if these runs do not determine all loads. In a run with
+/// a known sum, S alone determines how the sum is shared. If the fit starts without S, all loads have equal columns, and their differences count as
+/// scatter.
 pub(super) fn from_known(
     task: &Task,
     runs: &[&KnownRun],
@@ -66,11 +67,11 @@ fn with_noise(task: &Task, run: &KnownRun, phi: Vec<f64>) -> Equation {
     }
 }
 
-/// Rows of S by gauge where no run tells the loads along some directions: what the known parts of the loads make, by least squares, and along what
-/// runs leave free the patterns over gauges that strain has besides, the largest first, each for loads of a root mean square of 1.
+/// Returns rows of S by gauge if no run determines the loads along some directions. For the known parts of the loads they come from least squares.
+/// Along the free directions they are the patterns over gauges in the remaining strain, the largest first, each for loads of a root mean square of 1.
 ///
 /// # Reference
-/// M. E. Tipping, C. M. Bishop, J. R. Stat. Soc. B 61 (1999) 611: principal components are the most probable columns where noise is alike.
+/// M. E. Tipping, C. M. Bishop, J. R. Stat. Soc. B 61 (1999) 611: principal components are the most probable columns if noise is equal.
 pub(super) fn from_parts(
     task: &Task,
     runs: &[&KnownRun],

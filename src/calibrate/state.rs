@@ -136,7 +136,7 @@ impl State {
         s
     }
 
-    /// Whether runs that scatter, each of one load alone, are all that teaches.
+    /// Returns whether S comes only from runs that scatter, each with one load, without a model.
     fn is_one_by_one(&self, task: &Task) -> bool {
         let k = task.loads.len();
         let acts = |run: &KnownRun, l: usize| {

@@ -47,20 +47,19 @@ pub struct ModelPrior {
     pub values: Matrix,
     /// Ways in which gauges may sit off their drawing; empty where nothing is stated.
     pub moves: Vec<Move>,
-    /// How rows change where gauges are not glued as drawn; `None` where that is not known, as of a table.
+    /// Change of rows for gauges that are not at their nominal position; `None` if it is not known, as for a table.
     pub off_drawing: Option<OffDrawing>,
     /// Stated relative error, 1 sd: entry by entry, and common to a gauge.
     pub uncertainty_rel: f64,
 }
 
-/// Changes of rows of gauges that are not glued as drawn, `n x k` each, strain per job unit: what tells a turned or displaced gauge from a
-/// wrong gain. Zeros for a gauge of which they are not known. They say what a shift looks like; how far a gauge may be off is stated by
-/// [`Move`]s.
+/// Changes of rows of gauges that are not at their nominal position, `n x k` each, strain per job unit. They separate a rotated or displaced gauge
+/// from a wrong gain. Zeros for a gauge whose changes are not known. They identify the cause of a shift; [`Move`]s state how far a gauge may be off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OffDrawing {
     /// Per radian, right-handed about the element's normal.
     pub turned: Matrix,
-    /// At a right angle to the drawing.
+    /// At a right angle to the nominal direction.
     pub crossed: Matrix,
     /// Per length along its axis; zeros where strain is known at one place of an element only.
     pub along: Matrix,
@@ -70,7 +69,7 @@ pub struct OffDrawing {
     pub reach: f64,
 }
 
-/// How a gauge may sit off its drawing.
+/// Kind of offset of a gauge from its nominal position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoveKind {
     /// Along its axis.
@@ -183,9 +182,9 @@ impl Term {
 /// Test of one kind of term.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TermTest {
-    /// Which.
+    /// Kind of term.
     pub term: Term,
-    /// Chance of a term at least as clear, over all gauges and terms of its kind, where there is none.
+    /// Probability of a term of at least this significance if the strain has no such term, over all gauges and terms of the kind.
     pub p: f64,
 }
 
@@ -198,10 +197,10 @@ pub struct HeldOutError {
     pub intercept: f64,
 }
 
-/// How many left-out runs lay within their 95 % regions.
+/// Number of left-out runs within their 95 % regions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
-    /// Runs whose known loads lay within.
+    /// Runs whose known loads are within their region.
     pub held: usize,
     /// Runs left out, one by one.
     pub of: usize,
@@ -209,7 +208,7 @@ pub struct Coverage {
     pub factor: f64,
 }
 
-/// How far the model was off, as the runs say: 1 sd, relative.
+/// Error of the model as determined from the runs: 1 sd, relative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ModelError {
     /// Common to a gauge.
@@ -218,7 +217,7 @@ pub struct ModelError {
     pub entry: f64,
 }
 
-/// A calibrated S with all that was learnt.
+/// Calibrated S with all results of the calibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Calibration {
     /// Posterior mean, with covariance and scatter.
@@ -330,7 +329,7 @@ pub struct GaugeShift {
     pub word: ShiftWord,
 }
 
-/// A size that the runs say of a gauge.
+/// Gain or offset of a gauge, as determined from the runs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Glue {
     /// Posterior mean.
@@ -341,22 +340,22 @@ pub struct Glue {
     pub stated: f64,
 }
 
-/// Share of the stated sd from which on the runs don't tell a size.
+/// Share of the stated sd from which on a value is undetermined.
 const TOLD: f64 = 0.7;
 
 impl Glue {
-    /// Whether the runs tell it: at least half of the stated variance is gone.
+    /// Returns whether the runs determine the value: they remove at least half of the stated variance.
     pub fn is_determined(&self) -> bool {
         self.sigma < TOLD * self.stated
     }
 }
 
-/// How a gauge was glued.
+/// Gain and installed position of a gauge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AsGlued {
-    /// Factor on its readings.
+    /// Factor on the gauge's readings.
     pub gain: Glue,
-    /// Off its drawing, for each move of the task.
+    /// Offset from the nominal position, for each move of the task.
     pub moves: Vec<(MoveKind, Glue)>,
 }
 

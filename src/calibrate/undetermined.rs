@@ -116,17 +116,18 @@ pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
     vec![finding.with_numbers(all.len() as f64, 0.0)]
 }
 
-/// Half width of the 95 % interval over the largest load of the kind from which a load counts as not told: as [`crate::recovery::determined`].
+/// Half width of the 95 % interval over the largest load of the kind, from which a load counts as undetermined, as in
+/// [`crate::recovery::determined`].
 const WIDE: f64 = 0.5;
 /// Degrees of freedom of the scatter above which runs are many: Student's factor is less than a third above that of a normal distribution.
 const ENOUGH: f64 = 5.0;
 
-/// Loads that the calibrated S tells worse than half of their size in half of the runs or more, though the runs determine S by count: one run of
-/// known loads beside many whose sum alone is known decides how that sum is shared, by chance.
+/// Returns a finding on loads that the calibrated S determines worse than half of their size, in half of the runs or more, although the runs
+/// determine S by count. With one run of known loads and many runs with a known sum, that run decides by chance how the sum is shared.
 ///
-/// An error where of some runs a sum alone is known, where a load is not told at all, and where, without a model, many runs leave a load known worse
-/// than it is large: they do not fit their loads. Of few runs whose loads are all known it is a warning: their scatter is known badly, and repeats
-/// narrow it. So it is beside a model, by which S is determined: then gauges that hardly feel a load are what tells it badly.
+/// The finding is an error in three cases: only a sum is known for some runs; a load is undetermined; or, without a model, many runs leave a half
+/// width larger than the load, because they do not fit their loads. With few runs of known loads it is a warning: their scatter is badly known, and
+/// repeats narrow it. With a model, which determines S, it is a warning too: the cause is then gauges with little strain under a load.
 pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Finding> {
     let errors = ErrorModel {
         noise: task.noise,
@@ -206,7 +207,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
     Some(finding.with_numbers(worst, WIDE))
 }
 
-/// The task's sums of loads that are told to better than [`WIDE`] in half of the runs, in words.
+/// Returns, as text, the task's sums of loads that are determined better than [`WIDE`] in half of the runs.
 fn told_sums(task: &Task, runs: &[&LoadEstimate]) -> String {
     let k = task.own_loads();
     let width = |terms: &[f64]| -> f64 {

@@ -12,8 +12,8 @@ use crate::linalg::{Matrix, dense, spd};
 pub(super) const SPANNED: f64 = 1e-6;
 /// Share of a load's size from which its sd makes it unknown.
 pub(super) const UNKNOWN: f64 = 0.5;
-/// Variance of a load along a free direction in a run, in units of its size squared and of the number of runs: what all of them together tell of
-/// the size of its column, which is nothing, is an sd of five times that size.
+/// Variance of a load along a free direction in a run, in units of its size squared and of the number of runs. All runs together then determine the
+/// size of its column with an sd of five times that size, which is no information.
 const FREE: f64 = 25.0;
 /// Square of a sine under which two directions are one.
 const SAME: f64 = 1e-6;

@@ -51,7 +51,7 @@ fn version() -> &'static str {
     &TEXT
 }
 
-/// The commands; each has its file beside this one.
+/// Commands; each has a file in this folder.
 #[derive(clap::Subcommand, Debug)]
 pub enum Command {
     /// Write an example truck into a folder: solve, place, recover, reconcile, weigh, report

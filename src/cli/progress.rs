@@ -41,7 +41,7 @@ impl Meter {
 
 /// How long work may take before a progress line appears.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// How often the time left is stated anew.
+/// Period at which the remaining time is updated.
 const TICK: Duration = Duration::from_millis(250);
 
 /// A line on standard error for the stage that runs; silent where that is no terminal.

@@ -38,13 +38,13 @@ impl Run {
         }
     }
 
-    /// `--out`, else `<job name>.out` beside the job.
+    /// Returns `--out`, else `<job name>.out` next to the job.
     pub fn folder(&self, path: &Path) -> PathBuf {
         let asked = self.common.out.clone();
         asked.unwrap_or_else(|| default_folder(path))
     }
 
-    /// Asks a question of a job, writes the outcome into `--out`, else `<job name>.out` beside the job.
+    /// Runs `ask` on a job and writes the outcome into `--out`, else `<job name>.out` next to the job.
     pub fn job<A>(
         &self,
         path: &Path,
@@ -71,7 +71,7 @@ impl Run {
         self.ask_into(folder, |cx| ask(&Job::read(path, cx.files)?, cx))
     }
 
-    /// Asks a question of files, writes the outcome into `--out`, else `<name>.out` beside the first of them.
+    /// Runs `ask` on files and writes the outcome into `--out`, else `<name>.out` next to the first file.
     pub fn files<A>(
         &self,
         first: &Path,
@@ -103,7 +103,7 @@ impl Run {
         self.print(done, Some(folder))
     }
 
-    /// Recovers the loads of a job into `--out`, else `<job name>.out` beside the job; those of a record are written as they come.
+    /// Recovers the loads of a job into `--out`, else `<job name>.out` next to the job; loads of a record are written as they come.
     pub fn recover(&self, path: &Path) -> ExitCode {
         let folder = self.folder(path);
         let done = self.pooled(|cx| {
@@ -273,7 +273,7 @@ pub(super) fn recover_and_save(
     Ok((outcome, json))
 }
 
-/// `<stem>.out` beside the file.
+/// Returns `<stem>.out` next to the file.
 fn default_folder(main_input: &Path) -> PathBuf {
     let stem = main_input.file_stem();
     let mut name = stem.map_or_else(|| "strainbridge".into(), |s| s.to_owned());
@@ -281,7 +281,7 @@ fn default_folder(main_input: &Path) -> PathBuf {
     main_input.with_file_name(name)
 }
 
-/// Says faults and that nothing came of it.
+/// Prints faults and the note that nothing was written; returns exit code 2.
 pub(super) fn refuse(faults: &Faults, common: &CommonArguments) -> ExitCode {
     let voice = Voice::of(common);
     voice.faults(faults);

@@ -11,7 +11,7 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Runs the command that made a folder anew, into another, and compares.
+/// Runs the command that made a folder again, into another folder, and compares both.
 pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
     // A sibling of the folder: paths in the jobs that a command writes are relative to it.
     let folder = std::fs::canonicalize(&a.folder).unwrap_or_else(|_| a.folder.clone());
@@ -23,7 +23,7 @@ pub(super) fn verify(a: &VerifyArguments) -> ExitCode {
     })
 }
 
-/// The command as a process of its own: nothing that this one holds can colour the answer.
+/// Runs the command again in a separate process, so that no state of this process affects the answer.
 fn again(folder: &Path, made: &Made, main: &Path, out: &Path) -> Result<PathBuf, Faults> {
     let fault = |wrong: String, remedy: &str| {
         Faults::from(Fault::of(

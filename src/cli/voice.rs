@@ -53,7 +53,7 @@ impl Voice {
         }
     }
 
-    /// Whether only what makes the exit code is said.
+    /// Returns whether only messages that decide the exit code are printed.
     pub fn is_quiet(self) -> bool {
         self.level == Level::Quiet
     }
@@ -130,7 +130,7 @@ impl Voice {
         }
     }
 
-    /// Says seconds by stage, where everything is asked for.
+    /// Prints the seconds of each stage, at the verbose level only.
     pub fn seconds(self, seconds: &Seconds) {
         if self.level != Level::Verbose {
             return;
@@ -146,7 +146,7 @@ impl Voice {
         say(&text_of(&wrapped(&time, self.room.width, 4)));
     }
 
-    /// Says faults; as JSON on standard output too where that is asked for.
+    /// Prints faults on standard error; also as JSON on standard output if JSON is asked for.
     pub fn faults(self, faults: &[Fault]) {
         if self.json {
             let json = json!({ "faults": faults });
@@ -155,7 +155,7 @@ impl Voice {
         self.fault_lines(faults);
     }
 
-    /// Says faults on standard error alone.
+    /// Prints faults on standard error only.
     pub fn fault_lines(self, faults: &[Fault]) {
         let n = faults.len();
         let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
@@ -181,9 +181,9 @@ fn colour(severity: Severity) -> &'static str {
     }
 }
 
-/// Columns of the terminal; [`WIDTH`] where standard output is none.
+/// Returns the columns of the terminal; [`WIDTH`] if standard output is not a terminal.
 fn width() -> usize {
-    /// A narrower terminal wraps by itself.
+    /// Least width; a narrower terminal wraps lines automatically.
     const LEAST: usize = 40;
     let size = terminal_size::terminal_size_of(std::io::stdout());
     size.map_or(WIDTH, |(w, _)| usize::from(w.0).max(LEAST))
@@ -219,7 +219,7 @@ pub(super) fn print(text: &[u8]) -> ExitCode {
     }
 }
 
-/// Whether a text got to standard output; said where it did not.
+/// Prints a text on standard output and returns whether this succeeded; an error other than a closed pipe is reported.
 fn is_printed(text: &[u8]) -> bool {
     let mut out = std::io::stdout().lock();
     match out.write_all(text).and_then(|()| out.flush()) {

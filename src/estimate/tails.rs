@@ -1,4 +1,4 @@
-//! Chances of a value at least as large, for any number that arithmetic may come to: not a number (nothing over nothing) tells nothing, 1.
+//! Chances of a value at least as large, for any result of arithmetic; 1 for NaN (nothing over nothing), which is no evidence.
 
 use statrs::distribution::{
     Binomial, ChiSquared, ContinuousCDF, DiscreteCDF, FisherSnedecor, StudentsT,

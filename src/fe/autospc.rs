@@ -155,8 +155,8 @@ pub(super) fn autospc_finding(
     })
 }
 
-/// Sizes of the forces and of the moments at the unknowns, against which held loads are judged: sums, for a load spread over a million
-/// grids is small at each. `reach`, the size of the model, makes moments of forces.
+/// Returns the sizes of the forces and of the moments at the unknowns, the reference for held loads. They are sums, because a load spread over a
+/// million grids is small at each. `reach`, the size of the model, converts forces to moments.
 pub(super) fn load_sizes(numbering: &Numbering, acting: &[f64], reach: f64) -> [f64; 2] {
     let mut sizes = [0.0; 2];
     let mut values = acting.iter();

@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity, few};
 use crate::model::{Joint, JointCard, Model, Rigid, RigidKind};
 use nastran::cards::ShellShape;
 
-/// Says where an element stands for another than its card names.
+/// Returns findings on elements that are solved with another formulation than their card names.
 pub(super) fn formulations(model: &Model) -> Vec<Finding> {
     let told: [(&[ShellShape], &str, &str); 2] = [
         (

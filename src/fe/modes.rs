@@ -14,12 +14,12 @@ use crate::linalg::sparse::Factor;
 use crate::model::{Model, Vec3};
 use crate::stop::Stop;
 
-/// Frequencies beside a static solution, which judge whether records are slow: a few parts in ten thousand, whatever lies beside them.
+/// Accuracy of frequencies computed with a static solution, to test whether records are slow: a few parts in ten thousand for any spacing.
 const BESIDE_STATICS: Accuracy = Accuracy {
     frequency: 2e-4,
     residual: f64::INFINITY,
 };
-/// Modes asked for by themselves: shapes are wanted too, whose error is the residual over the gap.
+/// Accuracy of modes that are computed alone: shapes are needed too, and their error is the residual over the gap.
 const ALONE: Accuracy = Accuracy {
     frequency: 1e-8,
     residual: 1e-5,

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 /// Solutions whose epsilon is larger are refined by one step: below, rounding of a million unknowns leaves little to gain.
 const REFINED_ABOVE: f64 = 1e-7;
-/// Above this after refinement, digits that a gauge reads may be lost: the analyst is told (Nastran's users are told to worry at 1e-3).
+/// Epsilon after refinement above which digits that a gauge reads may be lost, which a finding reports (the usual limit of Nastran users is 1e-3).
 const INACCURATE_ABOVE: f64 = 1e-6;
 
 /// Solves unit loads on the free structure, subcases numbered 1 .. n.

@@ -216,7 +216,7 @@ fn keep_largest(rows: &mut Vec<StrainRow>, n: usize) {
     rows.truncate(n);
 }
 
-/// Ids of the shell properties with strain whose material says nothing of the strain along the thickness (MAT2, MAT8, MAT9).
+/// Returns the ids of the shell properties with strain whose material does not determine the strain along the thickness (MAT2, MAT8, MAT9).
 pub fn without_normal_strain(model: &Model, cases: &[CaseResult]) -> Vec<u32> {
     let mut seen = vec![false; model.shell_properties.len()];
     for case in cases {

@@ -104,7 +104,7 @@ pub(super) fn unbalanced(
     ))
 }
 
-/// Whether a finding on the model says already what takes force or moment beside the supports.
+/// Returns whether another finding on the model already reports what takes force or moment in addition to the supports.
 fn told_otherwise(model: &Model) -> bool {
     model.joints.iter().any(gap_leaves_moment) || model.rigids.iter().any(held_off_axes)
 }

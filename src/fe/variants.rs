@@ -30,7 +30,7 @@ use rayon::prelude::*;
 
 /// Error of a change of displacements over the change, in the norm of the energy.
 const TOLERANCE: f64 = 1e-8;
-/// Steps after which a variant gets a factor of its own: stiffness that changed a hundredfold.
+/// Number of steps after which a variant gets a separate factor: stiffness that changed a hundredfold.
 const MOST_STEPS: usize = 40;
 
 /// Solves unit loads on each variant of `base` and calls `read` with it and its solution, one after the other.
@@ -139,7 +139,7 @@ impl<'a> Base<'a> {
         Ok(base)
     }
 
-    /// The loads of cases on a variant at the unknowns, and what its report says of them.
+    /// Returns the loads of cases on a variant at the unknowns, and the report on these loads.
     fn forces_on(
         &self,
         variant: &Prepared<'_>,

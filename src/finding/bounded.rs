@@ -1,6 +1,6 @@
 //! How much of a file a message repeats.
 
-/// Characters of a name or a path: longer ones are none that anybody gives, and are shown by their beginning and their end.
+/// Characters of a name or a path. Longer ones do not occur in practice and are shown by their beginning and their end.
 const NAME: usize = 160;
 /// Characters of a message.
 const TEXT: usize = 4000;

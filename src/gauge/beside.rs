@@ -1,4 +1,4 @@
-//! A point that is stated beside the element of a gauge: how far apart the two are.
+//! Distance of a stated point from the element of its gauge.
 
 use super::surface::{corners, foot_on, to_side};
 use crate::fe::strain_tensor::Surface;

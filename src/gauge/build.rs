@@ -12,7 +12,9 @@ use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::model::{Mat3, Model, Shell, Vec3};
 
-/// The channels of a gauge (three for a rosette) and what there is to say of them.
+/// Places a gauge on the model, and returns its channels (three for a rosette) with findings.
+///
+/// A channel is a linear functional of the strain at the places of its arms; [`reading`](super::reading) evaluates it in a load case.
 ///
 /// # Errors
 /// Where it can't be laid onto the model.

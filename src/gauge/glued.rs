@@ -38,8 +38,8 @@ impl Offset {
     }
 }
 
-/// Share of a step by which a foot may lie beside the point that was asked for: on a shell that goes on smoothly, at 20 degrees, it is
-/// `sin^2 20`. What lies farther was stopped by an edge.
+/// Share of a step by which a foot may be off the requested point: `sin^2 20` on a smooth shell, at 20 degrees. An edge stopped a foot that is
+/// farther off.
 const BESIDE: f64 = 1.0 - SMOOTH * SMOOTH;
 
 /// How often a step is halved where edges stop it on both sides.

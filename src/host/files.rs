@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::thread::JoinHandle;
 
-/// A file that was read: what `result.json` says of it.
+/// A file that was read, as listed in `result.json`.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Input {
     /// Path as given, by the user or by the job.

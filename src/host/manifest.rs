@@ -19,7 +19,7 @@ pub(crate) struct Manifest {
 }
 
 impl Manifest {
-    /// The manifest of a folder; empty where there is none.
+    /// Reads the manifest of a folder; empty if the folder has no manifest.
     pub(crate) fn read(folder: &Path) -> Self {
         let text = std::fs::read_to_string(folder.join(NAME)).unwrap_or_default();
         let mut out = Self::default();

@@ -1,4 +1,4 @@
-//! Outcome of a command: the answer of its own type, with units, inputs, findings and seconds. `result.json` is its serialised form.
+//! Outcome of a command: the answer of its type, with units, inputs, findings and seconds. `result.json` is its serialised form.
 
 use super::words::counted;
 use crate::finding::{Finding, Severity, few, worst};
@@ -218,7 +218,7 @@ struct ResultFile<'a, A> {
 }
 
 impl<A: Answer> Outcome<A> {
-    /// `result.json`, ending in a line feed; `tables` are those that were written beside it.
+    /// Returns `result.json`, ending in a line feed; `tables` are the tables written next to it.
     ///
     /// # Errors
     /// Returns an error if the answer has no JSON form, which is a mistake of the program.

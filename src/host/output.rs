@@ -139,7 +139,7 @@ impl Output {
         b.map_err(|e| unwritable(&self.folder.join(two), &e))
     }
 
-    /// Notes a file under its temporary name; begun twice, it is written anew.
+    /// Records a file under its temporary name; a file that is begun twice is overwritten.
     fn begin_file(&mut self, name: &str) -> PathBuf {
         let target = self.folder.join(name);
         if let Some(written) = self.pending.iter().find(|p| p.1 == target) {
@@ -248,7 +248,7 @@ impl Output {
         Ok(kept)
     }
 
-    /// Renames every file to its name beside what the command wrote before: for one that writes a folder bit by bit.
+    /// Renames every file to its name and keeps earlier files of the command: for a command that writes a folder bit by bit.
     ///
     /// # Errors
     /// As [`Output::commit`].

@@ -1,7 +1,7 @@
 //! Spreadsheets as tables: the first sheet of an XLSX file as CSV text, so that whoever reads a table reads it too.
 //!
-//! Cells come one after the other and none is kept but as text: an address far to the right or below costs its separators alone, and
-//! those are bounded. What the archive says it unpacks to is bounded before anything is unpacked.
+//! Cells come one after the other and are kept only as text. An address far to the right or below costs only its separators, and these are bounded.
+//! The unpacked size that the archive states is bounded before anything is unpacked.
 
 /// Bytes that an archive may unpack to.
 #[cfg(feature = "xlsx")]
@@ -166,7 +166,7 @@ impl Lines {
     }
 }
 
-/// Bytes that the members of an archive unpack to, as its list at the end says.
+/// Returns the number of bytes that the members of an archive unpack to, as stated in its list at the end.
 ///
 /// # Reference
 /// PKWARE, APPNOTE.TXT - .ZIP File Format Specification, 4.3.12 and 4.3.16.

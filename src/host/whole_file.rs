@@ -192,7 +192,7 @@ pub fn hex(digest: &[u8]) -> String {
     digest.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// A file, what the system says of it, and room for its bytes.
+/// Opens a file; returns it with its metadata, and room for its bytes.
 fn opened(path: &Path) -> std::io::Result<(File, Metadata, Vec<u8>)> {
     // Before it is opened: opening a pipe waits for its writer.
     check_kind(&std::fs::metadata(path)?)?;
@@ -241,12 +241,12 @@ impl From<&Metadata> for Stamp {
     }
 }
 
-/// Whether a file was written to between two looks, as far as its size and its clock tell.
+/// Returns whether the size or the time of the last write of a file differs between two looks.
 fn differs(before: &Metadata, after: &Metadata) -> bool {
     Stamp::from(before) != Stamp::from(after)
 }
 
-/// Memory that can be had without swapping; `None` where the system doesn't say it in `/proc/meminfo`.
+/// Returns the memory that is available without swapping; `None` if `/proc/meminfo` does not state it.
 fn free_memory() -> Option<u64> {
     let text = std::fs::read_to_string("/proc/meminfo").ok()?;
     let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;

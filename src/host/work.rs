@@ -38,7 +38,7 @@ impl<'a> Work<'a> {
         }
     }
 
-    /// Runs a stage: timed under its name, told to whoever hears of progress.
+    /// Runs a stage, records its time under its name, and reports its begin and end as progress.
     pub fn stage<T>(&mut self, name: &str, work: impl FnOnce(&mut Self) -> T) -> T {
         let start = Instant::now();
         self.cx.progress.begin(name);

@@ -141,7 +141,7 @@ impl InputFault {
         }
     }
 
-    /// Returns a clause that says what is wrong.
+    /// Returns a clause that describes the fault.
     pub fn clause(&self, names: &[String]) -> String {
         let name = |g: usize| names.get(g).map_or("", String::as_str);
         match *self {
@@ -328,8 +328,8 @@ impl Found {
     }
 }
 
-/// Returns the findings on recorded loads beside those on gauges: none where all gauges are installed otherwise than stated, which records of the
-/// other sign look like.
+/// Returns the findings on recorded loads that findings on gauges do not explain. Empty if all gauges are installed otherwise than stated: records
+/// with the opposite sign look the same.
 pub fn not_explained_by(of_gauges: &[Finding], of_records: Vec<Finding>) -> Vec<Finding> {
     let installed = ["gauge-other-side", "gauge-angle-in-radians"];
     let all = |f: &Finding| f.subject == "all" && installed.contains(&f.code);

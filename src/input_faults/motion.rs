@@ -250,7 +250,7 @@ fn of_kind(channels: &[MotionChannel], kind: ChannelKind) -> Vec<usize> {
         .collect()
 }
 
-/// Returns the units that a channel may be in instead of its own, with the factors on its samples.
+/// Returns the units that a channel may have instead of its stated unit, with the factors on its samples.
 fn other_units(c: &MotionChannel) -> Vec<(&'static str, f64)> {
     let si = |name: &str| c.kind.unit_si(name).unwrap_or(f64::NAN);
     let each = c.kind.usual_units().iter();

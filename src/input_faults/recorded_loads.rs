@@ -7,9 +7,9 @@ use crate::linalg::spd;
 use crate::units::{Quantity, number};
 use rayon::prelude::*;
 
-/// Ratio of strain to what the model makes of the loads from which a unit is wrong: units of force differ by 4.448 (pounds read as newtons),
-/// 9.81 (kilograms) and 1000, and a model may take a tenth off the first. Below it may be the model, badly scaled (a wall of half the thickness
-/// or less), which runs put right; a model with a larger stated error has a larger ratio, four of its sd.
+/// Ratio of measured strain to the strain that the model makes of the loads, from which a unit is wrong. Units of force differ by 4.448 (pounds read
+/// as newtons), 9.81 (kilograms) and 1000, and a model may take a tenth off the first. A smaller ratio may come from a badly scaled model (a wall of
+/// half the thickness or less), which runs correct. A model with a larger stated error has a larger ratio, four of its sd.
 const UNIT: f64 = 4.0;
 /// Ratio under which a sign is wrong: -1 with a third of it lost to errors, other loads and other gauges.
 const SIGN: f64 = -1.0 / 3.0;

@@ -64,7 +64,7 @@ pub struct Rules {
     pub named: f64,
     /// Share of what a gauge without its readings explains that a cause may leave.
     pub cause_leaves: f64,
-    /// Sum of squares, over the reduced one, by which two explanations differ where the readings tell them apart: three sigmas.
+    /// Sum of squares, over the reduced one, by which two explanations differ if the readings distinguish them: three sigmas.
     pub apart: f64,
     /// Share of the expected strain under which a gauge reads nothing.
     pub nothing: f64,

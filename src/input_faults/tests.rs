@@ -1,4 +1,4 @@
-//! Faults planted in recorded loads of random structures: each is found, and nothing is found where there is none.
+//! Faults planted in recorded loads of random structures: each is found, and none is found without a fault.
 
 use super::{RecordFault, RecordedRuns, faults_of_recorded_loads, findings_of_recorded_loads};
 use crate::finding::Severity;

@@ -18,7 +18,7 @@ pub struct Channel {
 }
 
 impl Channel {
-    /// The reading put right, microstrain.
+    /// Returns the corrected reading, microstrain; NaN for an ignored channel.
     pub fn put_right(self, reading: f64) -> f64 {
         if self.ignore {
             return f64::NAN;
@@ -26,7 +26,7 @@ impl Channel {
         (reading - self.offset) / self.factor
     }
 
-    /// Whether nothing is to be put right.
+    /// Returns whether the channel needs no correction.
     pub fn is_right(self) -> bool {
         self.offset == 0.0 && self.factor == 1.0 && !self.ignore
     }

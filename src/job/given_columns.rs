@@ -3,8 +3,8 @@
 use super::same_name::{is_same_name, is_same_word};
 use super::types::{GivenSensitivity, Job, JobLoad};
 
-/// Load and column of a given S whose table has this header (the column of gauge names left out): as `columns` says; where it is left out,
-/// every column that a stated load names, or every column where no load is stated.
+/// Returns load and column of a given S whose table has this header, without the column of gauge names. They are as `columns` states; if it is
+/// omitted, every column that a stated load names, or every column if no load is stated.
 pub fn columns_of_given(
     job: &Job,
     given: &GivenSensitivity,

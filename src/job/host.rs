@@ -79,7 +79,7 @@ impl<'a> Work<'a> {
 }
 
 impl Folder {
-    /// Solutions in `<job name>.cache` beside the job, as `<job name>.out` beside it holds what a command writes.
+    /// Returns the folder `<job name>.cache` for solutions, next to the job like `<job name>.out`, which contains the output of a command.
     pub fn beside(job: &Job) -> Self {
         let mut name = match Path::new(&job.file).file_stem() {
             Some(stem) => stem.to_owned(),

@@ -1,4 +1,4 @@
-//! Decks and results given where a job is expected: one fault that says so, instead of a fault for every line.
+//! Decks and results given instead of a job: one fault for the file instead of a fault for every line.
 
 use crate::host::fault::Fault;
 use std::path::Path;

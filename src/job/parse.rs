@@ -136,7 +136,7 @@ pub(super) fn line_column(text: &str, at: usize) -> (u32, u32) {
     (line as u32, column as u32)
 }
 
-/// Takes the innermost entry that holds the span out of the table; `key` is its path. False where there is none.
+/// Removes the innermost entry that contains the span from the table and appends its path to `key`; returns false without such an entry.
 fn remove_entry(table: &mut DeTable, span: &Range<usize>, key: &mut Vec<String>) -> bool {
     let holds = |k: &Range<usize>, v: &Range<usize>| {
         (k.start <= span.start && span.end <= k.end) || (v.start <= span.start && span.end <= v.end)

@@ -42,7 +42,7 @@ fn lists(c: &mut Candidates) -> [(&'static str, List<'_>); 5] {
     ]
 }
 
-/// Puts the lists of the file that `[candidates] file` names beside those of the job; faults are added to the list.
+/// Adds the lists of the file that `[candidates] file` names to the lists of the job, and its faults to the list.
 pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut FaultList) {
     let Some(named) = job.candidates.file.clone() else {
         return;

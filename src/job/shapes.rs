@@ -263,7 +263,7 @@ impl<'de> Deserialize<'de> for Counts {
     }
 }
 
-/// A schema of its own for each of these types, part of where it is used.
+/// Implements a JSON schema for each of these types, inlined where the type is used.
 macro_rules! schema {
     ($type:ty, $schema:tt) => {
         impl JsonSchema for $type {

@@ -165,10 +165,10 @@ fn has_thousands(text: &str) -> bool {
 }
 
 impl Table {
-    /// Refuses a header without rows, which says nothing.
+    /// Refuses a table that has a header and no rows.
     ///
     /// # Errors
-    /// A fault where there is no row.
+    /// A fault if there is no row.
     pub fn check_rows(&self) -> Result<(), Fault> {
         let remedy = "write one row for each entry";
         match self.rows.is_empty() {

@@ -8,8 +8,8 @@ pub type ComplexMatrix = DMatrix<Complex<f64>>;
 /// A pivot of columns of unit length below this leaves the gain, whose rounding is 1e-16 over it, with less than nine digits.
 const PIVOT: f64 = 1e-7;
 
-/// `(H* H + diag(ridge))^-1 H*` of `h`, `n x k`: the gain of least squares with `ridge` as prior information, `k x n`; by the QR factors of
-/// `H` above `diag(sqrt(ridge))`, columns of unit length. `None` where columns can't be told apart, or numbers are not finite.
+/// Returns `(H* H + diag(ridge))^-1 H*` of `h`, `n x k`: the gain of least squares with `ridge` as prior information, `k x n`. It uses the QR factors
+/// of `H` above `diag(sqrt(ridge))`, columns of unit length. `None` if columns are linearly dependent, or numbers are not finite.
 pub fn least_squares_gain(h: &ComplexMatrix, ridge: &[f64]) -> Option<ComplexMatrix> {
     let (n, k) = h.shape();
     let mut rows = DMatrix::zeros(n + k, k);

@@ -18,7 +18,7 @@ pub struct Svd {
     pub v: Matrix,
 }
 
-/// Relative size under which a singular value counts as zero: what single-precision result files can tell from rounding.
+/// Relative size below which a singular value counts as zero: what single-precision result files distinguish from rounding.
 pub const RANK_TOLERANCE: f64 = 1e-6;
 
 /// The singular value decomposition; `None` where `a` holds numbers that are not finite.
@@ -65,8 +65,8 @@ pub fn shortest_solution(a: &Matrix, b: &[f64], tolerance: f64) -> Option<Vec<f6
     Some(x)
 }
 
-/// nalgebra's decomposition of finite numbers with an end: its iteration by itself never gives up, and on some matrices never settles
-/// at the last bit.
+/// Returns nalgebra's decomposition of finite numbers with a limit of sweeps: without a limit its iteration never gives up, and on some matrices
+/// never settles at the last bit.
 pub(super) fn bounded_svd(a: Matrix) -> Option<nalgebra::SVD<f64, nalgebra::Dyn, nalgebra::Dyn>> {
     let sweeps = 200 * (a.nrows().min(a.ncols()) + 5);
     [5.0, 50.0, 5000.0]

@@ -8,19 +8,19 @@ use std::collections::{HashMap, HashSet};
 /// A column of a strain file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StrainColumn {
-    /// The gauge, as the job calls it; of a column that is no gauge's, what tells it from the others.
+    /// Name of the gauge in the job; for a column that is not a gauge's, a name that is unique in the file.
     pub name: String,
     /// Microstrain in one of its numbers; `None` where they are no strain, and it is no gauge's.
     pub microstrain: Option<f64>,
 }
 
-/// The columns of a file, in its order, as `gauges` are called; where none are known, every column may be one.
+/// Returns the columns of a file, in file order, with the names of `gauges`. Without known gauges, every column may be one.
 ///
-/// What stands in brackets beside a name is its unit or, where the job calls a gauge so, part of its name: `SG1 (left)`. A column that is no
-/// strain is another than the gauge's where a column of strain bears the gauge's name: `P01 (raw)` beside `P01 [um/m]`.
+/// Text in brackets after a name is its unit or, if a gauge of the job has that name, part of the name: `SG1 (left)`. If a strain column has the name
+/// of a gauge, a column without strain is a different one: `P01 (raw)` next to `P01 [um/m]`.
 ///
 /// # Errors
-/// Gauges in a unit that is none of strain, or that contradicts the row of units; gauges that two columns hold.
+/// Gauges in a unit that is not a unit of strain, or that contradicts the row of units; gauges with two columns.
 pub fn find_gauge_columns(
     file: &str,
     columns: &[Column],

@@ -27,7 +27,7 @@ pub enum StrainFile {
 pub struct StrainMeans {
     /// Gauge names.
     pub gauges: Vec<String>,
-    /// Readings of each, microstrain, channels put right.
+    /// Readings of each gauge, microstrain, with corrected channels.
     pub readings: Vec<Series>,
     /// Readings of its first samples, microstrain, a row a sample.
     pub first: Vec<f64>,
@@ -75,7 +75,7 @@ pub fn is_long_record(bytes: &FileBytes) -> bool {
     is_format(bytes) || bytes.len() > LARGE && is_record(bytes)
 }
 
-/// A strain file, its channels put right as `[[correction]]` says; of a record the sums. `wanted`: its [`super::strain_file::wanted_columns`].
+/// Reads a strain file with its channels corrected by `[[correction]]`; a record as sums. `wanted`: its [`super::strain_file::wanted_columns`].
 ///
 /// # Errors
 /// Every fault of the file.

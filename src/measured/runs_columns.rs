@@ -14,7 +14,7 @@ use crate::units::{Quantity, Unit, find_unit, unit_names};
 use serde_json::Value;
 use std::path::Path;
 
-/// Name and unit of every column; a row of units below the names is taken out of the table. A unit beside the name goes before that row's.
+/// Returns name and unit of every column; removes a row of units below the names from the table. A unit after the name precedes one in that row.
 pub fn take_units(t: &mut Table) -> Vec<Column> {
     let mut columns: Vec<Column> = t.header.iter().map(|h| name_and_unit(h)).collect();
     let is_row = t.rows.first().is_some_and(|(_, fields)| {
@@ -63,10 +63,10 @@ pub fn take_units_of(
     columns
 }
 
-/// The column whose header is `name`, or `name` and a unit; `None` where there is none.
+/// Returns the column whose header is `name`, or `name` and a unit; `None` without such a column.
 ///
 /// # Errors
-/// Several that are `name` and a unit, and none that is `name` alone.
+/// Several columns that are `name` and a unit, without a column that is `name` alone.
 pub fn place_of(t: &Table, columns: &[Column], name: &str) -> Result<Option<usize>, Fault> {
     // Last what the row of units makes a label: what stands in brackets is not what that row says.
     let readings: [fn(&Column) -> &str; 3] = [|c| &c.header.whole, |c| &c.name, |c| &c.header.name];
@@ -153,7 +153,7 @@ pub const PAYLOAD: [(&str, Quantity); 4] = [
     ("payload_y", Quantity::Length),
 ];
 
-/// Column of the runs file that says which runs are recovered and compared, and not calibrated with.
+/// Column of the runs file that marks the runs to recover and compare, which are not calibrated with.
 pub const CHECK: &str = "check";
 
 /// Returns the names that a column of the runs file may have for any command, those of a given S apart.
@@ -232,7 +232,7 @@ pub fn note_unread_runs(
     note_unread(inputs, t, |c| read[c], &lacking);
 }
 
-/// The column that the job asks for by `name`, at this line and key; a fault where there is none, or several.
+/// Returns the column that the job asks for by `name`, at this line and key; adds a fault if no column or several have this name.
 pub fn asked_column(
     job: &Job,
     (line, key): (u32, &str),
@@ -252,10 +252,10 @@ pub fn asked_column(
         .ok()
 }
 
-/// The column that names the runs.
+/// Returns the column that names the runs.
 ///
 /// # Errors
-/// A fault where there is none.
+/// A fault if no column names them.
 pub fn run_column(job: &Job, t: &Table, columns: &[Column]) -> Result<usize, Fault> {
     column_called(job, t, columns, "run")?.ok_or_else(|| {
         let headers = t.header.iter().map(String::as_str);
@@ -276,10 +276,10 @@ pub struct KnownColumn {
     pub is_stated: bool,
 }
 
-/// The column of the runs file that holds `name`; `None` where there is none and the job names none.
+/// Returns the column of the runs file that contains `name`; `None` if the file has no such column and the job names none.
 ///
-/// The unit is the one that the column states. Where the job's `[runs] units` states another one for the quantity, one of them is wrong
-/// and nothing tells which.
+/// The unit is the one that the column states. If the job's `[runs] units` states another unit for the quantity, one of them is wrong. Nothing shows
+/// which, so this is a fault.
 pub fn known_column(
     job: &Job,
     runs: &Runs,
@@ -366,7 +366,7 @@ pub fn known_column(
     })
 }
 
-/// The fault of a noise that the job states beside columns in another unit than the job's, of which it doesn't say whether it is the file's.
+/// Returns the fault of a noise in the job whose unit is ambiguous: the columns of the file have another unit than the job.
 fn noise_in_doubt(
     job: &Job,
     runs: &Runs,

@@ -42,15 +42,15 @@ pub(crate) fn check_corrected(
     check_channels(job, columns, &format!("`{}`", named.given))
 }
 
-/// Names of the columns that the readings of the job's gauges are taken from; none where the job doesn't tell its gauges. Where a given S
-/// names them, its whole table is read for it: once a question will do.
+/// Returns the names of the columns with the readings of the job's gauges; empty if the job does not name its gauges. If a given S names them, its
+/// whole table is read for this: call once for each command.
 pub fn wanted_columns(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names = gauge_names(inputs, job);
     names.extend(job.reserved.iter().cloned());
     columns_wanted(&job.corrections, &names)
 }
 
-/// Readings of the job's gauges that a strain file has no column of. A rosette may have one column of its own name in place of its legs.
+/// Returns the readings of the job's gauges without a column in a strain file. A rosette may have one column with its name instead of its legs.
 pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec<String> {
     let known: HashSet<&String> = columns.iter().collect();
     let has = |name: &String| known.contains(name);
@@ -67,8 +67,8 @@ pub fn without_column(inputs: &mut Inputs, job: &Job, columns: &[String]) -> Vec
     job.gauges.iter().flat_map(of_gauge).collect()
 }
 
-/// Names of the job's gauges: those it states, legs of rosettes by theirs, else the rows of a given S; none where neither tells. A table of S
-/// that can't be read is a fault of whoever asks for S.
+/// Returns the names of the job's gauges: the stated gauges, with the legs of rosettes, else the rows of a given S, else none. A table of S that
+/// can't be read is reported by the caller that reads S.
 pub fn gauge_names(inputs: &mut Inputs, job: &Job) -> Vec<String> {
     let mut names: Vec<String> = job.gauges.iter().map(|g| g.name.clone()).collect();
     // A rosette is called by its own name too where S comes from a table.

@@ -12,12 +12,12 @@ use std::collections::HashSet;
 /// Rows whose fields are in memory at a time.
 const PART: usize = 10_000;
 
-/// The strain in a CSV text. Units stand beside the names or in a row below them; none stated is microstrain. A column named as one of
-/// `gauges` in whole is that gauge's; where none are known, every column may be one.
+/// Reads the strain in a CSV text. Units are after the names or in a row below them; without a unit, numbers are microstrain. A column with the whole
+/// name of one of `gauges` belongs to that gauge. Without known gauges, every column may be one.
 ///
 /// # Errors
-/// Every fault: no `run` or `time` column, units of gauges that are none of strain, fields that are no numbers, runs named twice, times
-/// that don't ascend.
+/// Every fault: no `run` or `time` column, units of gauges that are not units of strain, fields that are not numbers, runs named twice, times that
+/// don't ascend.
 pub fn strain_from_text(file: &str, text: &str, gauges: &[String]) -> Result<StrainTable, Faults> {
     let mut reading: Option<Result<Reading, Faults>> = None;
     each_part(file, text, PART, &mut |mut part| {

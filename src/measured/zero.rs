@@ -172,10 +172,10 @@ pub(crate) fn judged_to_learn(
     readings
 }
 
-/// Whether any reading is left to learn from.
+/// Checks that at least one reading is left.
 ///
 /// # Errors
-/// One fault where there is none.
+/// One fault if no reading is left.
 pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults> {
     let mut all = readings.iter().flat_map(|r| &r.strain);
     if all.any(|v| v.is_finite()) {
@@ -190,8 +190,8 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
     .into())
 }
 
-/// The zero readings, strain by gauge, with the common zero of a calibration with an intercept, and the effective number of samples behind them;
-/// the common zero and `None` without a file. Not a number for a gauge that the file says nothing of: its readings have no zero, and it is left out.
+/// Returns the zero readings, strain by gauge, plus the common zero of a calibration with an intercept, and their effective number of samples.
+/// Without a file: the common zero and `None`. NaN for a gauge that the file does not contain: its readings have no zero, and it is left out.
 pub(crate) fn zero_of(
     work: &mut Work,
     job: &Job,
@@ -226,7 +226,7 @@ pub(crate) struct RowZeros {
     pub noise_factor: Vec<f64>,
 }
 
-/// Runs of `hold_out` that the strain file lacks, as every command that reads its runs says.
+/// Reports runs of `hold_out` that the strain file lacks; every command that reads its runs reports them in this way.
 fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<(), Faults> {
     let (HoldOut::Runs(names), StrainRows::Runs(runs)) = (&measured.hold_out, &table.rows) else {
         return Ok(());
@@ -307,8 +307,8 @@ pub(crate) fn zeros_by_row(
     Ok(Some(RowZeros { zero, noise_factor }))
 }
 
-/// Rows of the runs of `zero_runs`. Where runs are held out in a file of their own, its zeros are its own: between two files nothing says
-/// how far a zero has wandered, so each needs one of these runs at least.
+/// Returns the rows of the runs of `zero_runs`. If runs are held out in a separate file, that file needs its own zeros: the drift of a zero between
+/// two files is unknown, so each file needs at least one of these runs.
 ///
 /// # Errors
 /// Runs that no file has, a file without any.
@@ -414,7 +414,7 @@ fn between(at: &[usize], i: usize) -> Between {
 struct Drift {
     /// Variance of a walk.
     walk: f64,
-    /// Square of a steady change, which a straight line between two zeros follows; 0 where two zeros alone don't tell it from a walk.
+    /// Square of a steady change, which a straight line between two zeros follows; 0 if two zeros alone do not distinguish it from a walk.
     steady: f64,
 }
 

@@ -151,7 +151,7 @@ impl Builder<'_> {
         Some(())
     }
 
-    /// The grid of that id; a fault where there is none.
+    /// Returns the grid with this id; adds a fault if it is missing.
     pub(super) fn grid(
         &mut self,
         id: u32,
@@ -174,7 +174,7 @@ impl Builder<'_> {
         found
     }
 
-    /// The coordinate system of that id; a fault where there is none.
+    /// Returns the coordinate system with this id; adds a fault if it is missing.
     pub(super) fn frame(
         &mut self,
         id: i64,
@@ -199,7 +199,7 @@ impl Builder<'_> {
         found
     }
 
-    /// The material of that id; a fault where there is none.
+    /// Returns the material with this id; adds a fault if it is missing.
     pub(super) fn material(
         &mut self,
         id: u32,

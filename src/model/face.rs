@@ -1,4 +1,4 @@
-//! Faces of solids as PLOAD4 tells them.
+//! Faces of solids as identified by PLOAD4.
 
 use super::types::{GridIx, Solid};
 use nastran::cards::SolidShape;

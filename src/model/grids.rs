@@ -147,7 +147,7 @@ impl<'a> Builder<'a> {
         }));
     }
 
-    /// Grids in file order, the first of each id; a second one must say the same.
+    /// Returns the grids in file order, the first of each id; adds a fault if a second one differs.
     fn unique_grids(&mut self) -> Vec<&'a Placed<cards::Grid>> {
         let cards = self.cards;
         let mut first: HashMap<u32, &Placed<cards::Grid>> =

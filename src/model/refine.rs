@@ -31,9 +31,9 @@ impl Model {
         self.refined_at(&vec![true; self.shells.len()])
     }
 
-    /// The shells that `divided` marks, by index, divided in four at the middles of their sides; `None` where that would tear the mesh or
-    /// leave it as it is: a marked shell with mid-side grids, none marked, and what else stands on a side of a marked shell in a displacement
-    /// frame of its own.
+    /// Returns the model with the shells that `divided` marks, by index, divided in four at the middles of their sides. `None` if that would tear the
+    /// mesh or leave it as it is: no shell is marked, a marked shell has mid-side grids, or the ends of a side that another element shares are not in
+    /// one rectangular displacement frame.
     ///
     /// Grids keep their index, so loads, masses and rigid elements stay where they are. New grids lie on the straight sides: a curved
     /// surface keeps its facets. They are constrained where both ends of their side are, by PS as by SPC sets. Bars, rods, shear panels

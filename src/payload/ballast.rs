@@ -45,7 +45,7 @@ pub struct BallastFit {
 const TABLE: [usize; 2] = [41, 9];
 /// Pull of every number towards its start, in sigma per range: decides among equals only.
 const TIE: f64 = 1e-3;
-/// Starts of the search beside the even one.
+/// Number of starts of the search in addition to the even start.
 const STARTS: u64 = 40;
 /// Steps of one search.
 const STEPS: usize = 200;

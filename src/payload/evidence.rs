@@ -78,7 +78,7 @@ pub enum Refusal {
         /// How far over sigma.
         sigmas: f64,
     },
-    /// Strain and wheel forces say different weights.
+    /// Strain and wheel forces give different weights.
     OutOfBalance {
         /// From strain with the wheel forces as measured.
         strain: f64,
@@ -87,7 +87,7 @@ pub enum Refusal {
         /// Their difference over sigma.
         sigmas: f64,
     },
-    /// Nothing that was read tells the weight.
+    /// The readings do not determine the weight.
     Undetermined,
 }
 

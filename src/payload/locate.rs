@@ -81,7 +81,7 @@ pub fn locate(
     })
 }
 
-/// Whether a run by itself leaves no unknown open.
+/// Returns whether a run alone determines all unknowns.
 pub fn tells(model: &PayloadModel, run: &PayloadRun, spec: &WeighSpec) -> bool {
     let weights = vec![1.0; model.gauges.len()];
     solve_run(

@@ -38,11 +38,11 @@ impl Located {
 pub enum Balance {
     /// It does.
     Kept,
-    /// It is left open: what strain says of the payload, the wheel forces as measured.
+    /// It does not: the payload comes from strain alone, the wheel forces as measured.
     Open,
 }
 
-/// A run solved, and what its residuals say.
+/// A solved run with the sizes of its residuals.
 pub(super) struct Solved {
     pub(super) found: Located,
     /// Gauge, stated variance, expected square of its residual.

@@ -40,7 +40,7 @@ pub struct GaugeVerdict {
     pub name: String,
     /// Whether it carries the answer.
     pub used: bool,
-    /// Posterior probability that it is as good as the model of a good gauge says.
+    /// Posterior probability that it is as good as the model of a good gauge assumes.
     pub probability_good: f64,
     /// Why it is not used, or why it is.
     pub reason: String,
@@ -66,7 +66,7 @@ pub(super) const PRIOR_AS_STATED: f64 = 0.6;
 /// Points of the one-dimensional posterior of a run, and the factor that they reach on either side of the mode.
 const N_GRID: usize = 801;
 const GRID_REACH: f64 = 20.0;
-/// Log of the density under which a point of that posterior counts for nothing: the grid is laid anew over the others.
+/// Log of the density below which a point of that posterior counts for nothing: the grid is then computed again over the other points.
 const NOTHING: f64 = -30.0;
 /// Gauges whose own estimates are tried as a start of the search, the most probable first.
 const N_STARTS: usize = 5;
@@ -77,17 +77,17 @@ pub(super) const GOOD_FACTOR: f64 = 3.0;
 /// A negative estimate counts against a gauge from this many of its standard deviations on.
 pub(super) const SIGN_SIGMAS: f64 = 3.0;
 
-/// The posterior of the payload force of every run.
+/// Returns the posterior of the payload force of every run.
 ///
-/// Model, gauge i, run j: `p_ij ~ N(F_j, (tau F_j)^2 + (m_i s_ij)^2)`. Where the noise `s_ij` is stated, `m_i` is 1 for a good gauge and
-/// log-uniform above for a bad one; where it is not, `m_i s_ij` is one unknown level a gauge, log-uniform over six decades. The level
-/// belongs to the gauge, so a gauge that disagrees in one run loses its say in all. `F_j` is uniform; the search for the joint mode, by
-/// coordinate ascent from every gauge's own estimates, ends at `largest` above, and below at zero less what noise makes of an empty
-/// structure (`doubt`). Each run's interval is its posterior around that mode with the other runs at theirs. It is not cut at zero: what a
-/// payload of zero or more makes of it is `cut_at_zero`.
+/// Model, gauge i, run j: `p_ij ~ N(F_j, (tau F_j)^2 + (m_i s_ij)^2)`. If the noise `s_ij` is stated, `m_i` is 1 for a good gauge and log-uniform
+/// above 1 for a bad one. If it is not, `m_i s_ij` is one unknown level for each gauge, log-uniform over six decades. The level belongs to the gauge,
+/// so a gauge that disagrees in one run loses its weight in all runs. `F_j` is uniform. The joint mode is found by coordinate ascent from every
+/// gauge's own estimates. The search ends at `largest` above, and at zero less the noise of an empty structure (`doubt`). Each run's interval is its
+/// posterior around that mode with the other runs at their modes. It is not cut at zero: `cut_at_zero` gives the interval of a payload of zero or
+/// more.
 ///
-/// Units: those of the estimates. Returns `None` when a run has no finite estimate that is possible: runs that say a payload below zero
-/// beyond doubt, or nothing, are not to be handed in, since they would take its say from every gauge.
+/// Units: the units of the estimates. Returns `None` if a run has no finite, possible estimate. Leave out runs whose gauges give a payload
+/// significantly below zero, or no payload: they would reduce the weight of every gauge.
 pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<RobustPayload> {
     let n_runs = gauges.iter().map(|g| g.estimates.len()).max()?;
     let slack: Vec<f64> = (0..n_runs).map(|j| run_doubt(gauges, j)).collect();
@@ -130,8 +130,8 @@ pub fn robust_payload(gauges: &[GaugeEstimates], spec: &RobustSpec) -> Option<Ro
     Some(RobustPayload { runs, gauges })
 }
 
-/// Three standard deviations of what gauges with these say together: below zero by no more, an empty structure may have said it. They are
-/// weighed by what each can tell, `1 / s`; so weighed, the mean of `n` has the standard deviation `sqrt(n) / sum(1 / s)`.
+/// Returns three standard deviations of the joint estimate of gauges with these standard deviations: an empty structure may read so far below zero.
+/// The weights are `1 / s`, so the mean of `n` has the standard deviation `sqrt(n) / sum(1 / s)`.
 pub(super) fn doubt(sigma: impl Iterator<Item = f64>) -> f64 {
     let (n, told) = sigma
         .filter(|s| *s > 0.0 && s.is_finite())
@@ -241,7 +241,7 @@ fn all_terms(gauges: &[GaugeEstimates], spec: &RobustSpec, f: &[f64]) -> Vec<[f6
     gauges.iter().map(of).collect()
 }
 
-/// Gain of log density under which a step is none: far above rounding, far below what any evidence says.
+/// Gain of log density below which a step does not count: far above rounding, far below the effect of any evidence.
 const GAIN: f64 = 1e-9;
 
 /// Coordinate ascent with a shrinking step: in log F far from zero, in F within the noise of an empty structure.

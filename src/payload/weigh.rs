@@ -40,8 +40,8 @@ const WEAK_SHARE: f64 = 1.0 / 3.0;
 /// Weighs the payload of every run.
 ///
 /// With a known place and strain alone the posterior of [`robust_payload`]; else [`locate`]. Interval: 95 %, of a payload that can't be negative
-/// (value `max(0, v)`, ends `max(0, low)` and `max(0, v) + high - v`, see `cut_at_zero`). An answer that breaks sign, region or equilibrium
-/// keeps its numbers and says why it is refused. A run is judged by itself: one that has no answer takes no part in those of the others.
+/// (value `max(0, v)`, ends `max(0, low)` and `max(0, v) + high - v`, see `cut_at_zero`). An answer that violates sign, region or equilibrium keeps
+/// its numbers and states why it is refused. Runs are tested separately: a run without an answer does not affect the answers of other runs.
 pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Weighing {
     let n = model.gauges.len();
     let has_strain = runs.iter().any(|r| r.strain.iter().any(|v| v.is_finite()));
@@ -334,8 +334,8 @@ fn median_of(estimates: &[f64], sigma: &[f64], take: impl Fn(&f64) -> bool) -> O
     weighted_median(&mut weighted)
 }
 
-/// Why a run can't have an answer, whatever the others say: its gauges, weighed by what each can tell, say a weight below zero beyond doubt, or
-/// none says a possible one.
+/// Returns why a run can't have an answer, whatever the other runs show: the weighted median of its gauges is significantly below zero, or no gauge
+/// gives a possible weight. Weights are the inverse standard deviations.
 fn refused_by_itself(estimates: &[f64], sigma: &[f64], largest: f64) -> Option<Refusal> {
     let known = |(e, s): &(&f64, &f64)| e.is_finite() && s.is_finite();
     let pairs = || estimates.iter().zip(sigma).filter(known);
@@ -466,7 +466,7 @@ fn verdicts(model: &PayloadModel, runs: &[WeighedRun], location: &Location) -> V
         .collect()
 }
 
-/// Says so where a gauge agrees only because it can't tell.
+/// States in the reason of a used gauge that it is too weak to determine the payload alone.
 fn say_weak(v: &mut GaugeVerdict, g: usize, runs: &[WeighedRun]) {
     let share = runs
         .iter()

@@ -254,7 +254,7 @@ fn compatible(rules: &Rules, rows: &[u32]) -> bool {
     })
 }
 
-/// Solves the relaxation as far as it takes to tell whether the node can hold a better layout; `None` where it can't.
+/// Solves the relaxation until it decides whether the node can contain a better layout; returns `None` if it can't.
 fn decide(
     p: &Problem,
     sub: &Active,

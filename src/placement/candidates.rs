@@ -11,7 +11,7 @@ pub const LANES: usize = 8;
 pub enum Angles {
     /// A place is one fixed row.
     Fixed,
-    /// These angles, radians from the element x axis; each is a candidate of its own.
+    /// These angles, radians from the element x axis; each is a separate candidate.
     Grid(Vec<f64>),
     /// Any angle; at most one gauge a place.
     Continuous,

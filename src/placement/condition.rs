@@ -4,8 +4,8 @@
 //! `M = S'S`. The search raises `-ln cond S + 0.05 ln(det M) / (2 k)`: of layouts alike in condition it takes the one that reads more
 //! (a hundredth of condition number for a fifth of the standard deviations of the loads).
 //!
-//! Single rows are exchanged. In a slot all rows are ranked by `tr(M) tr(M^-1)`, the condition number in the Frobenius norm, which a row
-//! changes in closed form; the first of them are judged by eigenvalues.
+//! Single rows are exchanged. In a slot all rows are ranked by `tr(M) tr(M^-1)`, the condition number in the Frobenius norm, which a row changes in
+//! closed form; the first of them are tested by eigenvalues.
 
 use super::candidates::{Angles, Candidates, Choice};
 use super::coordinate_exchange::LEAST_GAIN;
@@ -29,13 +29,13 @@ pub struct Conditioned {
     pub least: f64,
 }
 
-/// Weight of the information beside the condition number.
+/// Weight of the information relative to the condition number.
 const INFORMATION: f64 = 0.05;
 /// Rows that take part at most, with few loads and with many.
 const MOST: [usize; 2] = [12_000, 1_500];
 /// Loads from which there are many.
 const MANY: usize = 12;
-/// Rows of a slot judged by eigenvalues, with few loads and with many.
+/// Number of rows of a slot tested by eigenvalues, with few loads and with many.
 const JUDGED: [usize; 2] = [24, 6];
 /// Share of the mean diagonal that keeps the rest of a layout regular without a gauge.
 const RIDGE: f64 = 1e-10;
@@ -230,7 +230,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
         })
     }
 
-    /// The rows that give the least `tr(M) tr(M^-1)` beside the rest `m`, and fit.
+    /// Returns the rows that give the least `tr(M) tr(M^-1)` together with the rest `m`, and fit.
     fn promising(&self, m: &[f64], rows: &[usize], slot: usize) -> Vec<usize> {
         let k = self.k;
         let trace: f64 = (0..k).map(|p| m[p * k + p]).sum();

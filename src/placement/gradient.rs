@@ -14,7 +14,7 @@ use std::collections::HashMap;
 /// Share of the spread of the neighbours under which a direction has none: its gradient is then 0.
 const NO_SPREAD: f64 = 1e-6;
 
-/// A shell that goes on smoothly beside another one.
+/// A neighbouring shell that continues a shell smoothly.
 struct Beside {
     shell: ShellIx,
     /// From centre to centre, along the x and y axes of the first.

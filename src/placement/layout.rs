@@ -336,7 +336,7 @@ fn certify(c: &Candidates, spec: &Spec, bound: &mut Bound, found: Found) -> End 
     end
 }
 
-/// The layout near `gauges` that leaves most after the worst loss; `None` where there is none better.
+/// Returns the layout near `gauges` that keeps the most information after the worst loss; `None` if no better layout is found.
 fn robust_of(c: &Candidates, spec: &Spec, list: &[Priced], gauges: &[Choice]) -> Option<Found> {
     let mut choices: Vec<Choice> = gauges.to_vec();
     choices.extend(

@@ -7,7 +7,7 @@ use crate::linalg::spd;
 /// Quality of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
-    /// `h_i = a_i' M^-1 a_i`: the weight of a gauge in the prediction of its own reading; losing the gauge multiplies `det` by `1 - h_i`.
+    /// `h_i = a_i' M^-1 a_i`: the weight of a gauge's reading in its own prediction; losing the gauge multiplies `det` by `1 - h_i`.
     pub leverage: Vec<f64>,
     /// Standard deviation of each load, in shares of the column's scale (`expected`).
     pub sigma: Vec<f64>,

@@ -175,7 +175,7 @@ pub(super) fn run(
     ))
 }
 
-/// The rows of choices, each a group of its own.
+/// Returns the rows of choices, each in a separate group.
 pub(super) fn rows_of(c: &Candidates, spec: &Spec, choices: &[Choice]) -> Active {
     Active {
         k: c.n_loads(),

@@ -1,5 +1,4 @@
-//! All runs by a calibrated S: gauges that contradict the others named and left out, runs that no loads explain estimated loosely, runs of
-//! another kind than taught widened.
+//! Recovers all runs by a calibrated S, and handles suspect gauges, runs that no loads explain, and runs with several loads.
 
 use super::calibrated::estimate;
 use super::errors::ErrorModel;
@@ -12,9 +11,9 @@ use crate::input_faults::Handling;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use rayon::prelude::*;
 
-/// Every run, and findings. Gauges that contradict the others are named, and left out where S was learnt and `handling` says so; a run that no
-/// loads explain is estimated loosely ([`unlike::estimate_loosely`]); one that tells several loads at once where known runs had one each is
-/// widened ([`taught::check`]).
+/// Returns the loads of every run, and findings. Gauges that contradict the other gauges are reported. They are excluded if S was estimated from runs
+/// and `handling` asks for it. A run that no loads explain gets wider intervals ([`unlike::estimate_loosely`]). A run with several loads at once,
+/// after calibration runs with one load each, is widened as well ([`taught::check`]).
 pub(super) fn recover(
     s: &Sensitivity,
     readings: &[Readings],

@@ -1,4 +1,4 @@
-//! Whether the readings tell the loads: the width of intervals against the loads themselves, and loads against their expected size.
+//! Tests whether the readings determine the loads: interval widths against the loads, and loads against their expected size.
 
 use super::types::RunEstimate;
 use crate::finding::{Finding, Severity, few};
@@ -30,8 +30,8 @@ pub fn check(s: &Sensitivity, runs: &[RunEstimate]) -> Vec<Finding> {
     out
 }
 
-/// The finding on wanted loads that stay far below `expected` in every run: an error where all of them do, as a unit is wrong then; a warning of
-/// single loads whose intervals say so too.
+/// Returns the finding on wanted loads that stay far below `expected` in every run. It is an error if all loads do, because a unit is wrong then. It
+/// is a warning on single loads if their intervals stay below `expected` too.
 fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     let mut small: Vec<(&str, f64)> = Vec::new();
     let mut stated = 0;
@@ -82,7 +82,7 @@ fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> 
     )
 }
 
-/// Wanted loads whose interval is as wide as the loads themselves in every run: gauges that do not tell them.
+/// Returns the finding on wanted loads that the gauges do not determine: in every run, the half width of the interval exceeds half the largest load.
 fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
     let mut out: Vec<(&str, f64)> = Vec::new();
     for (l, load) in s.loads.iter().enumerate().filter(|(_, l)| l.wanted) {

@@ -183,7 +183,7 @@ impl Gain {
         self.gain.nrows()
     }
 
-    /// Whether the readings say anything of load `l`.
+    /// Returns whether the readings determine load `l`.
     pub fn is_seen(&self, l: usize) -> bool {
         self.base[(l, l)].is_finite()
     }

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::{Arc, PoisonError, RwLock};
 
-/// Sets of silent gauges whose estimate is kept: what is not kept is formed anew for every sample that needs it.
+/// Number of sets of silent gauges whose estimate is cached. The estimate of any further set is computed again for every sample that needs it.
 const KEPT: usize = 4096;
 
 /// `f = gain (eps - zero)`, and what a sample's interval takes. Where gauges give nothing, the estimate from the others.

@@ -4,7 +4,7 @@ use super::plausible::LARGEST_STRAIN;
 use super::sums::Sums;
 use pulp::Simd;
 
-/// Samples handled together: their readings lie beside each other by gauge, so that a coefficient is loaded once for all of them.
+/// Samples processed together. Their readings are contiguous by gauge, so that a coefficient is loaded once for all of them.
 /// A multiple of [`UNROLL`] vectors for every width of vector, eight numbers included.
 const LANES: usize = 32;
 /// Vectors in registers for each of two rows.
@@ -66,7 +66,7 @@ impl pulp::WithSimd for Samples<'_> {
 }
 
 impl Samples<'_> {
-    /// Readings of some samples as strain less zero, each gauge's beside each other; NaN for what is too large to be strain.
+    /// Converts the readings of a block to strain less zero, contiguous by gauge; NaN for a value that is too large to be strain.
     #[inline(always)]
     fn by_gauge(&self, block: &[f64], y: &mut [f64]) {
         /// Samples taken together.

@@ -133,7 +133,7 @@ fn net_of(n: f64, value: f64, var: f64, noise: f64, effective: impl Fn() -> f64)
     }
 }
 
-/// Samples under which a record's own scatter says too little.
+/// Number of samples below which the stated noise replaces the scatter of the record.
 const FEW: f64 = 8.0;
 
 /// A run less its zero.

@@ -125,10 +125,10 @@ pub(super) fn check(
     out
 }
 
-/// Share of the squares of the expected strain that noise may make of them at most: with more, a gain can't be told.
+/// Largest share of noise in the sum of squares of the expected strain up to which a gain can be determined.
 const OF_NOISE: f64 = 0.5;
 
-/// The share by which a gauge reads more than the others make of it, and its standard deviation; `None` where the others don't tell.
+/// Returns the gain error of a gauge predicted from the other gauges, and its standard deviation; `None` if the other gauges do not determine it.
 ///
 /// With the others' estimate `f` of the loads, its part `p = s f` at the gauge and the reading `y` of the gauge, run by run, the gain is
 /// `1 + g = sum y p / (sum p^2 - n v)`: `v`, the variance that the others' noise gives to p, would make p^2 too large (errors in variables). With
@@ -264,7 +264,7 @@ fn suspect(judged: &Judged) -> Option<Suspect> {
     Some(best.unwrap_or(as_it_stands))
 }
 
-/// The error of that gauge anew, with the loads of all runs as the gauge put right by it gives them.
+/// Returns the error of a gauge computed again with the loads of all runs, after the reading of that gauge is corrected by the error.
 fn put_right(judged: &Judged, first: &GaugeTest) -> Option<Suspect> {
     let Judged {
         pattern,

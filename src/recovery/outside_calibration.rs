@@ -1,4 +1,4 @@
-//! Loads that are larger than those of the calibration: a straight line through what was applied says nothing of what lies beyond.
+//! Loads that exceed the loads of the calibration. A straight line through the applied loads is not valid beyond them.
 
 use crate::estimate::NORMAL_95;
 use crate::finding::{Finding, Severity, few};

@@ -8,8 +8,8 @@ use crate::units::{MICROSTRAIN, number};
 
 /// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
 pub const LARGEST_STRAIN: f64 = 1.0;
-/// Strain that no gauge on a structure follows: foil gauges end at 3 to 5 %, those for tests beyond yield at 10 to 20 %, and what S says
-/// holds of small strain only. Readings beyond it are kept, and said to be doubtful: one channel that is overloaded, or a part that yields.
+/// Strain that no gauge on a structure follows: foil gauges end at 3 to 5 %, gauges for tests beyond yield at 10 to 20 %. S is valid for small strain
+/// only. Larger readings are kept with a finding: either one channel is overloaded, or a part yields.
 ///
 /// # Reference
 /// Micro-Measurements, Tech Note TN-505, Strain Gage Selection, strain range by gauge series (EA 3 to 5 %, EP 10 to 20 %).
@@ -20,15 +20,15 @@ pub const GAUGES_END: f64 = 0.05;
 /// # Reference
 /// EN 10025-2 (2019), table 7; EN 755-2 (2016).
 const METAL_ENDS: f64 = 0.2;
-/// Strain that half of the readings exceed only where their unit is another: metals yield at 0.1 to 0.5 %, and beyond it S, which is linear,
-/// says nothing.
+/// Strain that half of the readings exceed only if their unit is wrong. Metals yield at 0.1 to 0.5 %, and the linear S is not valid beyond yield.
 const MOST_BELOW: f64 = 0.01;
 /// Root mean square of all readings, in noise sd, below which they can't be readings of a gauge with that noise: of `n` readings of
 /// noise alone it is 1 +- 0.7 / sqrt(n).
 const TOO_QUIET: f64 = 0.3;
 /// Strain that no amplifier resolves: readings that are all smaller are not in the unit they are taken for.
 const UNRESOLVED: f64 = 1e-3 * MICROSTRAIN;
-/// Readings from which their root mean square says that: eight of noise alone are so quiet once in 1,900 jobs (chi-square below 0.72).
+/// Smallest number of readings for the test against `TOO_QUIET`: eight readings of noise alone are so quiet once in 1,900 jobs (chi-square below
+/// 0.72).
 const FEW: usize = 8;
 
 /// The readings without those that are no strain, and findings on them: what every command asks of the strain it reads. Readings are less
@@ -65,8 +65,8 @@ pub fn check(
     (readings, findings)
 }
 
-/// Findings on readings of which nothing but their noise says what they measure, as where S is learnt from them alone: any signal will do, in
-/// any unit, that stands out of the noise stated for it.
+/// Returns findings on readings that only their noise can test, as when S is estimated from these readings alone. Any signal in any unit is accepted
+/// if it exceeds the stated noise.
 pub fn check_signal(readings: &[Readings], errors: ErrorModel) -> Vec<Finding> {
     too_quiet(readings, errors, 0.0).into_iter().collect()
 }

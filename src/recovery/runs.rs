@@ -1,4 +1,4 @@
-//! Static states, or samples of a record: one estimate each, all judged together.
+//! Static states, or samples of a record: one estimate each, with a common test of the residuals.
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
@@ -12,10 +12,10 @@ use crate::finding::Finding;
 use crate::input_faults::Handling;
 use crate::sensitivity::{Sensitivity, Uncertainty};
 
-/// Loads of every run with intervals, and findings on what the residuals say.
+/// Returns the loads of every run with intervals, and findings on the residuals.
 ///
-/// Where the residuals are larger than stated noise and model error explain, all covariances are multiplied by `chi2 / dof` (Birge)
-/// and the intervals take Student's factor; a finding says so. A run that stands out by itself takes its own.
+/// If the residuals are larger than stated noise and model error explain, all covariances are multiplied by `chi2 / dof` (Birge). The
+/// intervals then take Student's factor, and a finding reports it. A single run with large residuals takes its own factor.
 ///
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
@@ -152,8 +152,8 @@ fn recover_calibrated(
     }
 }
 
-/// Both lists without saying the same of a gauge twice: a cause that is named says more than that a gauge stands out, and how far it
-/// stands out more than that it does. What names a gauge comes first: it is what a reader can mend.
+/// Joins both lists without repeating a gauge. An identified cause replaces the finding that a gauge deviates; of two such findings, the one with the
+/// size of the deviation stays. Findings on gauges come first, because a reader can correct them.
 fn unlike(mut judged: Vec<Finding>, mut named: Vec<Finding>) -> Vec<Finding> {
     named.retain(|n| {
         n.code != GAUGE_SUSPECT

@@ -122,7 +122,7 @@ fn at_typical(
     (gains, loads)
 }
 
-/// The loads that readings tell, by number, with their values, of all runs: what the others come to is arbitrary.
+/// Returns the loads of all runs that the readings determine, by number, with their values. The values of the other loads are arbitrary.
 fn told<'a>(
     patterns: &'a [Pattern],
     (gains, loads): &'a Estimates,
@@ -135,7 +135,7 @@ fn told<'a>(
     })
 }
 
-/// Root mean square of each of `k` loads over the values it is told to have, 0 where there are none.
+/// Returns the root mean square of each of `k` loads over its determined values; 0 for a load without values.
 pub(super) fn root_mean_squares(k: usize, told: impl Iterator<Item = (usize, f64)>) -> Vec<f64> {
     let mut sums = vec![(0.0, 0_usize); k];
     for (l, v) in told {
@@ -189,7 +189,7 @@ fn estimate_of(
     out
 }
 
-/// One run by itself, its interval as stated errors make it.
+/// Returns the estimate of a single run, with the interval from stated errors.
 pub fn estimate(s: &Sensitivity, r: &Readings, errors: ErrorModel) -> RunEstimate {
     if let Some(known) = &s.uncertainty {
         return super::calibrated::estimate(s, r, errors, known);

@@ -1,5 +1,5 @@
-//! Gauges that give nothing, or one and the same value, over a part of a record in which the others say that their strain changes: dead there,
-//! at work elsewhere.
+//! Gauges without a signal, or with a constant reading, over a part of a record in which the strain predicted from the other gauges changes. Such a
+//! gauge is dead in that part and valid in the rest of the record.
 
 use super::errors::ErrorModel;
 use super::gain::Gain;
@@ -99,8 +99,8 @@ fn runs_of(samples: &[(usize, &[f64])], gauge: usize, least: usize) -> Vec<(Give
         .collect()
 }
 
-/// Whether the gauges that read in a part tell that gauge `g` is dead there: one that gives nothing by reading, one that gives one value by a strain
-/// that changes.
+/// Returns whether the other gauges show that gauge `g` is dead in a part. A gauge without readings is dead if they read; a gauge with a constant
+/// reading is dead if the strain changes.
 fn is_dead(
     s: &Sensitivity,
     part: &[Vec<f64>],
@@ -188,7 +188,7 @@ impl<'a> Others<'a> {
         })
     }
 
-    /// Whether they say that the strain there changes.
+    /// Returns whether the predicted strain of the gauge changes by more than its error.
     fn change(&self, rows: &[&Vec<f64>]) -> bool {
         let loads: Vec<Vec<f64>> = rows.iter().map(|row| self.gain.loads(row)).collect();
         let change = variance(loads.iter().map(|f| self.strain(f)));
@@ -197,7 +197,7 @@ impl<'a> Others<'a> {
         change > CHANGES * CHANGES * self.variance(&sizes)
     }
 
-    /// Whether they say, in the mean, that the strain there is another than gauge `g` reads.
+    /// Returns whether the mean of the predicted strain differs from the mean reading of gauge `g` by more than its error.
     fn contradict(&self, rows: &[&Vec<f64>], g: usize) -> bool {
         let n = rows.len().max(1) as f64;
         let mut loads = vec![0.0; self.own.len()];

@@ -5,7 +5,7 @@ use super::missing::Missing;
 /// Sums over a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sums {
-    /// Samples, and what is missing in them: where some gauge gives nothing, loads are those of the others, as far as these tell them.
+    /// Counts of samples and gaps. In a sample with a silent gauge, only the loads that the other gauges determine are known.
     pub missing: Missing,
     /// Smallest of each load.
     pub min: Vec<f64>,

@@ -1,7 +1,8 @@
-//! Runs whose loads are of no kind that the calibration was taught: several at once, where each known run had one load alone.
+//! Runs with several loads at once, if each calibration run had one load alone.
 //!
-//! One load whose strain is not as taught (a truck between two lanes, another direction or speed) comes out as a combination of several, each with
-//! the narrow interval that the scatter of the known runs gives: their strain is the same, so that the residual says nothing.
+//! A single load whose strain differs from the calibration (a truck between two lanes, another direction or speed) is recovered as a combination of
+//! several loads. Each has the narrow interval that the scatter of the calibration runs gives. The strain is the same, so the residual does not show
+//! the difference.
 
 use super::types::RunEstimate;
 use super::unlike::chance_estimated;
@@ -10,7 +11,7 @@ use crate::finding::{Finding, Severity};
 use crate::linalg::spd;
 use crate::sensitivity::Uncertainty;
 
-/// Code of runs whose loads act together as none were taught.
+/// Code of runs with several loads that act together in no calibration run.
 pub const CODE: &str = "loads-unlike-known-runs";
 
 /// So many runs with several loads, when most have them, are how the loads are used: of runs with one load one in a hundred looks so.
@@ -62,8 +63,9 @@ fn each_alone(f: &[f64], known: &Uncertainty) -> Vec<Alone> {
     out
 }
 
-/// Runs that tell several loads at once beyond what scatter makes of one (Hotelling's T-squared), where no known run had several. Their loads are
-/// given so much more error that each of the two nearest loads alone is one sigma away, unless most of at least [`USUAL`] runs are such.
+/// Finds runs whose loads differ from every single load by more than scatter (Hotelling's T-squared), if no calibration run had several loads. Their
+/// covariance is widened so that each of the two nearest single loads is one sigma away. It is not widened if most runs, and at least [`USUAL`], have
+/// several loads.
 ///
 /// # Reference
 /// H. Hotelling, Ann. Math. Stat. 2 (1931) 360.
@@ -100,7 +102,7 @@ pub(super) fn check(runs: &mut [RunEstimate], known: &Uncertainty) -> Vec<Findin
         .collect()
 }
 
-/// Adds `apart apart'` of the two nearest loads alone to the covariance, and says so.
+/// Adds `apart apart'` of the two nearest single loads to the covariance, and returns the finding.
 fn widen(run: &mut RunEstimate, distance: f64, known: &Uncertainty) -> Finding {
     let nearest = each_alone(&run.estimate.values, known);
     let between = &nearest[..nearest.len().min(2)];

@@ -1,4 +1,4 @@
-//! Runs whose strain is none that the calibrated loads make, judged against what repeats scatter by.
+//! Runs whose strain no combination of the calibrated loads makes, tested against the scatter of repeats.
 
 use super::calibrated::{Excess, estimate_with};
 use super::errors::ErrorModel;
@@ -86,12 +86,12 @@ const MOST: f64 = 1e30;
 /// Halvings of the last step: to six digits.
 const HALVINGS: usize = 20;
 
-/// The estimate with as much more error as explains what is left, in the one of two ways that makes the readings likelier: all of the covariance
-/// larger, as where a run scatters as those of the calibration do, but more; or an error of its own added to every
-/// reading, an unknown pattern over the gauges, larger where noise, scatter and the uncertainty of S are larger, as where a truck is at a place
-/// that no run has seen. Each has one size, found of the run. Where nothing but a stated error of S is known, the second.
+/// Returns the estimate with as much additional error as explains the residual. Of two forms of the error, the more likely one is used. The first
+/// scales the whole covariance, as if the run scatters like the calibration runs, but more. The second adds a separate error to every reading, an
+/// unknown pattern over the gauges, larger where noise, scatter and the uncertainty of S are larger. It occurs if a truck is at a place that no run
+/// has covered. Each form has one size, found from the run. If only a stated error of S is known, the second form is used.
 ///
-/// The added error is no constant: added alike for all gauges the loud ones would decide, those beside a wheel, which scatter most.
+/// The added error is not constant over the gauges: with a constant error the gauges near a wheel would dominate, which scatter most.
 ///
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207: excess scatter as a factor; R. DerSimonian and N. Laird, Control. Clin. Trials 7 (1986) 177: as a

@@ -4,8 +4,8 @@ use super::errors::ErrorModel;
 use super::gain::Gain;
 use super::types::Widening;
 
-/// Returns the variance, strain^2, of reading less prediction `row f` of a gauge that the estimate does not use:
-/// `N + M(f) + row Cov(f) row'`, with `N` the noise of its reading, `M(f)` the errors of its own coefficients, and `Cov(f)` the covariance
+/// Returns the variance, strain^2, of reading less prediction `row f` of a gauge that the estimate does not use: `N + M(f) + row Cov(f) row'`, with
+/// `N` the noise of its reading, `M(f)` the errors of its coefficients, and `Cov(f)` the covariance
 /// of the loads without the errors of whole columns, which shift the loads and not the prediction.
 pub fn prediction_variance(
     (gain, row): (&Gain, &[f64]),

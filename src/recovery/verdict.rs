@@ -127,7 +127,7 @@ fn widened(birge: f64, dof: f64) -> Widening {
     }
 }
 
-/// Runs whose gauges don't tell some of the loads.
+/// Returns the findings on runs whose gauges do not determine some of the loads.
 fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
     let mut out = Vec::new();
     for (pattern, gain) in &solved.patterns {
@@ -162,7 +162,7 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
     out
 }
 
-/// The most frequent patterns of silent gauges, each judged over its runs together. All loads are taken out, those of a stated size
+/// Returns the most frequent patterns of silent gauges, each with a joint test of its runs. The residual excludes all loads, those of a stated size
 /// too: whether a nuisance load is the same in all runs is not known.
 fn judged<'a>(
     s: &Sensitivity,
@@ -263,7 +263,7 @@ fn weigh(s: &Sensitivity, runs: &[RunEstimate], joints: &[&Joint]) -> Evidence {
 struct Sizes {
     /// Residual over readings, root mean squares, of all runs.
     share: f64,
-    /// Runs that are beyond doubt by themselves.
+    /// Runs whose own residuals are significant, and large against their readings.
     bad: Vec<String>,
     /// Runs.
     n: usize,

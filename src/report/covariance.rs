@@ -1,8 +1,8 @@
-//! How sure several sizes are together.
+//! Joint uncertainty of several sizes.
 
 use super::page::{Block, number};
 
-/// Joint covariance of named sizes as a folded table with its correlations; `None` for fewer than two, whose sigma says it all.
+/// Returns the joint covariance of named sizes as a folded table with its correlations; `None` for fewer than two sizes, for which sigma suffices.
 pub(in crate::report) fn covariance_block(names: &[String], by_rows: &[f64]) -> Option<Block> {
     let n = names.len();
     if n < 2 || by_rows.len() != n * n {

@@ -5,8 +5,8 @@ use crate::fe::ModalSolution;
 use crate::model::Model;
 use nastran::results::{Analysis, Block, Quantity, Rows};
 
-/// A planned block of the strain of modes and its rows: eigenvectors instead of displacements, all in subcase 1, told apart by their mode
-/// and eigenvalue.
+/// Returns a planned block of the strain of modes, and its rows. The block contains eigenvectors instead of displacements. All modes are in subcase 1
+/// and differ by mode number and eigenvalue.
 pub fn rows_of_mode_block(
     model: &Model,
     solution: &ModalSolution,

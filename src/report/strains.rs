@@ -33,7 +33,7 @@ const POINTS: [&str; 4] = ["C", "D", "E", "F"];
 /// `gxy` are empty.
 ///
 /// # Errors
-/// What `out` says.
+/// Errors of `out`.
 pub fn write_strains(
     model: &Model,
     solution: &Solution,

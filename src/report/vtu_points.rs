@@ -16,10 +16,10 @@ pub enum PointValues {
     Ids(Vec<u32>),
 }
 
-/// Writes points, each a cell of its own, with named numbers on them. Reals are of 32 bits, positions of 64.
+/// Writes points, each as a separate cell, with named numbers. Reals have 32 bits, positions 64.
 ///
 /// # Errors
-/// What `out` gives.
+/// Errors of `out`.
 pub fn write_points_vtu(
     points: &[[f64; 3]],
     arrays: &[(String, PointValues)],

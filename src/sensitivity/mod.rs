@@ -1,4 +1,4 @@
-//! Sensitivity `S` in `eps = S f`: what each gauge reads per unit of each load, and what that can tell apart.
+//! Sensitivity `S` in `eps = S f`: the reading of each gauge per unit of each load, and the loads that the gauges separate.
 
 mod bar_points;
 mod from_solution;

@@ -1,4 +1,4 @@
-//! Which loads a set of gauges can't tell apart, in words.
+//! Findings on loads that a set of gauges can't separate.
 
 use super::Sensitivity;
 use crate::finding::{Finding, Severity};

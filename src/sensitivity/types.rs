@@ -98,7 +98,7 @@ impl Sensitivity {
         })
     }
 
-    /// S without the columns whose size is known beforehand ([`Load::prior`]): what the gauges alone must tell apart.
+    /// Returns S without the columns whose size is known beforehand ([`Load::prior`]): the loads that the gauges alone must separate.
     pub fn unconditioned(&self) -> Self {
         let free: Vec<usize> = (0..self.loads.len())
             .filter(|&l| self.loads[l].prior().is_none())
@@ -147,7 +147,7 @@ impl Sensitivity {
         dense::condition(&self.scaled())
     }
 
-    /// Rank, judged on columns of unit norm.
+    /// Returns the rank of S with columns of unit norm.
     pub fn rank(&self) -> usize {
         dense::rank(&dense::unit_columns(&self.values))
     }

@@ -124,7 +124,7 @@ pub fn read_header(bytes: &[u8]) -> Result<Header, HeaderError> {
 /// Writes a header for `samples` samples of f32.
 ///
 /// # Errors
-/// What `out` says.
+/// An I/O error of `out`.
 pub fn write_header(
     out: &mut dyn Write,
     names: &[String],

@@ -7,7 +7,7 @@ use super::error::SeriesError;
 pub struct Channel {
     /// Name in the file, such as `a_body`.
     pub name: String,
-    /// Unit as declared, such as `m/s2`; empty where the file does not say.
+    /// Unit as declared, such as `m/s2`; empty if the file declares none.
     pub unit: String,
     /// Samples; NaN where one is missing.
     pub samples: Vec<f64>,
@@ -69,7 +69,7 @@ impl Channels {
     /// Samples of a channel.
     ///
     /// # Errors
-    /// [`SeriesError::Missing`] when there is none of this name.
+    /// [`SeriesError::Missing`] if no channel has this name.
     pub fn samples(&self, name: &str) -> Result<&[f64], SeriesError> {
         self.list
             .iter()

@@ -4,7 +4,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Lengths of which a thread keeps plans; one more, and it begins anew. A job has a few: its records, padded, thinned, windowed.
+/// Number of lengths whose plans a thread keeps; one more length discards all of them. A job has a few: its records, padded, thinned, windowed.
 const MOST: usize = 24;
 
 struct Plans {

@@ -1,8 +1,8 @@
-//! `calibration.bin`: what stands behind the intervals of a calibrated S.
+//! `calibration.bin`: uncertainty of a calibrated S, from which its intervals are computed.
 //!
-//! Eight bytes `SBCALIB1`, the length of a JSON header (u32), the header (names of gauges and loads, scale, degrees of freedom, whether
-//! loads were taught one by one), then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges by
-//! rows; mean squares of S; where the header states `additive`, the covariance of readings at any load by rows.
+//! Eight bytes `SBCALIB1`, the length of a JSON header (u32), and the header: names of gauges and loads, scale, degrees of freedom, whether each
+//! calibration run had one load alone. Then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges
+//! by rows; mean squares of S; if the header states `additive`, the covariance of readings at any load by rows.
 
 use crate::finding::few;
 use crate::host::fault::{Fault, Faults};
@@ -59,10 +59,10 @@ pub fn covariance_bytes(s: &Sensitivity) -> Option<Vec<u8>> {
     Some(out)
 }
 
-/// The uncertainty in a file, for the gauges and loads of S in their order.
+/// Reads the uncertainty from a file, for the gauges and loads of S in their order.
 ///
 /// # Errors
-/// A file that is none, is cut, or knows other gauges or loads.
+/// A file that is not a `calibration.bin`, is cut, or contains other gauges or loads.
 pub fn read_covariance(
     file: &str,
     bytes: &[u8],

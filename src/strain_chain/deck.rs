@@ -212,8 +212,8 @@ fn fault_of(deck: &Deck, f: &nastran::bdf::Fault) -> Fault {
 }
 
 impl DeckModel {
-    /// Faults that say that part of the deck was not read: it is cut, or an INCLUDE is not there. Where no ENDDATA tells its end, what
-    /// its cards refer to in vain may be part of what was cut.
+    /// Returns the faults of parts of the deck that were not read: it is cut, or an INCLUDE is missing. Without ENDDATA the deck may be cut, and its
+    /// other faults may come from that, so they are returned too.
     pub fn incomplete(&self) -> FaultList {
         let cut = self.deck.faults.iter().filter(|f| f.what.is_incomplete());
         let mut faults: FaultList = cut.map(|f| fault_of(&self.deck, f)).collect();
@@ -224,7 +224,7 @@ impl DeckModel {
         faults
     }
 
-    /// A fault where results hold elements that this deck lacks, and no ENDDATA tells that it is whole.
+    /// Returns a fault if results contain elements that this deck lacks, and no ENDDATA shows that the deck is complete.
     pub fn cut_beside(&self, findings: &[Finding]) -> Option<Fault> {
         let lacking = findings.iter().find(|f| f.code == "element-not-in-deck")?;
         self.ends_open().then(|| self.open_end(&lacking.message))

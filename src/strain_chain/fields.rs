@@ -39,8 +39,8 @@ pub struct Fields {
     of_load: Vec<(usize, usize)>,
     /// The mesh error that was taken out of `solutions`, by load of the job. `None` where that was not computed.
     pub mesh_error: Option<MeshError>,
-    /// First elastic frequency of the structure as the job holds it, cycles per unit of time; `None` where another program solved it, and
-    /// beside other loads.
+    /// First elastic frequency of the structure with the supports of the job, cycles per unit of time. `None` if another program solved it, or if
+    /// additional loads were solved with it.
     pub first_mode: Option<f64>,
     /// Subcase of the deck that is the reference state of the readings, solved here; `None` where another program solved it, or the job has no
     /// such state.
@@ -49,7 +49,7 @@ pub struct Fields {
     pub beside: Option<Solution>,
 }
 
-/// Loads on a model that are solved for beside those of a job.
+/// Function that returns the loads to solve on a model in addition to the loads of a job.
 pub type Beside<'a> = &'a dyn Fn(&Model) -> Result<Vec<UnitLoad>, Faults>;
 
 impl Fields {

@@ -66,7 +66,7 @@ pub struct LoadMeshError {
 pub struct MeshError {
     /// By load: strain on the deck's mesh less the limit.
     pub cases: Vec<CaseResult>,
-    /// Share of it that may be left once it is taken out, 1 sd, of each entry of S by itself and of the pattern of each load.
+    /// Share of it that may remain after the correction, 1 sd, separately for each entry of S and for the pattern of each load.
     pub left: f64,
 }
 
@@ -119,7 +119,7 @@ fn shells_under(gauges: &[Gauge]) -> Vec<ShellIx> {
     shells.collect()
 }
 
-/// The job's gauges as far as they can be laid; who reads them says which can't.
+/// Returns the gauges of the job that can be laid; gauges that can't be laid are reported where gauges are read.
 fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
     let laid = job.gauges.iter().filter_map(|g| {
         let spec = corrected_spec_of(model, job, g).ok()?;
@@ -128,8 +128,8 @@ fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
     laid.flatten().collect()
 }
 
-/// Takes the mesh error out of the strain of a job's unit loads, and gives it: by load, strain on the deck's mesh less the limit. `None`
-/// where the job doesn't ask, or no finer mesh could be solved, which a finding then says.
+/// Subtracts the mesh error from the strain of a job's unit loads and returns it: by load, strain on the deck's mesh less the limit. `None` if the
+/// job does not ask for it, or if no finer mesh could be solved, which a finding reports.
 pub(super) fn take_out(
     work: &mut Work,
     job: &Job,
@@ -155,7 +155,7 @@ pub(super) fn take_out(
     }
 }
 
-/// Says that what the mesh makes stays unknown though the job asks for it.
+/// Returns the finding that the mesh error is unknown although the job asks for it.
 pub(super) fn not_checked(why: &str) -> Finding {
     Finding::new(
         Severity::Warning,
@@ -281,7 +281,7 @@ pub fn mesh_errors(
     gauges.iter().enumerate().map(of_gauge).collect()
 }
 
-/// Says where the mesh is too coarse for the gauges on it.
+/// Returns the finding on gauges at which the mesh is too coarse.
 pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) -> Option<Finding> {
     let mut large: Vec<(&Gauge, f64)> = gauges
         .iter()
@@ -313,8 +313,8 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
     )
 }
 
-/// How far S may be off by what the model's error and the mesh leave; `None` where no mesh error was computed, or S is too large, which a
-/// finding then says.
+/// Returns the uncertainty of S from the model error and the rest of the mesh error. `None` if no mesh error was computed, or if S is too large,
+/// which a finding reports.
 pub(super) fn uncertainty(
     work: &mut Work,
     measured: Option<&Measured>,

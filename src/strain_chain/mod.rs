@@ -206,7 +206,7 @@ impl Conditioning {
     }
 }
 
-/// A finding that says where the strain comes from.
+/// Returns the finding on the source of the strain.
 pub fn source_finding(source: &str) -> Finding {
     Finding::new(
         Severity::Info,

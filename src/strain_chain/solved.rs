@@ -18,7 +18,7 @@ use nastran::place::Place;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 
-/// Elastic modes that are computed beside the strain where nothing else is asked for.
+/// Number of elastic modes computed together with the strain if nothing else is asked for.
 pub const MODES: usize = 10;
 
 /// Returns the support of the structure of a job under its unit loads.
@@ -273,8 +273,8 @@ pub fn solve_kept(
     .map_err(|e| faults_of(&e, read))
 }
 
-/// The strain of unit loads on a model made from a deck (a finer mesh, further temperature sets), kept like any other solution; `made`
-/// says in words what the deck's bytes don't: how the model was made from it.
+/// Returns the strain of unit loads on a model made from a deck (a finer mesh, further temperature sets), stored like any other solution. `made`
+/// describes how the model was made, which the bytes of the deck do not show.
 ///
 /// # Errors
 /// What stops the solver, with file and line.
@@ -418,8 +418,8 @@ fn kept(
     Ok(solved)
 }
 
-/// The first elastic frequency of the structure of a deck, as the job holds it, whose strain another program solved; where the built-in
-/// solver can't tell, a finding says why.
+/// Returns the first elastic frequency of the structure of a deck, with the supports of the job, whose strain another program solved. If the built-in
+/// solver can't compute it, a finding states why.
 pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64> {
     let solved = cases_of_job(job, read).and_then(|cases| {
         let options = SolveOptions {

@@ -9,7 +9,7 @@ use crate::job::{Job, JobGauge, SAME_SIDE, SAME_SIDE_REMEDY, StatedPlace};
 use crate::model::{Frame, Mat3, Model, Vec3};
 use nastran::cards::CoordKind;
 
-/// A gauge of the job as it is glued: turned as `[[correction]]` says.
+/// Returns the spec of a gauge of the job as installed: rotated by `[[correction]]`.
 ///
 /// # Errors
 /// Ids that the deck lacks.

@@ -129,8 +129,8 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
 /// How well a point of a drawing is read and rounded, m: a gauge and its tabs are some 5 mm wide.
 const READ_OFF_M: f64 = 5e-3;
 
-/// How far from its element a gauge's point may be stated, job units, beside the element's faces: as far as the job says that gauges may sit
-/// from their drawing, with 95 %, and what reading a drawing leaves.
+/// Returns how far a gauge's stated point may be beyond the faces of its element, job units. It is the 95 % limit of the gauge's position tolerance
+/// in the job, plus the error of reading a drawing.
 fn point_tolerance(job: &Job) -> f64 {
     let in_mm = job.reconcile.as_ref().and_then(|r| r.position_tolerance_mm);
     let stated = [
@@ -141,8 +141,8 @@ fn point_tolerance(job: &Job) -> f64 {
     NORMAL_95 * stated.into_iter().fold(0.0, f64::max) + READ_OFF_M / job.units.length_m()
 }
 
-/// Gauges whose stated point lies beside their stated element: one of the two is wrong, beyond doubt where they are farther from each other
-/// than the element is large. Their strain is that of the element.
+/// Returns the findings on gauges whose stated point is off their stated element. One of the two is wrong: an error if their distance exceeds the
+/// size of the element, else a warning. The strain of the element is used.
 fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
     let beside = |g: &JobGauge, x: Vec3| match g.place {
         StatedPlace::Element(id) => beside_shell(model, model.shell_ix(id)?, x),

@@ -37,7 +37,7 @@ impl LoadSigma {
     }
 }
 
-/// Units by load, in job order. A load that only a given S names is a moment where its name says so (`.M`, `_M`, leading `M`).
+/// Returns the units by load, in job order. A load that only a given S names is a moment if its name shows it (`.M`, `_M`, leading `M`).
 pub fn load_units(job: &Job, names: &[String]) -> Vec<LoadUnits> {
     names
         .iter()

@@ -190,7 +190,7 @@ fn nuisance_loads_are_drawn_and_their_prior_is_used() {
     assert!((known.coverage[0] - 0.95).abs() < 0.02, "{known:?}");
 }
 
-/// Loads in other units leave a condition number of scaled columns as it is; sizes scale it as they say.
+/// Loads in other units do not change the condition number of scaled columns; stated sizes scale it.
 #[test]
 fn the_condition_number_is_that_of_scaled_columns() {
     let of = |p: &[PoolGauge], sizes: Option<Vec<f64>>| {

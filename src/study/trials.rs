@@ -49,7 +49,7 @@ pub struct StudySpec {
     pub prior: Vec<Option<f64>>,
     /// Sizes that scale the columns of S for its condition number; `None` scales them to unit norm.
     pub sizes: Option<Vec<f64>>,
-    /// Noise that the recovery is told, strain: weighs readings against priors.
+    /// Noise that the recovery assumes, strain: weights readings against priors.
     pub noise: f64,
     /// Trials a layout and error.
     pub trials: usize,

@@ -1,4 +1,4 @@
-//! Whether declared units agree with what the deck says.
+//! Tests whether declared units agree with the deck.
 
 use super::{Quantity, UnitSystem};
 use crate::finding::{Finding, Severity};
@@ -8,9 +8,9 @@ pub const MODULUS_LIMITS_GPA: [f64; 2] = [1.0, 1000.0];
 /// Limits of a plausible density, kg/m^3: from foam cores to tungsten.
 pub const DENSITY_LIMITS: [f64; 2] = [20.0, 25_000.0];
 
-/// The largest size, SI units, that a quantity of a structure's loads has: the weight of the heaviest ships and buildings is a few times
-/// 1e9 N, on arms of up to ten kilometres. Lengths are coordinates too, whose origin may lie where a survey has it: northings reach 1e7 m. A
-/// number beyond it stands in another unit or is none. Load sets count in times the set.
+/// The largest size, SI units, that a quantity of a structure's loads has: the weight of the heaviest ships and buildings is a few times 1e9 N, on
+/// arms of up to ten kilometres. Lengths are coordinates too, whose origin may be far away, as in a survey: northings reach 1e7 m. A larger number is
+/// in another unit or wrong. Numbers of load sets are multiples of the set.
 pub fn largest_size(quantity: Option<Quantity>) -> f64 {
     match quantity {
         Some(Quantity::Force) | None => 1e11,
@@ -239,7 +239,7 @@ pub fn typical_load(system: UnitSystem, quantity: Quantity) -> Option<f64> {
 }
 
 /// Returns whether a force or moment has the size of a unit load: a power of ten in the units of the deck, and at most a hundredth of
-/// [`typical_load`]. Such loads scale an influence coefficient and say nothing about the loads of a vehicle.
+/// [`typical_load`]. Such loads scale an influence coefficient and do not show the size of the loads of a vehicle.
 pub fn is_unit_load(system: UnitSystem, quantity: Quantity, size: f64) -> bool {
     let exponent = size.abs().log10();
     let is_power = (exponent - exponent.round()).abs() < 1e-9;

@@ -149,7 +149,7 @@ pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
     })
 }
 
-/// Share of a channel that a model may leave and still say something of it: half of it, whatever noise and tolerances are.
+/// Share of a channel that a useful model may leave unexplained: half of it, whatever noise and tolerances are.
 const LOST: f64 = 0.5;
 
 /// Error where the model leaves most of a channel, though no floor is stated.

@@ -130,7 +130,7 @@ impl Adjustment {
         Some(retimed(x, rate_hz, late))
     }
 
-    /// Samples put right, their mean kept as read over the gain.
+    /// Returns the corrected samples; their mean is kept as read, over the gain.
     pub fn applied(&self, x: &[f64], start_s: f64, rate_hz: f64) -> Vec<f64> {
         let mut out = self
             .retimed(x, start_s, rate_hz)

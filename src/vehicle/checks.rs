@@ -1,4 +1,4 @@
-//! Checks on identified parameters that no fit makes by itself.
+//! Checks on identified parameters that are not part of the fit.
 
 use super::layout::Parameter;
 use crate::finding::{Finding, Severity};

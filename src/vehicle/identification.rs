@@ -41,7 +41,7 @@ pub struct IdentifyTask {
 pub struct Estimate {
     /// Name, `k_s` or `k_s/m_b`.
     pub name: String,
-    /// Value; none where it can't be told.
+    /// Value; `None` if it can't be determined.
     pub value: Option<f64>,
     /// One standard deviation, coloured residuals and declared tolerances included.
     pub sigma: Option<f64>,
@@ -119,7 +119,7 @@ impl Identification {
         all.find(|f| codes.contains(&f.code)).cloned()
     }
 
-    /// Findings of error severity if nothing at all could be told.
+    /// Returns a finding of error severity if the record determines no parameter.
     pub fn verdict(&self) -> Option<Finding> {
         let mut parameters = self.parameters.iter();
         let told = parameters.any(|p| p.identifiable && !p.known);

@@ -17,7 +17,7 @@ pub struct Spread {
     pub effective_samples: Vec<f64>,
 }
 
-/// Blocks fewer than this say little of a variance.
+/// Smallest number of blocks: fewer do not determine a variance.
 const MIN_BLOCKS: usize = 8;
 
 /// Covariance B (sum over blocks of s s') B of the free parameters, B = (A'W^2A)^-1, s a block's sum of w^2 a r over its samples

@@ -238,8 +238,8 @@ impl Vehicle {
         own.map(|&b| self.inertia_index(b, 0, 0)).collect()
     }
 
-    /// Whether wheels alone carry the weight of a connected part, the same weight all the time: no link of it reaches the ground, which the
-    /// weights of a link tell that doesn't feel the heave of the whole (their sum is 0), and no mass joins or leaves it.
+    /// Returns whether wheels alone carry the weight of a connected part, and this weight is constant. No link of the part may reach the ground, and
+    /// no mass may join or leave it. A link reaches the ground if its weights do not sum to 0: it then depends on the heave of the whole.
     pub fn rests_on_wheels(&self, bodies: &[usize]) -> bool {
         let own = |l: &&Link| l.ends.iter().any(|e| bodies.contains(&e.1.body));
         let heave = |l: &Link| l.ends.iter().map(|e| e.0).sum::<f64>();

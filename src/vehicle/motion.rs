@@ -215,7 +215,7 @@ pub fn motion(
     })
 }
 
-/// The record with missing samples bridged, and what is to be said of it.
+/// Returns the record with missing samples bridged, and the findings on them.
 fn bridged(record: &Channels) -> (Channels, Vec<Finding>) {
     let (record, gaps) = record.with_gaps_filled();
     let findings = record

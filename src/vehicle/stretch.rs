@@ -6,8 +6,8 @@ use super::treatment::SlowStretch;
 use crate::series::channels::Channels;
 use crate::series::detrend::mean;
 
-/// Slow stretch of every link with a nonlinear term whose force one body's equation tells: a body that only heaves, held by this
-/// link alone, all its outside forces measured.
+/// Returns the slow stretch of every link with a nonlinear term whose force follows from the equation of one body. This body only heaves, no other
+/// link holds it, and all its outside forces are measured.
 ///
 /// F = (sum of wheel forces - m q'') / weight; then sum of coefficient times term(d, d') = F is solved for d step by step
 /// (implicit Euler, Newton's method). Links whose law can't be solved are left out.

@@ -166,9 +166,9 @@ impl Term {
         }
     }
 
-    /// The term of a name in a job: a coefficient's prefix or an effect id; automatic where it has a constant of its own.
-    /// A constant may follow in brackets: `coulomb_friction(0.006)` (velocity), `bump_stop(0.03 compression)` (gap, side); it must for
-    /// `dead_zone(0.004)` (gap) and `stiffness_drift(0 64)` (begin and length in s).
+    /// Returns the term of a name in a job: a coefficient's prefix or an effect id. A constant may follow in brackets: `coulomb_friction(0.006)`
+    /// (velocity), `bump_stop(0.03 compression)` (gap, side); without it, the constant is automatic. `dead_zone(0.004)` (gap) and
+    /// `stiffness_drift(0 64)` (begin and length in s) need it.
     pub fn from_name(name: &str) -> Option<Self> {
         if let Some((plain, rest)) = name.split_once('(') {
             let inside = rest.strip_suffix(')')?;
@@ -283,7 +283,7 @@ impl Term {
         }
     }
 
-    /// Force for a coefficient of one; 0 for inertance, which stretch and rate don't tell.
+    /// Returns the force for a coefficient of one; 0 for inertance, which does not depend on stretch and rate.
     pub fn basis(&self, d: f64, v: f64) -> f64 {
         match *self {
             Self::Stiffness => d,

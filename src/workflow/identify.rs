@@ -96,14 +96,14 @@ pub struct Driven {
     pub motion: Motion,
 }
 
-/// A recovered load: dynamic part of a wheel force over its record, and its mean where masses tell it.
+/// Recovered load: dynamic part of a wheel force over its record, and its mean if masses determine it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WheelLoad {
     /// The record.
     pub run: String,
     /// The load.
     pub name: String,
-    /// Mean, where masses tell it.
+    /// Mean; `None` if no masses determine it.
     pub value: Option<f64>,
     /// Standard deviation of the wheel load.
     pub sigma: Option<f64>,

@@ -82,7 +82,8 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// S of a job's gauges, or of its candidates where it has none; whether it tells the loads apart goes to the work.
+/// Returns S of a job's gauges, or of its candidates if it has neither gauges nor a given S. Adds findings on the separability of the loads to the
+/// work.
 ///
 /// # Errors
 /// Every fault of the job and of the files it names.
@@ -97,7 +98,7 @@ pub(crate) fn prepared(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     Ok(prepared)
 }
 
-/// S of every candidate: each allowed surface at each angle of the grid (every 15 degrees where the job says continuous).
+/// Returns S of every candidate: each allowed surface at each angle of the grid (every 15 degrees if the job asks for continuous angles).
 fn of_candidates(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let fields = read_fields(work, job, WantedAt::Anywhere)?;
     let job = &job.with_property_ids(&fields.model().property_names)?;

@@ -336,7 +336,7 @@ fn corners_always_written(model: &Model) -> Corners {
     }
 }
 
-/// Largest resident memory of this process so far, bytes; `None` where the system does not tell.
+/// Returns the largest resident memory of this process so far, bytes; `None` if the system does not report it.
 fn peak_memory() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find(|l| l.starts_with("VmHWM:"))?;

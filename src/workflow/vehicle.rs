@@ -154,8 +154,8 @@ pub fn read_vehicle(work: &mut Work, job: &Job) -> Result<VehicleRecords, Faults
     })
 }
 
-/// A warning of channels of the model that the record lacks beside columns whose names come close to theirs: a wheel force whose name is misspelt
-/// would be taken as not measured. What begins with another letter is another quantity: `a_wheel` is not meant for `f_wheel`.
+/// Returns a warning on channels of the model that the record lacks, if it has columns with similar names. A misspelt wheel force would count as not
+/// measured. A column with another first letter is another quantity: `a_wheel` is not meant for `f_wheel`.
 fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
     let wheels = model.wheels.iter().map(|w| w.channel.as_str());
     let all: Vec<&str> = wheels

@@ -15,7 +15,7 @@ use crate::place::SourceIx;
 /// Bytes after which a chunk ends at the next card.
 pub(super) const CHUNK_BYTES: usize = 192 << 10;
 
-/// Chunks that are in memory beside the cards they join.
+/// Chunks that are in memory in addition to the cards they join.
 const BATCH: usize = 32;
 
 /// Reads all chunks; the parts are joined in order.

@@ -19,7 +19,7 @@ pub(super) fn bare(label: &[u8]) -> &[u8] {
     }
 }
 
-/// Whether a mark in column 73 says that the name behind it is of a continuation.
+/// Returns whether a mark in column 73 shows that the name after it is the name of a continuation.
 pub(super) fn is_marked(label: &[u8]) -> bool {
     matches!(label, [b'+' | b'*', ..]) && !bare(label).is_empty()
 }

@@ -11,7 +11,7 @@ use super::split::{Lead, cut};
 use crate::cards::{Cards, Param};
 use crate::place::Place;
 
-/// A card without a struct of its own, kept word for word.
+/// A card without a dedicated struct, kept word for word.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OtherCard {
     /// Upper case, without `*`.

@@ -77,7 +77,7 @@ impl<'a, 'f> Fields<'a, 'f> {
             .map_or(0, |i| i + 1)
     }
 
-    /// The trimmed text of a field, empty where there is none.
+    /// Returns the trimmed text of a field, empty for a missing field.
     #[inline]
     pub(super) fn raw(&self, i: usize) -> &'a [u8] {
         self.list.get(i).copied().unwrap_or_default()

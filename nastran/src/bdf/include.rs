@@ -26,7 +26,7 @@ pub struct Loaded {
 
 /// Reads included files for [`super::read_deck`], which opens none itself.
 pub trait Loader {
-    /// The file, or why there is none.
+    /// Returns the file, or the reason why it can't be loaded.
     ///
     /// # Errors
     ///

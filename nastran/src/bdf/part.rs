@@ -95,7 +95,7 @@ pub(super) struct Orphan {
     pub label: Vec<u8>,
     /// Name in field 10 of the last line.
     pub next: Vec<u8>,
-    /// Whether a mark says that this name is of a continuation.
+    /// Whether a mark shows that this name is the name of a continuation.
     pub asks: bool,
     pub lines: Vec<Span>,
     pub used: bool,

@@ -42,7 +42,7 @@ pub(super) struct Statement {
     pub text: String,
 }
 
-/// Sections told apart.
+/// Reader that separates the sections of a deck.
 pub(super) struct Sections<'l> {
     loader: &'l mut dyn Loader,
     pub sources: Vec<Source>,
@@ -246,7 +246,7 @@ impl Sections<'_> {
         after
     }
 
-    /// BEGIN BULK, or a part of its own; whether it is the main bulk data.
+    /// Begins the bulk data at BEGIN BULK, or a separate part of it. Returns whether it is the main bulk data.
     fn begin(&mut self, source: u32, text: &str, number: u32) -> bool {
         let upper = text.to_ascii_uppercase();
         let what = upper

@@ -9,13 +9,13 @@ pub enum WeldPatches {
     Grids([Vec<u32>; 2]),
     /// ELEMID: a shell on each side; `None` is the grid GB itself.
     Elements(u32, Option<u32>),
-    /// ELPAT: as ELEMID, but tied by auxiliary points that may lie on the shells beside.
+    /// ELPAT: as ELEMID, but tied by auxiliary points that may be on neighbouring shells.
     ElementPatches(u32, u32),
     /// PARTPAT: shell properties.
     Properties(u32, u32),
     /// ALIGN: the grids GA and GB.
     Align,
-    /// A word that is none of these.
+    /// Any other word.
     Unknown(String),
 }
 

@@ -232,7 +232,7 @@ impl<'a> Op2<'a> {
     }
 }
 
-/// Tells records apart, so that one that is written twice is read once.
+/// Returns a hash that identifies a record, so that a record that is written twice is read once.
 fn fingerprint(bytes: &[u8]) -> u64 {
     let mut hasher = DefaultHasher::new();
     bytes.hash(&mut hasher);

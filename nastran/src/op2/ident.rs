@@ -67,8 +67,8 @@ pub(super) fn read_ident(w: Words<'_>) -> Option<Ident> {
 }
 
 impl Ident {
-    /// The quantity. Strain or stress is told by the stress code, ply rows by the element type; the table's name decides only
-    /// between SPC and MPC forces, which share a code, and marks tables that are no plain results.
+    /// Returns the quantity. The stress code distinguishes strain from stress, the element type ply rows. The table's name decides only between SPC
+    /// and MPC forces, which share a code, and marks tables that are not plain results.
     pub(super) fn quantity(&self, table: &str) -> Quantity {
         if self.thermal != 0 || self.random || is_derived(table) {
             return Quantity::Other;

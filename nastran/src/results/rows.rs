@@ -13,7 +13,7 @@ pub struct RowId {
     pub layer: u32,
 }
 
-/// A word of up to eight characters beside a row.
+/// A word of up to eight characters that labels a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub struct Label([u8; 8]);
 

@@ -227,8 +227,8 @@ fn half_of_the_runs_at_ponca_teach_to_weigh_the_others_within_their_intervals() 
     assert!(w.wrong_lanes.is_empty(), "{:?}", w.wrong_lanes);
 }
 
-/// Sixty other splits. What the loads leave of some runs at 30 and 45 mph is far more than the calibration scatters by; their lane is to be told by
-/// what is known of the scatter all the same.
+/// Sixty other splits. The residuals of some runs at 30 and 45 mph are far larger than the scatter of the calibration. The known scatter must still
+/// identify their lane.
 #[test]
 fn runs_that_scatter_more_than_those_that_taught_are_weighed_in_their_lane() {
     let Some(w) = weigh("ponca", 20..80) else {

@@ -100,7 +100,7 @@ fn count(words: &[ShiftWord], word: ShiftWord) -> usize {
     words.iter().filter(|w| **w == word).count()
 }
 
-/// Nothing but this word, or that it can't be told; `least`: in how many of a hundred it is said.
+/// Asserts that every word is `word`, `None` or `Undetermined`, and that at least `least` of a hundred are `word`.
 fn is_named(words: &[ShiftWord], word: ShiftWord, least: usize) {
     let silent = count(words, ShiftWord::None) + count(words, ShiftWord::Undetermined);
     let named = count(words, word);

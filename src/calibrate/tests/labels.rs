@@ -22,7 +22,7 @@ const ROWS: [[f64; 3]; 8] = [
     [1.1, 0.3, 0.2],
 ];
 
-/// 100 kN in each lane, `times` times, scattering by `scatter` (all gauges together and each by itself), no model.
+/// Returns runs of 100 kN in each lane, `times` times, without a model. They scatter by `scatter`, all gauges together and each gauge separately.
 fn lanes(times: usize, scatter: f64, seed: u64) -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut off = || 1.0 + scatter * 3.0_f64.sqrt() * random.random_range(-1.0..1.0);

@@ -122,10 +122,10 @@ fn sizes_that_are_not_one_a_load_are_said() {
     }
 }
 
-/// Share of the strain by which repeats of one loading scatter: in what all gauges read alike, and in each gauge by itself.
+/// Scatter between repeats of one loading, as a share of the strain: common to all gauges, and of each gauge separately.
 const SCATTER: [f64; 2] = [0.03, 0.01];
 
-/// The six pushes three times each; repeats scatter.
+/// Returns the six pushes three times each; repeats scatter.
 fn repeated() -> Task {
     let mut random = ChaCha8Rng::seed_from_u64(5);
     let sites = sites();

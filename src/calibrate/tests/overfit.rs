@@ -8,8 +8,8 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-/// Without shrinking the filter is a regression on all patterns that no loads make, `n - k` of them: its errors in other runs have a variance
-/// `1 / (1 - (n - k) / dof)^2` times what it leaves in those that taught it.
+/// Without shrinkage the filter is a regression on all `n - k` patterns that no loads make. The variance of its errors in other runs is
+/// `1 / (1 - (n - k) / dof)^2` times the variance of its residuals in the calibration runs.
 #[test]
 fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_learnt() {
     const N: usize = 6;

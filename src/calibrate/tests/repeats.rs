@@ -76,9 +76,9 @@ fn tally(trials: &[Vec<[f64; 3]>], which: usize) -> Tally {
     }
 }
 
-/// Six loadings of a bridge, five passages of each: a loading stands aside of its lane by a place of its own, which moves `aside` (1 sd, of the
-/// strain) from one lane's pattern to the other's; passages of it by `passage`. One more truck is weighed. Whether the job says which are
-/// alike is asked by `told`.
+/// Six loadings of a bridge, five passages of each, and one more truck that is weighed. The offset of a loading from its lane moves `aside` (1 sd, of
+/// the strain) from one lane's pattern to the other's. The offset of each passage moves `passage`. `told`: whether the job states which runs are
+/// repeats.
 fn passages(aside: f64, passage: f64, told: bool, seed: u64) -> Vec<[f64; 3]> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let s = lanes(&mut random);
@@ -152,7 +152,7 @@ fn repeats_that_have_nothing_in_common_tell_as_much_as_any_other_runs() {
     }
 }
 
-/// Loads of three bays of which a scale says the sum, to `sd`.
+/// Returns loads of three bays with a known sum, 1 sd `sd`, from a scale.
 fn by_sum(total: f64, sd: f64) -> KnownLoads {
     const WIDE: f64 = 300.0;
     let d = WIDE * WIDE;

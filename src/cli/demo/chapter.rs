@@ -1,4 +1,4 @@
-//! A chapter of the story, and the deck that it is told of.
+//! A chapter of the demo story, and the deck of the story.
 
 use crate::host::outcome::Findings;
 use crate::report::page::Card;

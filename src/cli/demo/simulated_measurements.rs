@@ -17,7 +17,7 @@ use serde_json::{Value, json};
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
-/// A gauge as the gluing sheet says it.
+/// A gauge as stated in the gluing sheet.
 pub(super) struct Glued {
     name: String,
     element: u32,

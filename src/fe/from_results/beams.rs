@@ -43,8 +43,8 @@ impl<'m> BeamCollector<'m> {
 
     /// Adds a block of strain or stress rows.
     ///
-    /// CBAR rows hold bending alone at C D E F, and the axial part once: it is added. CBEAM rows hold the sum. The rows of a CBAR with
-    /// stations state the sum or bending alone, told apart by their own largest value.
+    /// CBAR rows contain bending alone at C D E F, and the axial part once: it is added. CBEAM rows contain the sum. The rows of a CBAR with stations
+    /// contain the sum or bending alone; their largest value shows which.
     pub(super) fn add(&mut self, block: &Block, rows: &Rows, tally: &mut Tally) {
         let mut ids = Ids::new(&self.model.beams, |b| b.id);
         let mut last: Option<u32> = None;

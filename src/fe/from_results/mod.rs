@@ -4,7 +4,7 @@
 //! - [`beams`] the three forms of bar and beam rows;
 //! - [`displacement`] from displacement frames to basic;
 //! - [`repeated`](repeated()) subcases that are there more than once;
-//! - [`tally`] what was met and could not be used, told once each.
+//! - [`tally`] input that was found and can't be used, each kind reported once.
 
 mod beams;
 mod blocks;

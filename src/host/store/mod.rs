@@ -32,10 +32,10 @@ pub trait SolutionStore: Send + Sync {
     fn write(&self, key: &Key, bytes: Vec<u8>) -> Result<(), String>;
 }
 
-/// The solution under a key; `None` where there is none.
+/// Reads the solution under a key; `None` if the store has none under it.
 ///
 /// # Errors
-/// Why what is there can't be used.
+/// The reason why a stored solution can't be used.
 pub(crate) fn read_solution(
     store: &dyn SolutionStore,
     key: &Key,

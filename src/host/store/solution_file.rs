@@ -1,4 +1,4 @@
-//! A kept solution as bytes: displacements and what the solver said.
+//! A stored solution as bytes: displacements and the report of the solver.
 //!
 //! A mark, the key's hash, little-endian numbers, and the SHA-256 of all bytes before; what does not add up is no solution.
 

@@ -14,9 +14,9 @@ use crate::reconcile::strain::WheelForces;
 use crate::series::record::seconds_in;
 use crate::units::{ReportUnits, STANDARD_GRAVITY_M_S2};
 
-/// Elements that `respond` reports where the job says nothing.
+/// Elements that `respond` reports if the job states no number.
 const DEFAULT_HOTTEST: usize = 20;
-/// Power of the load range in pseudo-damage where the job says nothing: usual for welded and cast parts of vehicles.
+/// Power of the load range in pseudo-damage if the job states none: usual for welded and cast parts of vehicles.
 const DEFAULT_SLOPE: f64 = 5.0;
 
 /// `[measured]`; where there is a `[fleet]`, its records stand in for the strain file.

@@ -11,9 +11,9 @@ use crate::gauge::Bridge;
 use crate::placement::Loss;
 use crate::study::ErrorKind;
 
-/// Noise of a strain channel where the job says nothing, microstrain.
+/// Noise of a strain channel if the job states none, microstrain.
 pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;
-/// Angles of candidates where the job says nothing, degrees.
+/// Step between the angles of candidates if the job states none, degrees.
 const DEFAULT_ANGLE_STEP_DEG: f64 = 15.0;
 /// Least step of angles: a tenth of what gauges are glued to. Every place is tried at each angle, and "continuous" takes the best of all.
 const LEAST_ANGLE_STEP_DEG: f64 = 0.1;

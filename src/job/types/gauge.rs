@@ -32,7 +32,7 @@ pub struct JobGauge {
     pub name: String,
     /// Stated place of the gauge.
     pub place: StatedPlace,
-    /// Location in job units as the table states it beside the element, where it does: for drawings, and held against the element.
+    /// Location, job units, if stated in addition to the element. Compared with the element; selects the surface if none is stated.
     pub position: Option<[f64; 3]>,
     /// Surface.
     pub surface: Surface,

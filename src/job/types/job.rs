@@ -36,7 +36,7 @@ pub struct Job {
     pub folder: PathBuf,
     /// The files it was read from: itself, then tables read with it.
     pub read: Vec<FileRead>,
-    /// Title; the file's name where there is none.
+    /// Title; the file's name if the job has no title.
     pub title: String,
     /// Unit system of the model.
     pub units: UnitSystem,

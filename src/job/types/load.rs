@@ -87,9 +87,9 @@ pub struct JobLoad {
     pub acts: LoadActs,
     /// The load in its subcase, job units, signed; not zero.
     pub applied: f64,
-    /// Which of the results files, where the job says.
+    /// Results file of the load, if the job states one.
     pub result: Option<NamedFile>,
-    /// Subcase, where the job says; else its number in job order.
+    /// Subcase, if the job states one; else its number in job order.
     pub subcase: Option<u32>,
     /// Number in job order, from 1: the subcase of the load in the deck that `cases` writes.
     pub number: u32,
@@ -124,7 +124,7 @@ impl JobLoad {
     }
 }
 
-/// `[[combination]]`: a sum of loads with an interval of its own.
+/// `[[combination]]`: a sum of loads with a separate interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combination {
     /// Name.

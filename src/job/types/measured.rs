@@ -20,7 +20,7 @@ pub enum HoldOut {
     None,
     /// These runs of the strain file.
     Runs(Vec<String>),
-    /// A file of its own.
+    /// A separate strain file.
     File(NamedFile),
 }
 

@@ -49,7 +49,7 @@ impl Optimality {
 /// `[placement]`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placement {
-    /// How many; `None`: twice the number of loads, which the command says.
+    /// Number of gauges; `None` is twice the number of loads, which the command reports.
     pub gauges: Option<usize>,
     /// Criterion; default `Ds` with nuisance loads, else `D`.
     pub criterion: Optimality,

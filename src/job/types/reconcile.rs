@@ -29,7 +29,7 @@ pub struct Reconcile {
     pub effects: Option<Vec<String>>,
     /// Bushes whose stiffness may be wrong; `None`: all, where they are few.
     pub joints: Option<Ids>,
-    /// Causes measured beside the readings: name, and column of the runs file.
+    /// Causes measured in addition to the readings: name, and column of the runs file.
     pub causes: BTreeMap<String, String>,
     /// Gluing tolerance of angles, degrees, 1 sd.
     pub angle_tolerance_deg: Option<f64>,

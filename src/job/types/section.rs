@@ -20,6 +20,6 @@ pub struct RecordSection {
 pub enum SectionExtent {
     /// Samples of the strain record from one time until before another, s.
     Times([f64; 2]),
-    /// A strain record of its own.
+    /// A separate strain record.
     File(NamedFile),
 }

@@ -11,7 +11,7 @@ pub struct GivenSensitivity {
     pub file: NamedFile,
     /// Microstrain per these units.
     pub per: ReportUnits,
-    /// Load name and column name, in job order; empty: every column is a load of its own name.
+    /// Load name and column name, in job order; if empty, every column is a load of the same name.
     pub columns: Vec<(String, String)>,
     /// Signature files.
     pub signatures: Signatures,

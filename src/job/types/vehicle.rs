@@ -34,7 +34,7 @@ pub struct Vehicle {
     pub columns: BTreeMap<String, String>,
     /// Places (x, y) of wheels (`lf`), springs (`spring_lf`) and body accelerometers (`body_lf`), job unit of length.
     pub places: BTreeMap<String, [f64; 2]>,
-    /// Limits of parameters, units of the job; an infinite one is none.
+    /// Limits of parameters, job units; an infinite value is no limit.
     pub bounds: BTreeMap<String, [f64; 2]>,
     /// Faults of channels that are known.
     pub corrections: BTreeMap<String, ChannelCorrection>,

@@ -103,7 +103,7 @@ impl<'a> Front<'a> {
 
     /// Eliminates the supernode: its columns of the factor, each from its diagonal down, into `packed`, and what is left for its parent.
     ///
-    /// A lost pivot is held by a spring, and the front formed anew: only for structures that are refused anyway.
+    /// A lost pivot is held by a spring, and the front is formed again: only for structures that are refused anyway.
     ///
     /// # Errors
     /// A pivot that is not a number, or stays negative though a spring holds it.

@@ -27,7 +27,7 @@ pub(super) struct Supernodes {
     rows: Vec<u32>,
     /// Unknowns of the rows below.
     below: Vec<u32>,
-    /// First value of each in the factor, and the total: columns of its own rows and those below, one after the other.
+    /// First value of each in the factor, and the total: columns of the supernode's rows and the rows below, one after the other.
     value_start: Vec<usize>,
 }
 
@@ -122,7 +122,7 @@ struct Merged {
     members: Vec<Vec<u32>>,
     children: Vec<Vec<u32>>,
     roots: Vec<u32>,
-    /// Unknowns of its own and below.
+    /// Unknowns of each supernode, and below it.
     own: Vec<usize>,
     below: Vec<usize>,
     zeros: Vec<usize>,

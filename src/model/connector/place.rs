@@ -50,7 +50,7 @@ pub(super) fn between_deg(a: Vec3, b: Vec3) -> f64 {
 }
 
 impl Builder<'_> {
-    /// The shell that a field names, to be pierced with its neighbours or alone (`on`); a fault where there is none.
+    /// Returns the shell that a field names, to be pierced with its neighbours or alone (`on`); adds a fault if it is missing.
     pub(super) fn named_shell(
         &mut self,
         id: u32,
@@ -65,7 +65,7 @@ impl Builder<'_> {
         found
     }
 
-    /// The shells of the property that a field names; a fault where there is none.
+    /// Returns the shells of the property that a field names; adds a fault if it is missing.
     pub(super) fn named_property(
         &mut self,
         id: u32,

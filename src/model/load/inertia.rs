@@ -161,7 +161,7 @@ impl Builder<'_> {
 }
 
 impl Builder<'_> {
-    /// Returns whether a point mass has an offset or an inertia of its own, or a shell, bar or beam has an offset.
+    /// Returns whether a point mass has an offset or a rotational inertia, or a shell, bar or beam has an offset.
     fn has_mass_off_grids(&self) -> bool {
         let model = &self.model;
         let is_off = |m: &PointMass| {

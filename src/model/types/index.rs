@@ -1,6 +1,6 @@
 //! Indices into the arrays of a model, and vectors.
 
-/// A point or vector in the basic frame unless said otherwise.
+/// A point or vector in the basic frame unless stated otherwise.
 pub type Vec3 = crate::linalg::Vector3<f64>;
 /// Rows are the axes of a local frame in the basic frame: `local = R * basic`.
 pub type Mat3 = crate::linalg::Matrix3<f64>;

@@ -126,9 +126,9 @@ pub struct Bush {
     pub axes: Mat3,
     /// Location of the spring, basic frame.
     pub location: Vec3,
-    /// Stiffness by component; 0 where the property says RIGID: equations hold that component.
+    /// Stiffness by component; 0 for a RIGID component of the property, which equations constrain.
     pub k: [f64; 6],
-    /// Components that the property says are RIGID.
+    /// Components that are RIGID in the property.
     pub rigid: [bool; 6],
     /// Neither CID nor the line of its grids gives its axes, and the stiffness differs by direction: the basic frame is taken.
     pub frame_assumed: bool,

@@ -1,4 +1,4 @@
-//! Weighing at and near an empty structure, and beside runs that have no answer.
+//! Weighing at and near an empty structure, and together with runs that have no answer.
 
 use crate::linalg::Matrix;
 use crate::payload::robust::cut_at_zero;

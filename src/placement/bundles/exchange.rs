@@ -75,7 +75,7 @@ pub(super) fn improve(
     value(&chosen, &spec.prior).map(|v| (chosen, v))
 }
 
-/// Bundles that fit beside `rest`, the most promising first: by `ln det(1 + R M^-1 R')`, its first term where the criterion is not D.
+/// Returns the bundles that fit with `rest`, the most promising first: by `ln det(1 + R M^-1 R')`, or its first term if the criterion is not D.
 fn promising(
     bundles: &Bundles,
     spec: &BundleSpec,

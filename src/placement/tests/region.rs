@@ -12,7 +12,7 @@ impl Loader for Alone {
     }
 }
 
-/// Quads on a lattice of `n x m` grids laid out by `at`; `taken(i, j)` says which cells hold one, `closed` joins the last column to the first.
+/// Builds quads on a lattice of `n x m` grids located by `at`. `taken(i, j)` selects cells with a quad, `closed` joins the last column to the first.
 fn lattice(
     [n, m]: [usize; 2],
     at: impl Fn(usize, usize) -> [f64; 3],

@@ -15,9 +15,9 @@ pub(super) struct Block {
     pub first: usize,
     /// By gauge that reads.
     pub readings: Vec<Vec<f64>>,
-    /// Samples between those of which errors are told.
+    /// Samples between two samples with computed errors.
     pub step: usize,
-    /// First of these.
+    /// First sample with computed errors.
     pub first_told: usize,
     /// By error, by gauge that reads: both quarters of its course at these samples, strain; it is as large as the mean of their squares.
     pub errors: Vec<Vec<[Vec<f64>; 2]>>,
@@ -117,8 +117,8 @@ impl Kernel {
         spectra.iter().enumerate().map(of_gauge).collect()
     }
 
-    /// By error, by gauge: what readings at rest are off by. Errors are one standard deviation of each mode's frequency and damping, and what
-    /// modes that are not told answer.
+    /// Returns the errors of the quasi-static readings, by error source and gauge. Sources are one standard deviation of each mode's frequency and
+    /// damping, and the response of modes outside the model.
     fn errors_of(&self, loads: &[Spectrum]) -> Vec<Vec<Spectrum>> {
         let n = self.at_rest.ncols();
         let mut out = Vec::new();

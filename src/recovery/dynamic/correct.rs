@@ -54,8 +54,8 @@ struct Squares {
     sum: Vec<f64>,
 }
 
-/// The readings (strain, by gauge of `s`, every sample at `rate_hz`; NaN where there is none) of a record at rest. `noise` is that of a reading,
-/// strain.
+/// Returns the quasi-static readings of a record. `readings` are strain by gauge of `s`, every sample at `rate_hz`, NaN where a reading is missing.
+/// `noise` is the noise of one reading, strain.
 ///
 /// # Errors
 /// See [`Unfit`].

@@ -100,7 +100,7 @@ impl Doubt {
         }
     }
 
-    /// The motion's part at a sample: of its window, or of the nearest of which something is told.
+    /// Returns the covariance of the motion error at a sample: of its window, or of the nearest window with a computed error.
     fn motion_at(&self, sample: usize) -> &[f64] {
         let size = triangle(self.n);
         let (at, windows) = (sample / self.window, self.told.len());

@@ -9,8 +9,8 @@
 //! With `G(w)` the least squares gain of `H`, the readings at rest are `eps - Psi a C G eps`, band-limited: what the loads don't explain stays in
 //! them, for the judges of the residual, and everything that recovers loads from strain takes them as any other readings.
 //!
-//! `G` is nearly a differential operator (force is mass times acceleration and so on), so that a reading hangs on those of a short time round it
-//! ([`AtRest::reach`]); nearer to an end of a stretch than that nothing is said.
+//! `G` is nearly a differential operator (force is mass times acceleration and so on). A quasi-static reading therefore depends on the readings of a
+//! short time around it ([`AtRest::reach`]). Samples nearer than that to an end of a stretch have no result.
 //!
 //! # Reference
 //! R. E. Cornwell, R. R. Craig, C. P. Johnson, On the application of the mode-acceleration method to structural engineering problems, Earthquake

@@ -35,7 +35,7 @@ impl Sample {
 /// Form of a covariance of the noise.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Form {
-    /// Whether each gauge has a standard deviation of its own.
+    /// Whether each gauge has a separate standard deviation.
     pub by_gauge: bool,
     /// Whether any two gauges have a common correlation.
     pub correlated: bool,

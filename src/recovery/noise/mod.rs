@@ -144,7 +144,7 @@ struct Residuals {
     is_unloaded: bool,
 }
 
-/// Forms that are fitted, and what tells them apart.
+/// Likelihood ratio test between the fitted forms of the noise.
 struct Fits {
     /// Log likelihood of the sample covariance itself.
     largest: f64,

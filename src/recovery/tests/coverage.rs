@@ -58,7 +58,7 @@ fn of_runs(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>) 
     assert_covers(&format!("runs, {} loads{dead}", s.loads.len()), covered, of);
 }
 
-/// All trials as one record, judged as the application does: on 200 of its samples.
+/// Tests all trials as one record as the application does, on 200 of its samples.
 fn of_record(s: &Sensitivity, size: impl Fn(usize) -> f64, silent: Option<usize>) {
     let (n, k) = (s.gauges.len(), s.loads.len());
     let trials: Vec<(Vec<f64>, Vec<f64>)> = (0..TRIALS)

@@ -211,7 +211,7 @@ fn a_load_that_the_other_gauges_do_not_tell_is_blank_and_the_rest_is_not() {
     assert_eq!((sums.known(0), sums.known(1)), (3, 1));
 }
 
-/// Samples of loads A = 1, B = 2, every other one without the one gauge that tells B.
+/// Returns samples of loads A = 1, B = 2, every second one without the only gauge that determines B.
 fn half_without_b(s: &Sensitivity) -> Vec<Readings> {
     (0..20)
         .map(|i| {

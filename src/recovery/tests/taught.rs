@@ -7,7 +7,7 @@ use crate::finding::Severity;
 use crate::linalg::Matrix;
 use crate::sensitivity::Uncertainty;
 
-/// Loads told with a sigma of one each, independent of each other.
+/// Returns a run of independent loads with a sigma of one each.
 fn told(run: &str, loads: [f64; 3]) -> RunEstimate {
     let one = |i: usize| if i.is_multiple_of(4) { 1.0 } else { 0.0 };
     RunEstimate {
@@ -38,9 +38,9 @@ fn taught(one_by_one: bool) -> Uncertainty {
     }
 }
 
-/// Independent loads of equal sigma: the largest alone is nearest, and the others' squares are the distance from it. For two loads beside it and 20
-/// degrees of freedom `F = 9.95` has a chance of a thousandth (tables of F), so that `3.5^2 + 1.5^2` is within it and `4^2 + 3^2` is not. Where their
-/// strains are at right angles and equal, the two nearest alone are the two largest as they are told.
+/// Independent loads of equal sigma: the largest single load is nearest, and the squares of the other loads are the distance from it. For two further
+/// loads and 20 degrees of freedom `F = 9.95` has a chance of a thousandth (tables of F): `3.5^2 + 1.5^2` is within it, `4^2 + 3^2` is not. If their
+/// strains are at right angles and equal, the two nearest single loads are the two largest estimates.
 #[test]
 fn a_run_with_several_loads_is_widened_until_either_of_two_alone_is_a_sigma_away() {
     let within = told("one", [10.0, 3.5, 1.5]);

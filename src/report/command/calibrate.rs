@@ -13,7 +13,7 @@ use crate::strain_chain::covariance_bytes;
 use crate::units::{MICROSTRAIN, Quantity, half_width, number, percent};
 use crate::workflow::calibrate::{Calibrated, CheckLoad, LeftOutLoad, calibrated_job};
 
-/// The gauges where the runs say that they sit, as a table that a job can name.
+/// Table of the gauges at their installed positions, as determined from the runs. A job can name it as its gauges.
 const GLUED: &str = "gauges_as_glued.csv";
 
 impl Report for Outcome<Calibrated> {

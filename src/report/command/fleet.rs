@@ -129,7 +129,7 @@ impl Report for Outcome<Fleet> {
     }
 }
 
-/// A number as it stands in a table: as many digits as bring it back; nothing where there is none.
+/// Returns a number for a table, with enough digits to read back the same number; empty for a number that is not finite.
 fn cell(x: f64) -> String {
     if x.is_finite() {
         format!("{x:e}")

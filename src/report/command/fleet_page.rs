@@ -189,7 +189,7 @@ fn time_of(at: &SampleOf) -> String {
     format!("{}, {:.3} s", at.day, at.seconds)
 }
 
-/// A number with its interval; nothing where there is none.
+/// Returns a number with its interval; empty for `None`.
 fn ratio(r: Option<Ratio>) -> String {
     r.map_or(String::new(), |r| {
         let [value, low, high] = [r.value, r.low, r.high].map(number);

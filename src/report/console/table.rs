@@ -65,7 +65,7 @@ impl Columns {
         self.widths.iter().sum::<usize>() + gaps
     }
 
-    /// Blocks of rows that fit beside each other.
+    /// Returns the number of blocks of rows that fit next to each other.
     fn blocks(&self, width: usize) -> usize {
         (width + BLOCK_GAP.len()) / (self.total() + BLOCK_GAP.len())
     }
@@ -117,7 +117,7 @@ fn headline(table: &ConsoleTable, width: usize) -> Vec<String> {
     wrapped(&table.title, width, 2)
 }
 
-/// Rows in blocks beside each other, under their heads.
+/// Returns the rows in blocks next to each other, under their heads.
 fn in_blocks(
     table: &ConsoleTable,
     columns: &Columns,

@@ -1,4 +1,4 @@
-//! A figure as drawings: the traces that the page draws by its script, drawn here.
+//! A figure as pictures, for traces that the page draws by its script.
 
 use super::heat::heat;
 use super::picture::{FAINT, LONGEST, Picture, Shape, UPRIGHT};
@@ -7,7 +7,7 @@ use super::traces::{Kind, Series, names_of, series_of};
 use crate::report::figure::Figure;
 use serde_json::Value;
 
-/// Colours of series that have none of their own.
+/// Colours of series without a stated colour.
 const COLOURS: [&str; 9] = [
     "#1f618d", "#d35400", "#1e8449", "#7d3c98", "#b7950b", "#c0392b", "#148f77", "#5d6d7e",
     "#a04000",

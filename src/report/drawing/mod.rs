@@ -1,4 +1,4 @@
-//! Figures, and the model with its gauges, as drawings of lines, areas and words: for paper and for pages without a script.
+//! Figures, and the model with its gauges, as pictures of lines, areas and text: for paper and for pages without a script.
 
 mod chart;
 mod heat;

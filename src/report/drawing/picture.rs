@@ -1,19 +1,19 @@
-//! Drawings of lines, areas and words, in millimetres from the upper left corner.
+//! Pictures of lines, areas and text, in millimetres from the upper left corner.
 
-/// A drawing.
+/// Picture with title and caption.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::report) struct Picture {
-    /// Above it.
+    /// Title above the picture.
     pub(in crate::report) title: String,
-    /// Under it.
+    /// Caption under the picture.
     pub(in crate::report) caption: String,
     /// Width and height.
     pub(in crate::report) size: [f64; 2],
-    /// From the lowest to the topmost.
+    /// Shapes, from the lowest to the topmost.
     pub(in crate::report) shapes: Vec<Shape>,
 }
 
-/// A part of a drawing.
+/// Part of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::report) enum Shape {
     /// Lines of one pen.

@@ -48,7 +48,7 @@ impl Scale {
         place.is_finite().then_some(place)
     }
 
-    /// Round values between the ends, with what is written beside them.
+    /// Returns round values between the ends, with their labels.
     pub(in crate::report) fn ticks(&self) -> Vec<(f64, String)> {
         let [low, high] = self.ends;
         if self.by_powers {

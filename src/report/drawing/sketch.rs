@@ -1,4 +1,4 @@
-//! The model with its gauges as line drawings along the axes of the basic frame.
+//! The model with its gauges as line pictures along the axes of the basic frame.
 
 use super::picture::{INK, Picture, Shape, UPRIGHT, Word, shortened};
 use super::scale::round_step;
@@ -8,10 +8,10 @@ use crate::report::scene::{Mark, SceneView};
 use crate::units::number;
 use std::collections::{BTreeSet, HashMap};
 
-/// Highest drawing, and space around it for names, mm.
+/// Largest height of a picture, and space around it for names, mm.
 const HIGH: f64 = 120.0;
 const AROUND: f64 = 9.0;
-/// Share of the longest side below which a drawing shows nothing.
+/// Share of the longest side below which a picture shows nothing.
 const FLAT: f64 = 0.02;
 /// Colour of the model.
 const MESH: &str = "#b4bec9";
@@ -52,7 +52,7 @@ const VIEWS: [View; 4] = [
     },
 ];
 
-/// The two drawings that show most, the larger first.
+/// Returns the two pictures that show most, the larger first.
 pub(in crate::report) fn views(scene: &SceneView) -> Vec<Picture> {
     let ends = scene.lines.iter().flatten().copied();
     let points = ends.chain(scene.marks.iter().map(|m| m.at));
@@ -140,7 +140,7 @@ fn drawing(scene: &SceneView, view: &View, [low, high]: [Vec3; 2]) -> Picture {
     picture
 }
 
-/// The lines that can be told apart at a tenth of a millimetre, each once.
+/// Returns the lines that are distinct at a tenth of a millimetre, each once.
 fn outline(lines: &[[Vec3; 2]], place: &dyn Fn(Vec3) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
     let mut seen = BTreeSet::new();
     let near = |p: [f64; 2]| p.map(|v| (v * 10.0).round() as i64);
@@ -188,7 +188,7 @@ impl Taken {
     }
 }
 
-/// Strokes along the gauges, circles of their gap, their names beside them.
+/// Draws strokes along the gauges, circles of their gap, and their names.
 pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Look) {
     let Look { place, turn } = look;
     let most = marks.iter().filter_map(|m| m.gap).flatten();

@@ -20,8 +20,8 @@ fn base64(bytes: &[u8]) -> String {
     out
 }
 
-/// Whole numbers in rows of `columns`, each less the one above it: base64 of variable-length bytes, seven bits each from the lowest, the eighth
-/// says that more follow; 0, -1, 1, -2 .. count as 0, 1, 2, 3 ..
+/// Packs whole numbers in rows of `columns` as base64 of variable-length bytes. Each number is stored as its difference from the number above it. A
+/// byte contains seven bits, the lowest first; its eighth bit is set if more bytes follow. Differences 0, -1, 1, -2 .. are coded as 0, 1, 2, 3 ..
 pub fn packed_deltas(values: &[i64], columns: usize) -> Value {
     let mut bytes = Vec::with_capacity(2 * values.len());
     for (i, v) in values.iter().enumerate() {
@@ -37,10 +37,10 @@ pub fn packed_deltas(values: &[i64], columns: usize) -> Value {
     json!(base64(&bytes))
 }
 
-/// Steps between nothing and the largest in [`steps_of`].
+/// Number of steps between zero and the largest value in [`steps_of`].
 pub const STEPS: f64 = 2047.0;
 
-/// Reals as shares of `most`, in [`STEPS`]; one step more below the least where there is none.
+/// Returns reals as shares of `most`, in [`STEPS`]; one step below the least for a number that is not finite.
 pub fn steps_of(values: impl Iterator<Item = f64>, most: f64) -> Vec<i64> {
     let step = |v: f64| {
         if !v.is_finite() {

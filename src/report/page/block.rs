@@ -214,13 +214,13 @@ impl Card {
         }
     }
 
-    /// Returns the card with the first picture of a figure in place of its own.
+    /// Returns the card with its picture replaced by the first picture of a figure.
     pub fn with_figure(self, figure: &Figure) -> Self {
         let picture = pictures(figure).into_iter().next().or(self.picture);
         Self { picture, ..self }
     }
 
-    /// A card with the first picture of a report: of the model, or where it is `of_numbers` of its first figure.
+    /// Returns a card with the first picture of a report: the picture of the model, or, if `of_numbers`, of the first figure.
     pub fn of_page(title: impl Into<String>, page: Option<&Page>, of_numbers: bool) -> Self {
         let blocks = || {
             page.iter()

@@ -1,4 +1,4 @@
-//! A report page: what it says as plain blocks, drawn as HTML here and as PDF by `report::pdf`.
+//! A report page as plain blocks, rendered as HTML here and as PDF by `report::pdf`.
 
 mod block;
 mod findings;

@@ -8,7 +8,7 @@ const ACROSS: f64 = 261.0;
 /// Millimetres per point of type and character: a little less than half the height of the type, as digits, small letters and the
 /// spaces between them take in the mean.
 const PER_CHARACTER: f64 = 0.44 * 25.4 / 72.0;
-/// Space beside a column, mm.
+/// Space next to a column, mm.
 const BESIDE: f64 = 3.0;
 /// Characters after which a cell goes on in the next line.
 const WRAPPED: usize = 26;
@@ -29,11 +29,11 @@ pub(super) struct Fitted {
     pub(super) size: f64,
     /// Whether the sheet is turned.
     pub(super) across: bool,
-    /// Whether the page has two of it beside each other.
+    /// Whether the page has two parts of the table next to each other.
     pub(super) halved: bool,
 }
 
-/// The table (nothing of one without columns) in one piece where a size of type allows it, else in pieces that repeat the first column.
+/// Returns the table in one piece if a size of type allows it, or else in pieces that repeat the first column. A table without columns has no piece.
 pub(super) fn fitted(table: &Table) -> Vec<Fitted> {
     let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
     let n = n.max(table.head.len());

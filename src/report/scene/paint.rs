@@ -6,7 +6,7 @@ use crate::fe::CaseResult;
 use crate::fe::strain_tensor::{largest_in_plane, largest_principal};
 use crate::model::Model;
 
-/// Numbers by element at bottom and top, of strain the largest principal one by magnitude, signed; `NaN` where there is none.
+/// Values by element at bottom and top. For strain it is the largest principal strain by magnitude, signed; `NaN` without a value.
 pub(super) struct Values {
     shells: Vec<[f64; 2]>,
     solids: Vec<[f64; 2]>,

@@ -8,14 +8,14 @@ use crate::report::drawing::picture::{Picture, Shape, UPRIGHT};
 use crate::report::drawing::{Look, marks};
 use crate::units::number;
 
-/// Triangles of a still: its bytes stand in the page beside those of the scene.
+/// Largest number of triangles of a still: the page contains its bytes in addition to the bytes of the scene.
 const TRIANGLES: usize = 2_400;
 /// Highest still, and space around the model for names, mm.
 const HIGH: f64 = 105.0;
 const AROUND: f64 = 7.0;
 /// Towards the eye, as the scene begins.
 const EYE: [f64; 3] = [1.1, -1.5, 0.95];
-/// Colours of magnitudes from 0 to the largest; steps of a value and of light that are told apart.
+/// Colours of magnitudes from 0 to the largest; numbers of distinct steps of a value and of light.
 const RAMP: [[f64; 3]; 5] = [
     [230.0, 235.0, 240.0],
     [243.0, 220.0, 142.0],
@@ -143,7 +143,7 @@ fn largest(colours: &[Vec<f64>]) -> f64 {
     }
 }
 
-/// The colour of a share of the largest value, `NaN` where there is none, in light from the eye.
+/// Returns the colour of a share of the largest value in light from the eye; `NaN` is a share without a value.
 fn colour(share: f64, light: f64) -> [u8; 3] {
     let light = (light * LIGHTS).round() / LIGHTS;
     let (base, lit) = match share.is_finite() {

@@ -105,7 +105,7 @@ fn a_small_model_is_drawn_whole_with_a_part_a_property() {
     assert_eq!(area(&model, &parts[1]), 10.0);
 }
 
-/// Elements are picked on parts of shells alone, so that a part is of shells or has none; the largest property keeps a part of its own.
+/// Elements are picked on parts of shells alone, so a part consists of shells or has no shells. The largest property keeps a separate part.
 #[test]
 fn small_properties_go_together_shells_apart_from_the_rest() {
     let mut model = plate(24, 0);

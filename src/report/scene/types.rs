@@ -136,17 +136,17 @@ pub struct Field<'a> {
     pub scale: f64,
 }
 
-/// Where the numbers of a field come from.
+/// Source of the values of a field.
 #[derive(Clone, Debug)]
 pub enum FieldValues<'a> {
-    /// The largest principal strain of a load case, by magnitude.
+    /// Load case, of which the field shows the largest principal strain by magnitude.
     Strain(&'a CaseResult),
-    /// A magnitude of every shell, never negative, at bottom and top; `NaN` where there is none.
+    /// Magnitude of every shell at bottom and top, never negative; `NaN` without a value.
     Magnitudes(Vec<[f64; 2]>),
 }
 
 impl FieldValues<'_> {
-    /// Whether the colours lie about 0; those of magnitudes begin there.
+    /// Returns whether the colour range is centred on 0. The colour range of magnitudes begins at 0.
     pub fn is_signed(&self) -> bool {
         matches!(self, Self::Strain(_))
     }

@@ -1,4 +1,4 @@
-//! The table of gauges as glued: where each one sits, as the runs say, in columns that a job can name as its gauges.
+//! The table of gauges at their installed positions, as determined from the runs, in columns that a job can name as its gauges.
 
 use crate::job::{Job, StatedPlace};
 use crate::report::csv_cell;
@@ -35,10 +35,10 @@ pub const COLUMNS: [(&str, &str); 26] = [
     ("told", ""),
 ];
 
-/// A row a gauge; its gain is in `bridge_factor`, so that the table by itself makes S as glued.
+/// Writes a row for each gauge. Its gain is in `bridge_factor`, so that the table alone gives S of the installed gauges.
 ///
 /// # Errors
-/// What `out` says.
+/// Errors of `out`.
 pub fn glued_csv(
     out: &mut dyn Write,
     job: &Job,

@@ -6,9 +6,9 @@ use crate::report::{PointValues, write_points_vtu};
 use crate::workflow::place::PlacedGauge;
 use std::io::{Result, Write};
 
-/// Gauges as points: axis, outward normal, leverage, expected strain.
+/// Writes gauges as points: axis, outward normal, leverage, expected strain.
 /// # Errors
-/// What `w` says.
+/// Errors of `w`.
 pub fn gauges_vtu(w: &mut dyn Write, placed: &[PlacedGauge]) -> Result<()> {
     let three = |v: Vec3| [v.x, v.y, v.z];
     let vectors = |of: &dyn Fn(&Gauge) -> Vec3| {

@@ -8,10 +8,10 @@ use crate::sensitivity::Sensitivity;
 use crate::workflow::place::{PlacedGauge, StrainOfLoad};
 use std::io::{self, Write};
 
-/// S in microstrain per job unit: `gauge`, then a column a load.
+/// Writes S in microstrain per job unit: `gauge`, then one column for each load.
 ///
 /// # Errors
-/// What `out` says.
+/// Errors of `out`.
 pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
     write!(out, "gauge")?;
     for l in &s.loads {
@@ -31,7 +31,7 @@ pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
 /// Writes gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0. All have the grid length of the candidates.
 ///
 /// # Errors
-/// What `out` says.
+/// Errors of `out`.
 pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge], grid_length: f64) -> io::Result<()> {
     writeln!(
         out,
@@ -82,7 +82,7 @@ pub(in crate::report) fn corner_distances(model: &Model, g: &Gauge) -> Vec<(u32,
 /// Writes the table that the technician takes to the structure. The axis has all digits: a job that names this table as its gauges reads the same S.
 ///
 /// # Errors
-/// What `out` says.
+/// Errors of `out`.
 pub fn gluing_sheet_csv(
     out: &mut dyn Write,
     placed: &[PlacedGauge],

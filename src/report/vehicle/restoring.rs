@@ -1,4 +1,4 @@
-//! The restoring force of a link: what its model says, and what the motion of the body that it carries asks for.
+//! The restoring force of a link: from its model, and from the motion of the body that it carries.
 
 use super::curve::{Curve, plots};
 use crate::report::figure::Scale;
@@ -8,7 +8,7 @@ use crate::vehicle::loads::link_forces;
 use crate::vehicle::motion::Motion;
 use crate::vehicle::term::UnitNames;
 
-/// `-m a` of the body that link `l` alone carries, a value a sample; `None` where others carry it too, or it turns.
+/// Returns `-m a` of the body that only link `l` carries, one value for each sample; `None` if other links carry it too, or if it turns.
 pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<Vec<f64>> {
     let v = &found.vehicle;
     let link = v.links.get(l)?;
@@ -26,7 +26,7 @@ pub fn asked_force(found: &Identification, motion: &Motion, l: usize) -> Option<
     (links.count() == 1).then(|| motion.bodies[body][0].iter().map(|a| -mass * a).collect())
 }
 
-/// Links whose forces the record tells: where nothing sets the scale of forces, coefficients are ratios to a mass and no forces.
+/// Returns the links whose forces the record determines. Without a scale of forces, coefficients are ratios to a mass and not forces.
 pub(super) fn links_told(found: &Identification) -> impl Iterator<Item = usize> + '_ {
     let v = &found.vehicle;
     let told = |i: usize| found.scaled[i] && found.values[i].is_finite();
@@ -34,7 +34,7 @@ pub(super) fn links_told(found: &Identification) -> impl Iterator<Item = usize> 
     (0..v.links.len()).filter(all_told)
 }
 
-/// Mean force of every link that the record tells by bins of its stretch: from the model, and as the motion asks for it where that is known.
+/// Returns the mean force of every link that the record determines, by bins of its stretch: from the model, and from [`asked_force`] if it is known.
 pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     const BINS: usize = 41;
     let forces = link_forces(&found.vehicle, &found.values, motion);

@@ -8,7 +8,7 @@ use crate::vehicle::motion::Motion;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// `parameters.csv`: name, value, sigma, low, high, unit, identifiable; blank where not told.
+/// Returns `parameters.csv`: name, value, sigma, low, high, unit, identifiable; blank for an undetermined number.
 pub fn write_parameters(found: &Identification) -> String {
     let mut out = String::from("name,value,sigma,low,high,unit,identifiable\n");
     let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.9e}"));

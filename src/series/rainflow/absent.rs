@@ -2,27 +2,27 @@
 
 use serde::{Deserialize, Deserializer};
 
-/// A number; NaN where there is none.
+/// Reads a number; null becomes NaN.
 ///
 /// # Errors
-/// What is neither a number nor null.
+/// A value that is neither a number nor null.
 pub fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
-/// Numbers; NaN where there is none.
+/// Reads a list of numbers; null becomes NaN.
 ///
 /// # Errors
-/// What is no list of numbers and nulls.
+/// A value that is not a list of numbers and nulls.
 pub fn numbers<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<f64>, D::Error> {
     let list = Vec::<Option<f64>>::deserialize(from)?;
     Ok(list.into_iter().map(|v| v.unwrap_or(f64::NAN)).collect())
 }
 
-/// A number; infinite where there is none.
+/// Reads a number; null becomes infinity.
 ///
 /// # Errors
-/// What is neither a number nor null.
+/// A value that is neither a number nor null.
 pub fn infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::INFINITY))
 }

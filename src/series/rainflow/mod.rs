@@ -4,7 +4,7 @@
 //! - `bias`: what noise adds to damage, from counts with more of it
 //! - [`count`]: the four-point count, whose residues join; with the residue as half cycles it is the count of ASTM E1049
 //! - `counter`: a tally under way, `counts` its cycles and rises by class
-//! - `marks`: what tells samples apart, by which the noise of counts with more of it is drawn
+//! - `marks`: a number for each sample, which seeds the noise of the counts with more noise
 //! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
 //! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
 //! - [`interval`]: damage with what is known of its errors

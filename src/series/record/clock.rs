@@ -1,4 +1,4 @@
-//! The clock of a record: one pass over its times tells rate, span, gaps, and whether the steps are even.
+//! Clock of a record: one pass over its times determines rate, span, gaps, and whether the steps are even.
 
 use super::reader::{Pick, RecordReader, Times};
 use super::span::{EVEN, Gap, LISTED, Scale, Span, Stretch, Walk, Wrong, span, typical_steps};

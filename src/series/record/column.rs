@@ -71,8 +71,8 @@ impl Header {
         }
     }
 
-    /// Whether what stands in brackets is a unit of time, strain, a quantity that a job may name, or another that such files hold. A single
-    /// letter in round brackets is none: `SG1 (t)` is the top one.
+    /// Returns whether the text in brackets is a unit of time, strain, a quantity that a job may name, or another that such files contain. A single
+    /// letter in round brackets is not a unit: `SG1 (t)` is the top gauge.
     pub fn is_unit(&self) -> bool {
         let mut letters = self.bracket.chars();
         let is_letter = letters.next().is_some_and(char::is_alphabetic) && letters.next().is_none();

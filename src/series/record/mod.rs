@@ -1,8 +1,8 @@
 //! Records of any length and origin, read a piece at a time: names with units split off, one clock, pieces that decode in parallel.
 //!
 //! A format is a [`RecordReader`]: [`csv`], the binary record of strainbridge, RPC III, Parquet, Feather, MDF4, TDMS, UFF 58. [`open_record`]
-//! tells them apart by their first bytes, passes once over the times ([`Clock`]) and gives a [`Record`], whose samples stand on even
-//! steps whatever the file held. Nothing is kept of a file but what lists its parts.
+//! identifies the format by the first bytes of the file and passes once over the times ([`Clock`]). It returns a [`Record`], whose samples have even
+//! steps whatever the steps of the file. Only the list of parts of a file is kept.
 
 #[cfg(feature = "parquet")]
 mod arrow;

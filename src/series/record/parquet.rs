@@ -278,7 +278,7 @@ impl RecordReader for Parquet {
 }
 
 impl Parquet {
-    /// Some rows, decoded by themselves.
+    /// Decodes the rows of one part separately from other pieces.
     fn read_alone(&self, part: Part, picks: &[Pick], sink: &mut Sink) -> Result<(), SeriesError> {
         let mut strips = self.shared.spare();
         strips.resize_with(picks.len(), Strip::default);
@@ -343,10 +343,10 @@ impl Parquet {
         }
     }
 
-    /// Refuses columns of a type that is not read, of these names, and of time where the rate is not known otherwise.
+    /// Checks the types of the wanted columns, and of a time column if the rate is not known otherwise.
     ///
     /// # Errors
-    /// As said.
+    /// A column of a type that is not read.
     pub(super) fn check_types(
         &self,
         wanted: &[String],

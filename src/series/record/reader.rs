@@ -81,7 +81,7 @@ pub struct OtherChannel {
 /// Takes blocks in order until it has enough.
 pub type Sink<'a> = dyn FnMut(Block<'_>) -> ControlFlow<()> + 'a;
 
-/// A file as rows of numbers, in pieces that can be decoded by themselves and in parallel.
+/// File as rows of numbers, in pieces that can be decoded separately and in parallel.
 pub trait RecordReader: Send + Sync {
     /// Returns the columns but time, in file order.
     fn columns(&self) -> &[Column];

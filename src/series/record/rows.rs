@@ -75,7 +75,7 @@ impl Shared {
         new
     }
 
-    /// Says that a piece has read them.
+    /// Counts one more piece that has read the rows, and releases them after the last piece.
     pub fn done_with(&self, rows: &Arc<Rows>, strips: Arc<Strips>) {
         drop(strips);
         let mut state = locked(&rows.state);
@@ -135,8 +135,8 @@ impl Drop for Turn<'_> {
 }
 
 impl Rows {
-    /// The decoded columns; `decode` fills the strip of one, and is called for those that no other thread has begun. `None` where one of them
-    /// failed, or where they were given up: whoever asks decodes for itself, and says what is wrong.
+    /// Returns the decoded columns. `decode` fills the strip of one column; it is called for columns that no other thread has begun. Returns `None`
+    /// if a column failed, or if the rows were given up: the caller then decodes separately and reports the error.
     pub fn decoded(
         &self,
         decode: &mut dyn FnMut(usize, &mut Strip) -> bool,

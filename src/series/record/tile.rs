@@ -5,7 +5,7 @@ use super::reader::BLOCK;
 /// Columns laid out together: a line of the processor's cache holds their numbers of one row.
 const WIDE: usize = 8;
 
-/// A few decoded columns that stand beside each other in the rows.
+/// A few decoded columns that are adjacent in the rows.
 pub(super) struct Tile {
     values: Vec<f64>,
     /// Place of the first in a row.
@@ -27,8 +27,8 @@ impl Tile {
         }
     }
 
-    /// Room for the numbers of column `j` of at most [`BLOCK`] rows. What doesn't stand beside it is laid out into `values`, `k` a row,
-    /// before.
+    /// Returns room for the numbers of column `j` of at most [`BLOCK`] rows. Columns to which it is not adjacent are first laid out into `values`,
+    /// `k` a row.
     pub(super) fn column(
         &mut self,
         j: usize,

@@ -13,7 +13,7 @@ pub struct Whole {
     pub columns: Vec<Column>,
     /// Samples of each, all of one length.
     pub samples: Vec<Vec<f64>>,
-    /// Time of each sample, s, where [`Whole::times`] says that they are stored; else empty.
+    /// Time of each sample, s, if [`Whole::times`] states that times are stored; else empty.
     pub stored: Vec<f64>,
     /// Where the times come from.
     pub times: Times,

@@ -33,9 +33,10 @@ impl Target {
     }
 }
 
-/// Writes `samples` samples, `dt` seconds apart; `next` appends those from .. to, one sample after the other. A number that is not
-/// finite (the format has none) repeats the one before it; the last frame is filled up with the last sample, and `SAMPLES` states
-/// where it ends. How many numbers were repeated.
+/// Writes `samples` samples, `dt` seconds apart, as an RPC III file. `next` appends the samples from .. to, one sample after the other.
+///
+/// A number that is not finite repeats the number before it, because the format has no such numbers. The last sample fills up the last
+/// frame, and `SAMPLES` states the end. Returns how many numbers were repeated.
 ///
 /// # Errors
 /// What `out` says.

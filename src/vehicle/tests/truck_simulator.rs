@@ -1,4 +1,4 @@
-//! A three-axle truck simulated by means of its own: shares no code with the vehicle models.
+//! Independent simulation of a three-axle truck: shares no code with the vehicle models.
 //!
 //! Rigid body with heave, pitch and roll; beam axles with heave and roll, the rear two hung from the frame near a common trunnion;
 //! springs inboard of the wheels with friction that has a memory (Dahl); tyres that can only push; a road of random waves, left and

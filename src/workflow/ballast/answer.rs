@@ -1,4 +1,4 @@
-//! The answer of `ballast`, and what is to be said of it.
+//! The answer of `ballast` and its findings.
 
 use super::completed::MassCards;
 use super::task::{CompletedDeck, DECK, Task, force, length, mass};
@@ -18,11 +18,11 @@ pub struct Ballasted {
     pub masses: Vec<HungMass>,
     /// Reactions by wheel.
     pub reactions: Vec<Reaction>,
-    /// The run whose reactions are met.
+    /// Run whose measured reactions the completed model reproduces.
     pub run: String,
-    /// How many of the numbers the reactions fix.
+    /// Number of unknowns that the reactions determine.
     pub numbers_fixed: usize,
-    /// How many were asked for: three a mass.
+    /// Number of unknowns: three for each mass.
     pub numbers_asked: usize,
     /// All masses together, from statics alone.
     pub together: Together,

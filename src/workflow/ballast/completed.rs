@@ -1,4 +1,4 @@
-//! The completed deck: cards of the masses, and its reactions solved anew.
+//! The completed deck: cards of the masses, and the reactions of a new solution.
 
 use super::task::{DECK, Task};
 use crate::fe::floor::solve_standing;
@@ -77,7 +77,7 @@ pub(super) fn cards(
     (ids, text)
 }
 
-/// Reactions of the completed deck, read back and solved anew.
+/// Reads the completed deck back, solves it again and returns its reactions.
 pub(super) fn after(
     work: &mut Work,
     task: &Task,

@@ -145,7 +145,7 @@ fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
     Ok(read)
 }
 
-/// Weight of one mass at most, in job units: as the job says, else all that the model lacks.
+/// Returns the largest weight of one mass, in job units: `max_mass` of the job, or else the total weight that the model lacks.
 fn largest(task: &Task, run: &str, lacking: f64) -> Result<f64, Faults> {
     let (job, ballast) = (task.job, task.ballast);
     let largest = ballast

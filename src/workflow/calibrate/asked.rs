@@ -80,8 +80,8 @@ fn asked_rows(
     out
 }
 
-/// Rows of the check runs: those of `[calibration] check`, and those that say so in the column `check` of the runs file. A fault for each that is
-/// among the rows `asked` to calibrate with.
+/// Returns the rows of the check runs: those listed in `[calibration] check`, and those with true in the column `check` of the runs file. Adds a
+/// fault for each check run among the rows `asked` to calibrate with.
 fn check_rows(
     (job, headers): (&Job, &[Column]),
     (table, key): (&Table, usize),

@@ -95,7 +95,7 @@ impl<'a> Sites<'a> {
             .collect()
     }
 
-    /// Change of the row of a gauge per unit of length that it moves along a way; `None` where the surface or its strain doesn't tell.
+    /// Returns the change of a gauge's row per unit of movement along `way`; `None` if the surface or its strain does not determine it.
     fn slope(&self, gauge: usize, way: fn(f64) -> Offset, step: f64) -> Option<Vec<f64>> {
         let drawn = self.gauges.get(gauge)?.as_ref()?;
         drawn.slope(way, step, |g| self.row_of(g))
@@ -209,7 +209,7 @@ pub(super) fn summary(glued: &AsGlued) -> AsGluedSummary {
     }
 }
 
-/// A note on what the runs don't tell of the gauges; `None` where they tell everything.
+/// Returns a note on positions, angles and gains that the runs do not determine; `None` if the runs determine all of them.
 pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
     type Size = fn(&AsGluedSummary) -> Option<GlueSummary>;
     let sizes: [(&str, Size); 4] = [

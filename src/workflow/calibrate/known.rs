@@ -19,7 +19,7 @@ use crate::units::{Quantity, Unit, factor, number};
 /// Prior sd of a load that a run leaves unknown, in units of the largest known load of its kind: nothing is known of it.
 const UNKNOWN: f64 = 10.0;
 
-/// A run that teaches.
+/// Run with known loads.
 pub(super) struct Known {
     /// Row of the strain table.
     pub row: usize,
@@ -222,7 +222,7 @@ fn without_strain(
     })
 }
 
-/// The finding on runs of which some loads are known and others neither by themselves nor in a sum: they teach nothing.
+/// Returns the finding on runs with some known loads and other loads that are unknown both alone and in a sum. Such runs are left out.
 fn partly_known(file: &str, runs: &[&String]) -> Option<Finding> {
     let first = runs.first()?;
     let others = match runs.len() - 1 {
@@ -240,7 +240,7 @@ fn partly_known(file: &str, runs: &[&String]) -> Option<Finding> {
     ))
 }
 
-/// The fault of a file with no run that teaches.
+/// Returns the fault of a file without a calibration run.
 fn nothing_known(table: &Table, loads: &[Load]) -> Fault {
     let names: Vec<&str> = loads.iter().map(|l| l.name.as_str()).collect();
     Fault::of(
@@ -254,7 +254,7 @@ fn nothing_known(table: &Table, loads: &[Load]) -> Fault {
     )
 }
 
-/// A fault for every run whose name stood before.
+/// Returns a fault for every run whose name is in an earlier row too.
 fn named_twice(table: &Table, key: usize) -> FaultList {
     let name_of = |row: &(u32, Vec<String>)| row.1.get(key).cloned().unwrap_or_default();
     let rows = table.rows.iter().enumerate();

@@ -152,8 +152,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
     }
 }
 
-/// Reads what [`calibrate`] learns from, as far as no model is solved for it, and drops it: of a job that is to be calibrated, as its section says
-/// or as nothing else can be done with it.
+/// Reads the data that [`calibrate`] uses, as far as that needs no solution of a model, and discards it. This applies to a job with `[calibration]`,
+/// and to a job that only `calibrate` can use.
 ///
 /// # Errors
 /// Every fault of these files.
@@ -184,7 +184,7 @@ fn strain_of_runs(work: &mut Work, job: &Job, measured: &Measured) -> Result<Zer
     Ok(zeroed)
 }
 
-/// Known loads, and the strain of all rows by gauge of `s`, judged.
+/// Reads the known loads, and the strain of all rows by gauge of `s`, and tests the readings.
 ///
 /// # Errors
 /// Faults of the files; no reading at all.

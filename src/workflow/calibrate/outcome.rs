@@ -61,7 +61,7 @@ impl Answer for Calibrated {
 /// `calibration` of `result.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CalibrationSummary {
-    /// Runs that taught.
+    /// Number of calibration runs.
     pub runs: usize,
     /// `model` or `none`.
     pub prior: &'static str,
@@ -91,7 +91,7 @@ pub struct CalibrationSummary {
     pub next_run: Option<NextRunSummary>,
     /// Relative error of the model as the runs show it.
     pub model_error: Option<ModelErrorSummary>,
-    /// Left-out runs: what the others say of their loads.
+    /// Left-out runs with their loads predicted from the other runs.
     pub left_out: Vec<LeftOutSummary>,
     /// Runs that were not used because they contradict the others.
     pub refused: Vec<String>,
@@ -112,12 +112,12 @@ pub struct CalibratedGauge {
     pub scale: f64,
     /// `none`, `gain`, `angle`, `place`, `sign`, `dead`, `exchanged`, `undetermined`.
     pub looks_like: &'static str,
-    /// Where it sits, as the runs say; null where `[calibration]` states no tolerance.
+    /// Installed position and gain from the runs; null if `[calibration]` states no tolerance.
     pub as_glued: Option<AsGluedSummary>,
 }
 
-/// How a gauge was glued: off its drawing along and across its axis (job units), turned (degrees, right-handed about the element's
-/// normal); null where no tolerance is stated.
+/// Offset of a gauge from its nominal position along and across its axis (job units), and its rotation (degrees, right-handed about the element's
+/// normal). A value is null if no tolerance is stated.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[allow(missing_docs)]
 pub struct AsGluedSummary {
@@ -128,14 +128,14 @@ pub struct AsGluedSummary {
     pub gain: GlueSummary,
 }
 
-/// One size of it.
+/// Offset, rotation or gain with its uncertainty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GlueSummary {
     /// Posterior mean.
     pub value: f64,
     /// 1 sd.
     pub sigma: f64,
-    /// Whether the runs tell it: at least half of the stated variance is gone.
+    /// Whether the runs determine the value: they remove at least half of the stated variance.
     pub told: bool,
 }
 
@@ -228,7 +228,7 @@ pub struct DependenceSummary {
     pub slope_rel: f64,
     /// Standard deviation of the slope.
     pub sigma: f64,
-    /// Chance of such a slope where there is none.
+    /// Probability of a slope of this size if the scale does not depend on the column.
     pub chance: f64,
     /// Degrees of freedom behind `sigma`.
     pub dof: f64,
@@ -239,7 +239,7 @@ pub struct DependenceSummary {
 pub struct LackOfFitSummary {
     /// `common zero`, `squares`, `products`.
     pub test: &'static str,
-    /// Chance of a term at least as clear where there is none, over all gauges and terms of the kind.
+    /// Probability of a term of at least this significance if the strain has no such term, over all gauges and terms of the kind.
     pub p: f64,
 }
 

@@ -115,7 +115,7 @@ pub(super) fn add_columns(
     }))
 }
 
-/// Adds a column of numbers, blank where there is none.
+/// Adds a column of numbers, blank for a missing value.
 fn push(
     table: &mut Table,
     headers: &mut Vec<Column>,

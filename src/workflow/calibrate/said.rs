@@ -89,7 +89,8 @@ fn largest(task: &Task, l: usize) -> f64 {
     known.fold(0.0, f64::max)
 }
 
-/// A load that by the runs makes far less strain than others of its unit, and still strain that is read, where there is no model that says so too.
+/// Returns a finding on a load that makes far less strain in the runs than another load of its unit, although this strain exceeds the noise. Returns
+/// `None` for a job with a model.
 pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Option<Finding> {
     if task.model.is_some() {
         return None;

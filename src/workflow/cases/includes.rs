@@ -1,7 +1,7 @@
 //! INCLUDE statements of a deck that is written to another folder.
 //!
-//! Files that change, and files whose own INCLUDEs are relative, are written beside the new deck; every INCLUDE in them names the file
-//! it named before, by a path from there. All others stay where they are.
+//! Files that change, and files with relative INCLUDEs, are written into the folder of the new deck. Every INCLUDE in them names the same file as
+//! before, by a path from that folder. All other files remain in their folders.
 
 use nastran::bdf::Deck;
 use std::path::{Component, Path, PathBuf};

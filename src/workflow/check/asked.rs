@@ -46,8 +46,8 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
     }
 }
 
-/// Whether a job is one for `recover`. What is weighed, reconciled or taught has strain that its loads alone don't explain, and what is studied
-/// may be gauges that don't tell the loads.
+/// Returns whether a job is meant for `recover`. Jobs for weighing, reconciliation or calibration have strain that the loads alone don't explain. A
+/// study may test gauges that don't determine the loads.
 pub(super) fn recovers(job: &Job) -> bool {
     let taught = job.calibration.line == 0 || has_covariance(job);
     let others = job.reconcile.is_some() || job.payload.is_some() || job.vehicle.is_some();
@@ -62,7 +62,7 @@ fn most_grids(job: &Job) -> usize {
     }
 }
 
-/// Says what was left to the commands.
+/// Returns the finding that the deck is not solved, with the checks that only the commands make.
 fn not_asked(job: &Job, grids: usize) -> Finding {
     let readings = match job.measured {
         Some(_) => " and what the readings come to",

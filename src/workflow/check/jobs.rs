@@ -205,7 +205,7 @@ fn files(work: &mut Work, job: &Job, found: &mut Checked, into: Look) {
     }
 }
 
-/// Files beside model, measured strain, runs and gauges.
+/// Returns the files that a job names, other than model, measured strain, runs and gauges.
 fn other_files(job: &Job) -> Vec<&NamedFile> {
     let mut out: Vec<&NamedFile> = Vec::new();
     if let Some(s) = &job.sensitivity {

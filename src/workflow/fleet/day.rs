@@ -107,7 +107,8 @@ pub struct Day {
 }
 
 impl Day {
-    /// Time of the samples that give a load of it, hours: where the gauges that read tell some of the loads alone, it is less than that of the day.
+    /// Returns the duration of the samples that determine a load, hours. It is shorter than the day if the active gauges determine only some of the
+    /// loads.
     pub fn hours_of(&self, load: &LoadDay) -> f64 {
         let known = |l: &LoadDay| l.tally.samples.saturating_sub(l.tally.missing) as f64;
         let most = self.loads.iter().map(known).fold(0.0, f64::max);
@@ -115,7 +116,7 @@ impl Day {
         self.hours * share
     }
 
-    /// Whether the loads don't explain its strain: what they are, and what damage they do, can't be relied on.
+    /// Returns whether the loads fail to explain the strain of the day. Its loads and their damage are then unreliable.
     pub fn is_doubtful(&self) -> bool {
         self.findings.iter().any(|f| f.code == UNEXPLAINED)
     }

@@ -45,10 +45,10 @@ struct Date {
 }
 
 impl DayOrder {
-    /// The order of days with these names.
+    /// Returns the order of days with these names.
     ///
     /// # Errors
-    /// Dates whose day and month could be exchanged, where that would change their order, or contradict each other; dates beside names that are none.
+    /// Dates whose day and month could be exchanged with a change of order; dates that contradict each other; a mix of dates and other names.
     pub fn of<'a>(names: impl Iterator<Item = &'a str>) -> Result<Self, Unordered> {
         let names: BTreeSet<&str> = names.collect();
         let dates: Vec<(&str, Option<Date>)> = names.iter().map(|n| (*n, date(n))).collect();

@@ -1,4 +1,4 @@
-//! Gauges that are dead in a part of a record: their readings are left out there, and their days say so.
+//! Gauges that are dead or stuck in a part of a record. Their readings are left out there, and the results of their days list these parts.
 
 use super::day::GaugeDay;
 use super::judged::Judged;

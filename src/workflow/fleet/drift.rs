@@ -1,4 +1,4 @@
-//! `zero_drift`: a gauge whose zero moves over the days of a vehicle, by the words of `reconcile`.
+//! `zero_drift`: a gauge whose zero moves over the days of a vehicle, named as in `reconcile`.
 
 use super::gauge_history::GaugeHistory;
 use super::outcome::VehicleAnswer;
@@ -7,7 +7,7 @@ use crate::finding::{Finding, Severity};
 use crate::recovery::{ALARM, ErrorModel};
 use crate::units::MICROSTRAIN;
 
-/// Days from which a trend is told from scatter: a line through fewer has no scatter to speak of.
+/// Smallest number of days for a trend. The scatter about a line through fewer days can't be estimated well enough.
 const DAYS: usize = 5;
 /// Sigmas of the model's error by which the loads of a day may move the mean of a right gauge.
 const OF_MODEL: f64 = 3.0;
@@ -66,8 +66,8 @@ fn trend(g: &GaugeHistory, v: &VehicleAnswer, errors: &ErrorModel) -> Option<Tre
     })
 }
 
-/// The gauge of a vehicle whose zero moves most, where one does. A gain that changed moves the means of all gauges with the loads' mean: where one
-/// did, that is told alone.
+/// Returns the finding on the gauge of a vehicle whose zero moves most; `None` if no zero moves. A changed gain shifts the means of all gauges with
+/// the mean loads. A vehicle with a changed gain therefore gets the finding on the gain only.
 pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
     if v.gain_changes().next().is_some() {
         return None;

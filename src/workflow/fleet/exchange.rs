@@ -40,11 +40,11 @@ impl Exchange {
     }
 }
 
-/// The pair of gauges whose readings must be exchanged for the loads to explain all; `noise` is that of a reading, strain.
+/// Returns the pair of gauges whose readings must be exchanged for the loads to explain all readings; `noise` is the noise of a reading, strain.
 ///
 /// With `P = I - U U'`, U an orthonormal basis of the columns of S, and `M = sum of y y'` over the samples, the squares of the residuals sum to
-/// `tr(P M)`. Exchanged readings have M with rows and columns exchanged; leaving out the gauges a and b takes `tr(P_ab^-1 (P M P)_ab)` from it.
-/// `None` where no pair does, or more than one, or gauges are too few to tell.
+/// `tr(P M)`. Exchanged readings have M with rows and columns exchanged. Without the gauges a and b the sum is less by `tr(P_ab^-1 (P M P)_ab)`.
+/// Returns `None` if no pair or more than one pair explains the readings, or if the gauges are too few.
 pub(super) fn exchanged<'a>(
     s: &Sensitivity,
     samples: impl Iterator<Item = &'a [f64]>,

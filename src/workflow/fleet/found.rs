@@ -1,4 +1,4 @@
-//! Findings of single records, one for all records of a vehicle that say the same of the same subject.
+//! Findings of single records, merged over all records of a vehicle with the same code and subject.
 
 use super::day::FileHead;
 use super::days::DayOrder;
@@ -9,15 +9,15 @@ use crate::recovery::{ALARM, GAUGE_SUSPECT, UNEXPLAINED};
 use statrs::distribution::{Binomial, DiscreteCDF};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Said of a right record with a chance of [`ALARM`], and less.
+/// Codes of findings that a correct record gets with a probability of at most [`ALARM`].
 const BY_CHANCE: [&str; 2] = [GAUGE_SUSPECT, "residual-above-stated-errors"];
-/// Said of a vehicle that stands still all day too: told where most of its records say so.
+/// Codes of findings that a vehicle gets after a day at standstill, too. They are reported if more than half of its records have them.
 const OF_STANDING: [&str; 3] = [
     "load-far-below-expected",
     "loads-not-determined",
     "readings-below-noise",
 ];
-/// Said of what all vehicles have in common: logger, number of gauges, stated errors, sizes of loads.
+/// Codes of findings whose cause all vehicles share: logger, number of gauges, stated errors, sizes of loads.
 const OF_ALL: [&str; 7] = [
     "gauge-without-strain",
     "load-beyond-expected",
@@ -28,21 +28,21 @@ const OF_ALL: [&str; 7] = [
     "samples-with-gaps",
 ];
 
-/// Records that say the same.
+/// Records with the same finding.
 struct Alike<'a> {
     n: usize,
-    /// Whether one of them holds strain that is beyond doubt not explained.
+    /// Whether at least one of the records certainly contains strain that the loads do not explain.
     certain: bool,
-    /// The smallest chance that a right record says as much.
+    /// Smallest probability, over these records, that a correct record has such a finding.
     chance: f64,
     day: &'a str,
     path: &'a str,
     first: &'a Finding,
-    /// Vehicles whose records they are.
+    /// Vehicles of these records.
     vehicles: BTreeSet<&'a str>,
 }
 
-/// One finding for all records that say the same of the same subject; a vehicle each, but for what all have in common.
+/// Returns one finding for all records with the same code and subject: one for each vehicle, or one for the fleet if all vehicles share the cause.
 pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrder) -> Vec<Finding> {
     let mut records: BTreeMap<&str, usize> = BTreeMap::new();
     let mut grouped: BTreeMap<(&str, &str, &str), Alike> = BTreeMap::new();
@@ -92,8 +92,8 @@ pub(super) fn of_records(files: &[FileHead], status: &[Status], days_in: DayOrde
         .collect()
 }
 
-/// Whether so many of `of` records, out of `all` records of the fleet, say something of them. A fleet of right records gives an alarm with the
-/// same chance as one right record, however many vehicles it has.
+/// Returns whether a finding is reported that `alike.n` of `of` records have, out of `all` records of the fleet. A fleet of correct records gives an
+/// alarm with the same probability as one correct record, for any number of vehicles.
 fn is_told(alike: &Alike, of: usize, all: usize) -> bool {
     let is_of = |list: &[&str]| list.contains(&alike.first.code);
     if is_of(&BY_CHANCE) && !alike.certain {
@@ -106,7 +106,7 @@ fn is_told(alike: &Alike, of: usize, all: usize) -> bool {
     !is_of(&OF_STANDING) || 2 * alike.n > of
 }
 
-/// Chance that so many of `of` right records say what each says with a chance of [`ALARM`].
+/// Returns the probability that at least `n` of `of` correct records have a finding that each of them has with probability [`ALARM`].
 fn by_chance(n: usize, of: usize) -> f64 {
     if of == 1 {
         return ALARM;
@@ -115,7 +115,7 @@ fn by_chance(n: usize, of: usize) -> f64 {
     binomial.map_or(1.0, |b| b.sf(n.saturating_sub(1) as u64))
 }
 
-/// Returns the finding of records that say the same, with their number and the first of them.
+/// Returns the finding of records with the same code and subject, with their number and the first of them.
 fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Finding {
     let f = alike.first;
     let subject = [vehicle, subject].map(str::to_owned);
@@ -174,7 +174,7 @@ mod tests {
         assert!(!told(1, false, 1e-4, 365));
     }
 
-    /// The chance of an alarm over all vehicles of right records, by the counts that are told: at most that of one record.
+    /// Checks that correct records of all vehicles together cause an alarm with at most the probability for one correct record.
     #[test]
     fn a_fleet_of_right_vehicles_alarms_as_seldom_as_one() {
         for (vehicles, days) in [(1, 1), (1000, 1), (1000, 2), (1000, 20), (100, 365)] {

@@ -5,13 +5,13 @@ use crate::estimate::median;
 use crate::finding::{Finding, Severity};
 use serde::Serialize;
 
-/// A gauge is called dead on a day when it reads less than this many times what it read on its typical day.
+/// Factor on the reading of its typical day below which a gauge counts as dead on a day.
 const DEAD: f64 = 0.01;
-/// A vehicle moves on a day when most of its gauges read more than this many times what they read on their typical day; on others a gauge that reads
-/// little tells nothing.
+/// Factor on the readings of their typical days that most gauges exceed on a day when the vehicle moves. On other days a small reading is no sign of
+/// a fault.
 const MOVES: f64 = 0.1;
-/// From which a gain is another one: glue, wires and amplifiers of a sound gauge stay well within. A gauge with less than this share of what the
-/// others predict for it gives no signal.
+/// Smallest relative change of a gain that counts. Glue, wires and amplifiers of a sound gauge cause much less. A gauge with less than this share of
+/// the reading predicted from the other gauges gives no signal.
 const OFF: f64 = 0.1;
 /// Codes of findings that identify the cause in a record. Gains and zeros of that day are then invalid.
 const CAUSES: [&str; 3] = ["inputs-exchanged", "input-sign-reversed", "gauge-dead"];
@@ -140,7 +140,7 @@ impl GaugeHistory {
         Some(found.with_numbers(n as f64, 0.0))
     }
 
-    /// A gain that is far from what it was before, from one day on. Days that are `misread` say nothing of it: their cause has a name of its own.
+    /// Returns the change of the gain from one day on, if it is large. Days in `misread` are left out: another finding identifies their cause.
     pub(super) fn gain_change(
         &self,
         vehicle: &str,

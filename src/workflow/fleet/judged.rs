@@ -1,5 +1,5 @@
-//! Samples of a record by which recovery's own judge tells whether the loads explain its strain: some spread evenly over it, and those of each
-//! load's extremes, since a range to the power of the S-N slope comes from them and a single wrong sample makes one.
+//! Samples of a record on which recovery tests whether the loads explain the strain. Some are spread evenly over the record. Others are the extremes
+//! of each load: they determine the range to the power of the S-N slope, and a single wrong sample makes an extreme.
 
 use crate::finding::{Finding, Severity, few};
 use crate::recovery::{
@@ -8,9 +8,9 @@ use crate::recovery::{
 use crate::sensitivity::Sensitivity;
 use std::collections::BTreeMap;
 
-/// Samples that are judged: as many as recovery tries its gauges on, more say no more.
+/// Number of samples that are tested, equal to the number on which recovery tests its gauges. More samples give no more information.
 const JUDGED: usize = 200;
-/// Share of samples unlike the calibration, two at least, from which that is said of a record: of right ones one in a thousand is by chance.
+/// Smallest share of samples unlike the calibration (at least two samples) that is reported. One in a thousand correct samples is unlike by chance.
 const UNLIKE: f64 = 0.05;
 
 /// A sample at which a load is largest or smallest.

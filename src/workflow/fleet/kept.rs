@@ -104,7 +104,7 @@ pub fn digest(parts: &[&str]) -> String {
 /// SHA-256 by path, as `sha256sum` lists them: the digest, a blank, a blank or an asterisk, the path.
 ///
 /// # Errors
-/// The first line that is none.
+/// The first line without this form.
 pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
     let line = |(i, line): (usize, &str)| {
         // A name with a backslash is written with two, and a backslash before the digest says so.
@@ -130,8 +130,8 @@ impl KeptDays {
         }
     }
 
-    /// Where the result of a file is kept: by its name, the job and the version. What a file came to takes the place of what an earlier state of it
-    /// came to: a merge, which reads no record, could not tell which of two is that of today.
+    /// Returns the path of the stored result of a file, from its name, the job and the version. A new result replaces the result of an earlier state
+    /// of the file. A merge reads no records and could not determine which of two results is current.
     fn place(&self, name: &str) -> PathBuf {
         let version = concat!(env!("CARGO_PKG_VERSION"), " days");
         let key = digest(&[version, &FORM.to_string(), &self.job, name]);

@@ -32,9 +32,9 @@ use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 use std::ops::ControlFlow;
 
-/// Pieces of a record that are looked at beforehand.
+/// Number of pieces of a record that are sampled in advance.
 const LOOKED_AT: usize = 10;
-/// Samples of them that tell whether the vehicle moves.
+/// Number of samples of these pieces that suffice to determine whether the vehicle moves.
 const ENOUGH: usize = 200;
 
 /// Result of one pass over a record.
@@ -303,8 +303,8 @@ impl Kernel {
         })
     }
 
-    /// Takes columns that give one value for signals where the others don't say that the strain there changes, nor that it is another: the vehicle
-    /// stands, or is loaded so little that a coarse reading stays what it is.
+    /// Treats columns with a constant value as signals unless the other gauges show that the strain there changes or has another value. The vehicle
+    /// is then at standstill, or its load is too small to change a coarse reading.
     fn wake(&self, found: &[(usize, usize, [f64; 2])], sampled: &[f64], given: &mut [Gives]) {
         let n_gauges = self.sensitivity.gauges.len();
         let by_gauge = found.iter().zip(&*given);

@@ -81,11 +81,11 @@ pub struct VehicleLoad {
     pub damage: DamageInterval,
     /// Damage divided by the damage of the reference day, an hour of each.
     pub to_reference: Option<Ratio>,
-    /// Where the largest and the smallest value stand.
+    /// Samples with the largest and the smallest value.
     pub extremes: [Option<SampleOf>; 2],
-    /// Damage of each day by itself, in their order.
+    /// Damage of each day counted alone, in the order of the days.
     pub by_day: Vec<f64>,
-    /// Share of the damage that days whose loads can't be relied on make: what is less without them.
+    /// Relative decrease of the damage if days with unreliable loads are left out.
     pub doubtful_share: f64,
 }
 
@@ -178,7 +178,7 @@ fn errors(days: &[(&FileHead, &Day, &LoadDay)], first: &LoadDay) -> LoadDay {
     }
 }
 
-/// Share by which damage is less without some days; they may close no cycle by themselves and widen those of others.
+/// Returns the relative decrease of the damage without some days. Such days may close no cycle alone and still widen the cycles of other days.
 fn share_without(all: f64, without: f64) -> f64 {
     match all > 0.0 {
         true => (1.0 - without / all).clamp(0.0, 1.0),
@@ -186,7 +186,7 @@ fn share_without(all: f64, without: f64) -> f64 {
     }
 }
 
-/// Where the largest (smallest) value of a load stands: of equal ones, the first.
+/// Returns the sample with the largest (smallest) value of a load; of equal values the first.
 fn extreme(days: &[(&FileHead, &Day, &LoadDay)], larger: bool) -> Option<SampleOf> {
     let of = |t: &Tally| if larger { t.max } else { t.min };
     let found = days

@@ -209,7 +209,7 @@ fn merged(
     })
 }
 
-/// A digest of what a record of the job depends on beside its bytes: what the job says of single records, and every other file read so far.
+/// Returns a digest of all inputs of a record except its bytes: the job's keys for single records, and every other file read so far.
 fn job_digest(work: &mut Work, job: &Job, keys: &FleetKeys) -> String {
     let read = work.inputs.files_read();
     let others = read.iter().filter(|f| f.path != Path::new(&job.file));
@@ -326,7 +326,8 @@ fn done(
     Ok((files, reused))
 }
 
-/// Whether a file is in the state in which it was done, as far as can be told without reading it; one that is out of reach is taken to be.
+/// Returns whether the stamp of a file is unchanged since its result was computed. The file is not read. A file that is out of reach counts as
+/// unchanged.
 fn is_as_then(source: &dyn Files, before: &FileHead) -> bool {
     match source.stamp(Path::new(&before.path)) {
         Ok(now) => before.stamp == Some(now),
@@ -334,14 +335,14 @@ fn is_as_then(source: &dyn Files, before: &FileHead) -> bool {
     }
 }
 
-/// Whether a result was kept, or is new, or stands in place of that of other bytes under the same path.
+/// Origin of a result: stored earlier, new, or new in place of the result of other bytes under the same path.
 enum Came {
     Kept,
     New,
     Replacing,
 }
 
-/// That results were replaced: of a record that was written anew, or of another that has the same path from another folder.
+/// Returns the finding that results were replaced: a record was written again, or a record of another folder has the same path.
 fn told_replaced(paths: &[String]) -> Option<Finding> {
     let n = paths.len();
     (n > 0).then(|| {

@@ -8,21 +8,21 @@ use crate::finding::{Finding, Severity, few};
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 
-/// From which factor. Of the factors that are mixed up (quarter, half and full bridge, Poisson's 1 + nu, steps of gain) the least is 1.3; temperature
-/// changes the noise of amplifiers by some per cent.
+/// Smallest factor that is reported. Of the factors that are mixed up (quarter, half and full bridge, Poisson's 1 + nu, steps of gain) the smallest
+/// is 1.3. Temperature changes the noise of amplifiers by some per cent.
 const FROM: f64 = 1.25;
-/// How far the factor of a gauge may be from that of the others: second differences of a thousand readings tell white noise to 3 %.
+/// Largest ratio of a gauge's factor to the median factor: second differences of a thousand readings determine white noise to 3 %.
 const ALIKE: f64 = 1.06;
-/// Share of the gauges that have the factor: others may be dead or exchanged on that day.
+/// Smallest share of the gauges with the common factor. Other gauges may be dead or exchanged on that day.
 const SHARE: f64 = 0.75;
-/// Fewer gauges are alike by chance.
+/// Smallest number of gauges with the common factor. Fewer gauges agree by chance.
 const GAUGES: usize = 4;
-/// Days with noise from which one is told from the others.
+/// Smallest number of days with noise, the day with another scale included.
 const DAYS: usize = 4;
-/// How many times the stated noise that of other days may be, or the other way round: beyond, it is vibration, which rough roads raise in all
-/// gauges.
+/// Largest ratio of the usual noise to the stated noise, or of the stated to the usual noise. Larger noise is vibration, which rough roads raise in
+/// all gauges.
 const OF_STATED: f64 = 1.5;
-/// How many times the scatter of the readings may change otherwise: what a vehicle does changes it.
+/// Largest ratio between the changes of scatter and noise on a day. The manoeuvres of a vehicle change its scatter.
 const DRIVEN: f64 = 2.0;
 
 /// By gauge and day the natural log of a number over its median; `None` where one of them is missing.

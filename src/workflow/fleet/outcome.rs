@@ -87,19 +87,19 @@ pub struct VehicleAnswer {
     pub name: String,
     /// How many files count.
     pub files: usize,
-    /// Their days, in order.
+    /// Days of the vehicle, in order.
     pub days: Vec<String>,
-    /// Their records, in order: what the numbers of each day come from.
+    /// Records of these days, in order: the source of each day's numbers.
     pub records: Vec<RecordOf>,
-    /// Hours of them.
+    /// Duration of these days, hours.
     pub hours: f64,
     /// Loads, in the order of the job.
     pub loads: Vec<VehicleLoadAnswer>,
-    /// Days whose loads can't be relied on, as findings of their records say: they count, and are no better for it.
+    /// Days with unreliable loads according to the findings of their records. Their damage is included in the sums.
     pub doubtful_days: Vec<String>,
     /// Gauges.
     pub gauges: Vec<GaugeHistory>,
-    /// Whether the record of a day names a cause that makes gains and zeros of that day what they are not.
+    /// Whether a finding on the record of a day identifies a cause that makes gains and zeros of that day invalid, by day.
     #[serde(skip)]
     pub misread: Vec<bool>,
 }
@@ -213,8 +213,8 @@ impl VehicleAnswer {
         }
     }
 
-    /// Gains that are other ones from some day on. A gauge whose gain changes draws along what the others say of each other: of those that change on
-    /// one day the one that changes most is told.
+    /// Returns the findings on gains that change from some day on. A changed gain of one gauge also changes the predictions for other gauges. Of the
+    /// gauges that change on one day, only the one with the largest change is reported.
     pub(super) fn gain_changes(&self) -> impl Iterator<Item = Finding> {
         let mut largest: BTreeMap<usize, GainChange> = BTreeMap::new();
         for g in &self.gauges {
@@ -229,7 +229,7 @@ impl VehicleAnswer {
         largest.into_values().map(|c| c.finding)
     }
 
-    /// Sets the damage of each relative to that of all.
+    /// Sets the damage per hour of each vehicle relative to the damage per hour of all vehicles, by load.
     pub(super) fn compare(all: &mut [Self]) {
         let mut sums: BTreeMap<String, [f64; 2]> = BTreeMap::new();
         for l in all.iter().flat_map(|v| &v.loads) {
@@ -427,7 +427,7 @@ fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
     })
 }
 
-/// Says which share of a vehicle's damage days did whose loads can't be relied on.
+/// Returns the finding with the share of a vehicle's damage that comes from days with unreliable loads.
 fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
     let first = v.doubtful_days.first()?;
     let share = |l: &VehicleLoadAnswer| format!("{} {:.1} %", l.load, 100.0 * l.doubtful_share);

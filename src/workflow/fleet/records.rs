@@ -31,7 +31,7 @@ pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
 /// `[0-9]`, `**` for any folders) those that match. A path that exists is taken as it is, whatever signs are in it.
 ///
 /// # Errors
-/// A fault for each folder without such a file, pattern that nothing matches or that is none, and folder that can't be read.
+/// A fault for each folder without such a file, each invalid pattern or pattern without a match, and each folder that can't be read.
 pub fn records_of(asked: &[PathBuf], form: &NameForm) -> Result<Vec<PathBuf>, Faults> {
     let mut found = BTreeSet::new();
     let mut faults = Vec::new();

@@ -14,18 +14,18 @@ use std::collections::BTreeMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Samples gone through together: their strain stays in the nearest cache. The thinned residuals of [`Health`] begin anew with each.
+/// Number of samples in a batch, whose strain stays in the nearest cache. The thinned residuals of [`Health`] restart with each batch.
 const NEAR: usize = 128;
 
-/// How many records are being recovered at the moment.
+/// Number of records in recovery at the moment.
 #[derive(Default)]
 pub(super) struct UnderWay(AtomicUsize);
 
-/// One of them, until it is dropped.
+/// One record in recovery, counted until it is dropped.
 pub(super) struct Here<'a>(&'a AtomicUsize);
 
 impl UnderWay {
-    /// One more.
+    /// Counts one more record.
     pub fn begin(&self) -> Here<'_> {
         self.0.fetch_add(1, Ordering::Relaxed);
         Here(&self.0)

@@ -6,9 +6,9 @@ use crate::recovery::history::Filter;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Sets of gauges that are weighed, the most frequent first: what is left are a few samples each.
+/// Largest number of gauge sets in the mean, the most frequent first. Each further set has only a few samples.
 const SETS: usize = 16;
-/// A load so large that noise is nothing beside it.
+/// Factor on the size of a load that makes noise negligible.
 const FAR: f64 = 1e6;
 
 /// Standard deviation of the noise in a sample, by load, report unit: root mean square over the record, dead parts of gauges by the gauges left.

@@ -6,10 +6,10 @@ use crate::strain_chain::deck::DeckModel;
 use nastran::bdf::Named;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Grids proposed at most where no card says where loads enter.
+/// Largest number of grids that are proposed if no card indicates where loads enter.
 const MOST_FAR: usize = 4;
 
-/// How much says that a load enters at a point, the most first.
+/// Strength of the indication that a load enters at a point, the strongest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Rank {
     /// A wheel or hub by its name, or a mass at the end of an axle.

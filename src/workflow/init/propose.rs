@@ -223,7 +223,8 @@ fn of_load_sets(
     (loads, others.into_iter().map(left_out).collect())
 }
 
-/// A load of its own at each point: at wheels, else at hubs, else at grids of the mesh. The others are left out, to be chosen from.
+/// Returns a proposal for each rank of points: wheels, hubs, grids of the mesh. A proposal has one load at each point of its rank. All other points
+/// are in its left-out loads, from which the user can choose.
 fn at_points(deck: &DeckModel, system: Option<UnitSystem>) -> Vec<Proposal> {
     let (expected, expected_is) = typical(system, Quantity::Force);
     let load = |p: &LoadPoint| ProposedLoad {

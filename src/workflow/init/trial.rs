@@ -44,7 +44,8 @@ impl Verdict {
     }
 }
 
-/// The first of the proposals that `place` answers without an error of its own, even if with doubts that it will tell; else the first.
+/// Returns the verdict on the first proposal that `place` answers without error, with or without warnings. Without such a proposal it returns the
+/// first one.
 pub(super) fn first_that_places(cx: &Context, plan: &JobPlan, proposals: &[Proposal]) -> Verdict {
     if plan.deck.model.grids.len() > MOST_GRIDS {
         return Verdict {

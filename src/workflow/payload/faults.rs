@@ -47,7 +47,7 @@ pub(super) fn search(
     }));
 }
 
-/// Returns the finding on readings that say a payload below zero in every run.
+/// Returns the finding on readings that give a payload below zero in every run.
 fn all_reversed(weighing: &Weighing) -> Option<Finding> {
     let negative = |r: &Option<Refusal>| matches!(r, Some(Refusal::Negative { .. }));
     let told = weighing.runs.iter().map(|r| &r.refused);

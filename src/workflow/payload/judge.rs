@@ -1,4 +1,4 @@
-//! Findings of `payload`: refusals, wheels that lift off, places that can't be told, gauges that are not used.
+//! Findings of `payload`: refusals, wheels that lift off, undetermined places, gauges that are not used.
 
 use super::model::Parts;
 use super::stated::REFUTED;
@@ -13,10 +13,10 @@ use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
 
-/// A share of the weight that an interval leaves open from which the answer says little.
+/// Width of the 95 % interval, as a share of the payload, above which the answer is too uncertain.
 const VAGUE: f64 = 0.5;
 
-/// A refusal in plain words.
+/// Returns the reason of a refusal as text.
 pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
     let unit = task.job.report_units.force.name;
     match refusal {
@@ -98,7 +98,7 @@ fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &W
     }
 }
 
-/// A free place that the readings don't tell.
+/// Adds a warning if the readings do not determine a free place.
 fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
     let (axes, _) = r.ellipse();
     let room = spec.region.map_or(f64::INFINITY, |v| {
@@ -164,7 +164,7 @@ fn elsewhere(
     }
 }
 
-/// Readings that can't be strain in the unit they are taken for, judged as `recover` does; the impossible ones become no reading.
+/// Tests, as `recover` does, whether readings can be strain in their stated unit. Impossible readings become missing readings.
 pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [PayloadRun]) {
     let (Some(measured), Some(prepared)) = (&task.job.measured, &parts.prepared) else {
         return;

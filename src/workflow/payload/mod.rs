@@ -1,4 +1,4 @@
-//! `payload`: mass and, where it can be told, position of a payload, from strain, from wheel forces, or from both.
+//! `payload`: mass of a payload, and its position if the data determine it, from strain, from wheel forces, or from both.
 
 mod answer;
 mod calibrated;

@@ -152,10 +152,10 @@ pub(super) fn runs_of(
     Ok(Readings { runs: out, net })
 }
 
-/// Whether the runs file speaks of the runs that were read: of some of them, and of the place of all or of none of them.
+/// Checks that the runs file has a row for at least one run of the strain file. Adds a warning if it gives a known place for only some of the runs.
 ///
 /// # Errors
-/// A runs file of other runs.
+/// A runs file without a row for any run of the strain file.
 fn same_runs(
     work: &mut Work,
     task: &Task,
@@ -248,7 +248,7 @@ fn shifts_and_reactions(
     without
 }
 
-/// Whether the wheel forces count as evidence; says so where they don't.
+/// Returns whether the wheel forces count as evidence. Adds a finding if strain is used instead, or if their noise is assumed.
 fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
     let Some(runs) = &task.job.runs else {
         return false;
@@ -298,7 +298,7 @@ fn no_unloaded_run(task: &Task, file: &str, name: &str) -> Faults {
     ))
 }
 
-/// Net strain of every run by gauge of the model; says which gauges are too weak.
+/// Returns the net strain of every run by gauge of the model. Adds a finding on gauges that are too weak.
 fn strain(
     work: &mut Work,
     task: &Task,

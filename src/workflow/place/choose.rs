@@ -64,10 +64,10 @@ pub(super) fn is_plain(task: &Task) -> bool {
         && p.budget.is_none()
 }
 
-/// Chooses; where the loads can't be separated, with the loads taken as known to their expected size, which a finding says.
+/// Chooses gauges. If these can't separate the loads, chooses again with the loads known to their expected size, and adds a finding.
 ///
 /// # Errors
-/// Where nothing fits.
+/// No layout fits the job.
 pub(super) fn choose(
     work: &mut Work,
     task: &Task,
@@ -91,13 +91,13 @@ pub(super) fn choose(
     })
 }
 
-/// Why there is no choice.
+/// Reason of a refused choice.
 pub(super) enum Refused {
     By(PlaceError),
     Job(Fault),
 }
 
-/// Chooses as the spec says.
+/// Chooses gauges by the spec.
 pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
     if is_plain(task)
         && let [kind] = kinds
@@ -166,8 +166,8 @@ fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) 
     Some(found.least)
 }
 
-/// Puts other gauges in the place of the best ones by D; the certificate then says how much of the largest determinant is left. `None` where
-/// they don't tell the loads apart, and nothing is changed.
+/// Replaces the gauges of the D-optimal layout by `gauges`. The certificate then gives the remaining share of the largest determinant. Returns
+/// `None`, without a change, if `gauges` do not separate the loads.
 fn put_instead(kind: &Kind, spec: &Spec, layout: &mut Layout, gauges: Vec<Choice>) -> Option<()> {
     let log_det = value(&kind.candidates, spec, &gauges)?;
     let k = kind.candidates.n_loads() as f64;

@@ -36,11 +36,11 @@ fn covariance_in_job_order(covariance: &[f64], order: &[usize]) -> Vec<f64> {
     out
 }
 
-/// Covariance that `recover` states for loads of their expected size `e`, before any widening, in shares of `e` and job order, `k x k` by rows:
-/// `(P + A' W^-1 A)^-1 + u^2 I`, with `A` the strain of the gauges under the loads of size `e`, `W` the covariance of their
-/// readings (`noise^2 + u^2 a_g'a_g` for gauge `g` of the model), `u` the model uncertainty, `P` what is known of loads beforehand. Tolerances
-/// of gluing have no part in it. `prior` is `P`; `rows` are those of `W^-1/2 A` in the candidates' order; `u` is 0 where no gauge is the
-/// model's. `None` where the gauges do not tell the loads.
+/// Returns the covariance that `recover` states for loads of their expected size `e`, before any widening: `(P + A' W^-1 A)^-1 + u^2 I`. It is in
+/// shares of `e` and job order, `k x k` by rows. `A` is the strain of the gauges under the loads of size `e`. `W` is the covariance of their readings
+/// (`noise^2 + u^2 a_g'a_g` for gauge `g` of the model), `u` the model uncertainty, `P` the prior precision of the loads. Tolerances of gluing are
+/// not included. `prior` is `P`; `rows` are the rows of `W^-1/2 A` in the candidates' order; `u` is 0 if no gauge is the model's. Returns `None` if
+/// the gauges do not determine the loads.
 pub(super) fn as_recovered(
     task: &Task,
     prior: &[f64],
@@ -73,7 +73,7 @@ pub(super) fn terms_listed(listed: &Listed, k: usize) -> Vec<Vec<(usize, f64)>> 
     own.chain(listed.sums.iter().cloned()).collect()
 }
 
-/// [`as_recovered`] of chosen channels beside the gauges that stay.
+/// Returns [`as_recovered`] for the chosen channels together with the gauges that stay.
 pub(super) fn chosen_as_recovered(
     task: &Task,
     spec: &Spec,

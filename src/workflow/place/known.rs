@@ -28,12 +28,12 @@ pub(super) fn given(work: &mut Work, job: &Job) -> Result<Option<Sensitivity>, F
 pub(super) struct Rows {
     /// Strain of loads of expected size, microstrain.
     pub strain: Vec<Vec<f64>>,
-    /// `W^-1/2` times these, with `W` the covariance of readings: independent rows of unit variance that tell as much of the loads.
+    /// `W^-1/2` times `strain`, with `W` the covariance of readings: independent rows of unit variance with the same information on the loads.
     pub over_sd: Vec<Vec<f64>>,
 }
 
 impl Task<'_> {
-    /// S of gauges, in job order of the loads: the given rows of those that it has, the model's of the others.
+    /// Returns S of gauges, in job order of the loads: the given rows of gauges that have one, the model's rows of all other gauges.
     ///
     /// # Errors
     /// Gauges without strain on the model.
@@ -68,9 +68,9 @@ impl Task<'_> {
         Some((own, row))
     }
 
-    /// Rows of gauges with S `s`. Strain of the model is off by `model_rel`, 1 sd, and by what may be left of its mesh error; that of a calibrated S
-    /// by its covariance, with loads of expected size that are independent of each other. `more`: a variance of its own for each gauge,
-    /// microstrain squared; empty: none.
+    /// Returns the rows of gauges with S `s`. Strain of the model has the relative error `model_rel`, 1 sd, and its estimated remaining mesh error.
+    /// Strain of a calibrated S has the covariance of S, with loads of expected size that are independent of each other. `more`: an additional
+    /// variance of each gauge, microstrain squared; empty: none.
     pub fn rows_of(&self, gauges: &[Gauge], s: &Sensitivity, model_rel: f64, more: &[f64]) -> Rows {
         let noise = self.job.placement.noise_microstrain;
         let row = |g: usize| -> Vec<f64> {

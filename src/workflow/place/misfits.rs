@@ -7,7 +7,7 @@ use crate::host::fault::Fault;
 use crate::job::Job;
 use std::collections::BTreeSet;
 
-/// A gauge on the model, or why there is none.
+/// Gauges on the model with their findings, or the reason why they can't be built.
 type Built = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
 
 /// Returns a gauge as it can be built, at a point where its grid is longer than the part, and the fault of a grid that does not fit.

@@ -1,4 +1,4 @@
-//! `place`: gauges chosen from the candidates, with the certificate, beside the installed ones where the job has some.
+//! `place`: gauges chosen from the candidates, in addition to the installed gauges of the job, with the certificate.
 
 mod choose;
 mod curve;

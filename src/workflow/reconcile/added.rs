@@ -343,7 +343,7 @@ impl Held<'_> {
     }
 }
 
-/// The key of a job that says what is wrong with a channel, and what was found of it.
+/// Returns the job key of a correction of a channel, and the value found.
 fn key_of(correction: &Correction) -> (&'static str, String) {
     match correction {
         Correction::Sign => ("sign", "-1".into()),

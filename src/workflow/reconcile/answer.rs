@@ -78,7 +78,7 @@ impl Answer for Reconciled {
 }
 
 impl Reconciled {
-    /// Tells the extended model into which folder the answer will be written: its path is then one from the folder of the caller.
+    /// Sets the folder into which the answer is written. The path of the extended model is then given from the folder of the caller.
     pub fn put_into(&mut self, folder: &Path) {
         if let Some(extended) = &mut self.extended_model {
             extended.put_into(folder);

@@ -27,7 +27,7 @@ pub(super) enum Axis {
     Across,
 }
 
-/// Change of the influence matrix per mm that a gauge moves, zero where the mesh does not tell.
+/// Returns the change of the influence matrix per mm of gauge movement; zero if the mesh does not determine it.
 pub(super) fn gradients(
     job: &Job,
     model: &Model,

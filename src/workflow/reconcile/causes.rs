@@ -68,7 +68,7 @@ pub(super) fn answer(
     })
 }
 
-/// Sets that can't be told from the best one; where there are none, the others.
+/// Returns the sets that are indistinguishable from the best one; without such sets, all sets of causes except the best one.
 fn rivals(outcome: &CauseOutcome) -> Vec<RivalFound> {
     let evidence = outcome.sets.first().map_or(0.0, |b| b.log_evidence);
     let rival = |s: &CauseSet| RivalFound {

@@ -34,11 +34,11 @@ impl Undo {
 /// Name of a place, and change of the strain of a mass's weight there by the written deck, microstrain per kg by gauge.
 pub(super) type Weight = (String, Vec<f64>);
 
-/// Corrections of the named effects; `deck` of a job with a deck. `None` where they can't be said as entries of a job: channels exchanged in
-/// a ring or corrected by the job before, an offset beside a zero record (which it would be taken off, too).
+/// Returns the corrections of the named effects; `deck` is present for a job with a deck. Returns `None` if entries of a job can't express them.
+/// This applies to channels exchanged in a ring or corrected by the job before, and to an offset in a job with a zero record, in which it cancels.
 ///
-/// Faults of channels are undone first, in the reverse of the order in which they act; then the strain of masses that came aboard after
-/// the zero is taken off, and, from a deck, a factor on all strain.
+/// Faults of channels are undone first, in the reverse of the order in which they act. Then the strain of masses added after the zero is subtracted.
+/// With a deck, a factor on all strain follows.
 pub(super) fn corrections(
     job: &Job,
     frame: &StrainFrame,
@@ -121,7 +121,7 @@ pub(super) fn corrections(
     Some(undo.iter().enumerate().filter_map(entry).collect())
 }
 
-/// Corrections of the gauges of a deck that are turned, which no reading written anew can hold.
+/// Returns the corrections of gauges of a deck with a wrong angle. Rewritten readings can't contain them.
 pub(super) fn turned(effects: &[NamedEffect], has_deck: bool) -> Vec<Corrected> {
     let lists = effects.iter().filter_map(|e| match &e.extension {
         Extension::Channels(list) if has_deck => Some(list),

@@ -8,13 +8,13 @@ use crate::host::files::Inputs;
 use crate::job::{DescribedEffect, EffectSource, Job, NamedFile};
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
 
-/// The hypothesis of this id.
+/// Returns the hypothesis of this id.
 pub(super) fn effect_of<'a>(job: &'a Job, id: &str) -> Option<&'a DescribedEffect> {
     effects(job).iter().find(|e| e.id == id)
 }
 
-/// Factor of a thickness or a stiffness at a size: one at none, that of the job at one. A thickness lies on the straight line through both, a
-/// stiffness on the power, so that twice the softening is half of a half. `None` for a table.
+/// Returns the factor on a thickness or a stiffness at a size: 1 at size 0, the job's factor at size 1. A thickness is linear in the size. A
+/// stiffness is a power, so that twice a softening to a half gives a quarter. Returns `None` for a table.
 pub(super) fn factor_at(source: &EffectSource, size: f64) -> Option<f64> {
     match source {
         EffectSource::Thickness { factor, .. } => Some(1.0 + size * (factor - 1.0)),

@@ -302,7 +302,8 @@ fn runs_with(frame: &StrainFrame, effects: &[NamedEffect], state: &StrainState) 
     }
 }
 
-/// The payload of every run with what was noted wrong of it put right, where its weight acts nowhere and no column tells of it.
+/// Returns the payload of every run with the identified errors of the records corrected, if the payload weight acts in no run and no column contains
+/// it.
 fn payload_noted(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> {
     let at = |run: &String| frame.observations.runs.iter().position(|r| r == run);
     let mut out = frame.payload.clone();

@@ -1,8 +1,8 @@
-//! The extended model: a copy of the job whose files hold the named effects, so that every command runs it as it is.
+//! The extended model: a copy of the job whose files contain the named effects, so that every command runs it unchanged.
 //!
-//! Faults of a channel become `[[correction]]` entries, effects of structure go into S (`sensitivity_extended.csv`) or the deck, loads that
-//! were left out become columns of S or loads of the job, what was noted wrong of a run goes into `runs_extended.csv`. Readings are
-//! written anew (`strain_extended.csv`) only where no entry can say what is wrong with them.
+//! Faults of a channel become `[[correction]]` entries. Effects of structure change S (`sensitivity_extended.csv`) or the deck. Loads that were left
+//! out become columns of S or loads of the job. Errors in the records of a run are corrected in `runs_extended.csv`. Readings are rewritten
+//! (`strain_extended.csv`) only if no entry can express their fault.
 
 use serde::{Serialize, Serializer};
 use std::path::Path;

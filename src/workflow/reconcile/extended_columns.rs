@@ -1,5 +1,5 @@
-//! The columns of S as the extended job's tables hold them: named and counted as the job's own tables are, so that every other table that
-//! the job names goes on standing beside them.
+//! The columns of S in the tables of the extended job. They have the names and units of the job's own tables, so that every other table of the job
+//! remains valid.
 
 use super::extended::ExtendedS;
 use super::extended_loads::component_word;

@@ -110,7 +110,7 @@ impl DeckFrame {
         Some(())
     }
 
-    /// Gives a bush a property of its own, the old one times `factor`.
+    /// Gives a bush a separate property, the old one times `factor`.
     fn change_joint(&self, edits: &mut Edits, place: &str, factor: f64) -> Option<()> {
         let deck = &self.fields.deck.deck;
         let bushes = &deck.cards.bushes;

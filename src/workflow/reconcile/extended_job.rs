@@ -9,8 +9,8 @@ use crate::host::fault::{Fault, Faults};
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The job with the named effects in it as it stands in folder `out`, titled after the effects, which are in its head; `None` where there is
-/// none. The files it names are found from there, those that the effects change beside it.
+/// Returns the job with the named effects for folder `out`, with the effects in its title and its head; `None` without an extended model. Its file
+/// names are relative to `out`. Files that the effects change are in `out`.
 ///
 /// # Errors
 /// A job that is no TOML, which is a mistake of the program.

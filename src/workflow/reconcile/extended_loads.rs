@@ -16,7 +16,7 @@ pub(super) struct SideLoad {
     component: Component,
     /// Usual size: one standard deviation before a run is seen.
     usual: f64,
-    /// Root mean square over the runs; the usual size where the runs did not tell.
+    /// Root mean square over the runs; the usual size if the runs do not determine it.
     found: f64,
 }
 

@@ -1,8 +1,8 @@
-//! Small regions of shells whose stiffness may be wrong, looked for round gauges that disagree: a crack, a loose joint, a missing patch.
+//! Small regions of shells whose stiffness may be wrong, near gauges that disagree: a crack, a loose joint, a missing patch.
 //!
-//! A region is the shells within a radius of one of them, all its moduli times one factor. Regions round the gauges that disagree are ranked by
-//! what one amplitude of each takes of the residual, their signatures to first order from adjoint solutions (one factor for all); the best are
-//! moved, widened and narrowed, those that lead are solved at half their stiffness, and the best of these stand beside the library's effects.
+//! A region is the shells within a radius of one of them, all its moduli times one factor. Regions near the gauges that disagree are ranked by the
+//! reduction of the residual with one amplitude each. Their signatures come to first order from adjoint solutions (one factor for all). The best
+//! regions are moved, widened and narrowed. The leading ones are solved at half their stiffness, and the best of these join the library's effects.
 
 use super::changed::Changed;
 use super::deck_frame::DeckFrame;
@@ -32,7 +32,7 @@ const COUNTED: usize = 64;
 const REFINED: usize = 2;
 /// Each finer.
 const STEPS: [f64; 3] = [0.9, 0.5, 0.3];
-/// Regions that stand beside the library, and most of those that are solved to find them.
+/// Number of regions added to the library, and largest number of regions that are solved to find them.
 const KEPT: usize = 4;
 const LEADING: usize = 2 * KEPT;
 /// Gauges that are looked round, worst first.
@@ -46,7 +46,7 @@ struct Tried {
     takes: f64,
 }
 
-/// Gauges round which a region is looked for: where nothing explains the gap, or several gauges would each be at fault; none otherwise.
+/// Returns the gauges near which a region is searched, if nothing explains the gap or if several gauges would each be at fault; otherwise none.
 pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
     // Where a smooth error of the model stands in for names, those that the names blame.
     let attempt = outcome.best_attempt.iter().chain(&outcome.replaced);
@@ -64,7 +64,7 @@ pub(super) fn gauges_that_disagree(outcome: &Outcome) -> Vec<String> {
     out
 }
 
-/// The gauges of which an effect says that they read another strain, those of a card too.
+/// Returns the gauges with another strain according to an effect, gauges of a card included.
 fn read_otherwise(e: &NamedEffect) -> Vec<&String> {
     let Extension::Channels(list) = &e.extension else {
         return vec![];

@@ -324,7 +324,7 @@ pub(super) fn payload_scale(per_kg: f64, per_m: f64) -> [f64; N_PAYLOAD_COLUMNS]
     ]
 }
 
-/// Force or moment: what a stated load is, else what the name says.
+/// Returns the quantity of a load, force or moment: from the load entry of the job, or else from the name.
 pub(super) fn quantity_of_load(job: &Job, name: &str) -> Quantity {
     let stated = job.loads.iter().find(|l| l.name == name);
     stated

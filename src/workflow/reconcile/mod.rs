@@ -82,7 +82,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
     }
 }
 
-/// Reads the signatures beside a given S for these gauges, as every search for a missing effect does, and drops them.
+/// Reads the signatures that accompany a given S for these gauges, as every search for a missing effect does, and discards them.
 ///
 /// # Errors
 /// Tables that can't be read, gauges that a table lacks.

@@ -166,7 +166,7 @@ fn effect_found(e: &MotionEffect) -> EffectFound {
     }
 }
 
-/// Leaves the held-out record out where a channel of it says nothing: it would judge any model by that channel alone.
+/// Leaves out a held-out record with a dead channel. The test of any model would depend on that channel alone.
 fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut MotionFrame) {
     let Some(record) = &frame.hold_out else {
         return;
@@ -208,12 +208,12 @@ fn is_identified(wrong: &Finding, outcome: &MotionOutcome) -> bool {
     outcome.effects.iter().any(of_channel)
 }
 
-/// A dead channel can't be put right by a model.
+/// Returns whether a model can correct the effects. It can't correct a dead or saturated channel.
 fn repairable(outcome: &MotionOutcome) -> bool {
     !outcome.effects.iter().any(is_lost)
 }
 
-/// Is it a channel whose readings are none, or end at a stop?
+/// Returns whether an effect is a channel without readings, or with readings that end at a stop.
 fn is_lost(effect: &MotionEffect) -> bool {
     is_dead(effect) || effect.id.starts_with("saturated_channel")
 }

@@ -2,8 +2,8 @@
 
 use nastran::bdf::{Deck, MemoryLoader, read_deck};
 
-/// The deck in one file. `files` are its sources in the order in which they were met, edited; `None` where the joined text does not read as
-/// the same deck (a file that is included under conditions, say), or an INCLUDE can't be placed.
+/// Returns the deck in one file. `files` are its sources in the order in which they were met, edited. Returns `None` if the joined text does not read
+/// as the same deck (for example with a conditional INCLUDE), or if a file of an INCLUDE is missing.
 pub(super) fn one_file(deck: &Deck, files: Vec<(String, Vec<u8>)>) -> Option<Vec<u8>> {
     let mut rest = files.into_iter().map(|f| f.1);
     let main = rest.next()?;
@@ -24,7 +24,7 @@ pub(super) fn one_file(deck: &Deck, files: Vec<(String, Vec<u8>)>) -> Option<Vec
     kept.then_some(out)
 }
 
-/// Copies `bytes`, an INCLUDE statement (which may go on over lines until its quote closes) replaced by the next file.
+/// Copies `bytes`. Replaces every INCLUDE statement (which may continue over lines until its quote closes) by the next file.
 fn join(bytes: &[u8], rest: &mut std::vec::IntoIter<Vec<u8>>, out: &mut Vec<u8>) -> Option<()> {
     let mut lines = bytes.split_inclusive(|b| *b == b'\n');
     while let Some(line) = lines.next() {
@@ -52,7 +52,7 @@ fn join(bytes: &[u8], rest: &mut std::vec::IntoIter<Vec<u8>>, out: &mut Vec<u8>)
     Some(())
 }
 
-/// The statement that was replaced, as a comment.
+/// Adds the replaced statement as a comment.
 fn note(line: &[u8], out: &mut Vec<u8>) {
     out.extend_from_slice(b"$ was: ");
     out.extend_from_slice(line);

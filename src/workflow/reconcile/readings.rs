@@ -86,7 +86,7 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
     Ok(out)
 }
 
-/// Readings that can't be strain in the unit they are taken for, judged as `recover` does; the impossible ones become no reading.
+/// Tests, as `recover` does, whether readings can be strain in their stated unit. Impossible readings become missing readings.
 ///
 /// # Errors
 /// One fault where no reading is left.

@@ -30,9 +30,9 @@ fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
     })
 }
 
-/// Notes what is to be known of the verdict.
+/// Adds the findings on the verdict.
 pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
-    /// A stated noise is known to 15 %: what the readings show beyond is told.
+    /// Factor on the stated noise above which the noise of the readings is reported. A stated noise is known to 15 %.
     const NOISE_KNOWN: f64 = 1.15;
     if !outcome.input_faults.is_empty() {
         work.findings.extend(outcome.input_faults.iter().cloned());

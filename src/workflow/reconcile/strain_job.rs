@@ -150,7 +150,7 @@ fn edit_sensitivity(table: &mut Table, job: &Job, frame: &StrainFrame, s: &Exten
     });
 }
 
-/// Readings that stand as they were put right: what the job corrects, zeroes and holds out of the old ones is in them.
+/// Sets the corrected readings as the strain of the job. They include its old corrections and zeros. Held-out runs are listed by name.
 fn put_readings(table: &mut Table, job: &Job, frame: &StrainFrame) {
     set(table, "measured", "strain", STRAIN);
     let o = &frame.observations;
@@ -189,7 +189,7 @@ fn add_to(table: &mut Table, name: &str, add: impl FnOnce(&mut Vec<Value>)) {
     }
 }
 
-/// Sets a key of a section, which is made where there is none.
+/// Sets a key of a section, and adds the section if it is missing.
 fn put(table: &mut Table, section: &str, key: &str, value: Value) {
     let section = table
         .entry(section)

@@ -247,7 +247,7 @@ fn effect_found(e: &NamedEffect) -> EffectFound {
     }
 }
 
-/// The size of an effect that has no parameter: -1 for a turned sign, 0 for a channel that says nothing, 1 for an exchange.
+/// Returns the size of an effect without a parameter: -1 for reversed polarity, 0 for a channel without signal, 1 for an exchange.
 fn channel_size(e: &NamedEffect) -> Option<f64> {
     let Extension::Channels(list) = &e.extension else {
         return None;
@@ -259,7 +259,7 @@ fn channel_size(e: &NamedEffect) -> Option<f64> {
     }
 }
 
-/// Is it a thickness that changes?
+/// Returns whether the changed stiffness is a thickness.
 fn is_thickness(job: &Job, of: StiffnessOf, place: &str) -> bool {
     match of {
         StiffnessOf::Zone => true,

@@ -136,7 +136,7 @@ pub struct RecoveredRuns {
     pub units: Vec<LoadUnits>,
 }
 
-/// A load of a run, report units; not a number where the gauges that read don't tell it.
+/// Load of a run, report units; NaN if the active gauges don't determine it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RecoveredLoad {
     /// Run.

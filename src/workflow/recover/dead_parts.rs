@@ -85,7 +85,7 @@ pub(crate) fn silent_in_part(gauge: &str, gives: Gives, [from, to]: [f64; 2]) ->
     .with_numbers(to - from, 0.0)
 }
 
-/// The warning of parts in which no gauge changes: whether it stands still there, or its logger gave nothing, the record does not say.
+/// Returns the warning of parts in which no gauge changes. The record does not show whether the structure is at standstill or the logger failed.
 fn stands_still(record: &Record, parts: &[[usize; 2]]) -> Option<Finding> {
     let [first, last] = *parts.first()?;
     let [from, to] = [first, last].map(|i| record.time_s(i));

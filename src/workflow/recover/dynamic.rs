@@ -54,10 +54,11 @@ pub(super) struct Rested {
     pub blank: usize,
 }
 
-/// The record without the vibration of the structure, where the job asks for that.
+/// Returns the record without the vibration of the structure, if the job asks for it.
 ///
 /// # Errors
-/// No model that could vibrate; a band that the record does not hold, or in which the gauges don't tell the loads; a record too long.
+/// A job without a model that could vibrate; a band that does not fit the sampling rate; gauges that don't determine the loads in the band; a record
+/// that is too long.
 pub(super) fn rested(
     work: &mut Work,
     task: &Task,
@@ -279,7 +280,7 @@ fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
     }
 }
 
-/// Says that runs don't vibrate.
+/// Returns the warning that `[dynamic]` has no effect on runs.
 pub(super) fn without_record() -> Finding {
     Finding::new(
         Severity::Warning,

@@ -16,7 +16,7 @@ pub struct History {
 pub struct HistoryRow {
     /// Time, s.
     pub time: f64,
-    /// By load: value, low and high end of its 95 % interval; `None` where the gauges that read don't tell it.
+    /// Value, low and high end of the 95 % interval, by load; `None` if the active gauges don't determine the load.
     pub loads: Vec<Option<[f64; 3]>>,
 }
 

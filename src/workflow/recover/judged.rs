@@ -15,9 +15,9 @@ use crate::strain_chain::alternative_rows;
 use crate::strain_chain::solved::{first_mode_of, support_of_job};
 use rayon::prelude::*;
 
-/// Samples on which the residual of a long record is judged.
+/// Number of samples on which the residual of a long record is tested.
 const JUDGED: usize = 200;
-/// Samples up to which a record that is read in one piece is judged whole.
+/// Largest number of samples at which a record that is read in one piece is tested in full.
 const JUDGED_OF_SHORT: usize = 2000;
 /// Samples from which typical loads are taken for the weights of a stated model error.
 const TYPICAL: usize = 20_000;
@@ -120,7 +120,7 @@ pub(super) fn spread(
     Ok(readings)
 }
 
-/// Says where its times look like those of another unit.
+/// Adds a finding if the times of the record look like times in another unit.
 ///
 /// # Errors
 /// A piece that can't be read.
@@ -134,7 +134,7 @@ pub(super) fn check_times(work: &mut Work, record: &Record) -> Result<(), Faults
     Ok(())
 }
 
-/// Content of its loads against the first elastic mode, where that was solved for already its frequency; `None` where it is not known.
+/// Returns the frequency content of the loads relative to the first elastic mode if its frequency is already solved for; `None` if it is not known.
 ///
 /// # Errors
 /// A piece that can't be read.

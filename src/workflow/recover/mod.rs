@@ -148,7 +148,7 @@ fn open_strain(work: &mut Work, job: &Job, measured: &Measured) -> Result<Measur
     })
 }
 
-/// Recovers the loads for what is to be said of them alone: what `check` asks.
+/// Recovers the loads for the findings alone, as `check` needs them.
 ///
 /// # Errors
 /// As [`recover_into`].

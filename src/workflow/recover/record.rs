@@ -240,7 +240,7 @@ pub(super) fn look(
     Ok((sensitivity, readings))
 }
 
-/// The estimate of every sample, its weights and intervals judged on samples spread over the record.
+/// Returns the filter that estimates every sample. Its typical loads and the widening of its intervals come from samples spread over the record.
 fn filter(
     work: &mut Work,
     (task, (noise_factor, doubt)): (&Task, (f64, Option<Doubt>)),
@@ -340,10 +340,10 @@ fn stream(
     })
 }
 
-/// Hands over the pieces of a record group by group, and tells of them, while it is wanted.
+/// Passes the pieces of a record to `take` group by group, and reports the progress, until the work is stopped.
 ///
 /// # Errors
-/// What `take` refuses; one fault where the work is stopped.
+/// An error of `take`; one fault if the work is stopped.
 fn in_groups(
     work: &Work,
     record: &Record,

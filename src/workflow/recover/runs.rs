@@ -53,11 +53,12 @@ pub(super) fn read(
     Ok((readings, known))
 }
 
-/// Warnings of runs in which a gauge of the table gives nothing, of those in which all give one and the same number, and of copies of others.
+/// Returns warnings of blank readings, of runs in which all gauges give one and the same number, and of copies of other runs.
 fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Vec<Finding> {
-    /// Gauges that read the same number, to its last digit, by chance in no run.
+    /// Smallest number of gauges whose readings are not equal to the last digit by chance.
     const MANY: usize = 3;
-    /// Numbers of a table at least that differ, for each gauge: with fewer its logger rounds so much that runs are alike by themselves.
+    /// Smallest number of different values in a table, per gauge, for the search for copies. With fewer values the logger rounds so much that runs
+    /// may be equal by chance.
     const FINE: usize = 8;
     let all = (0..names.len()).flat_map(|i| {
         let row = table.row(i);
@@ -203,7 +204,7 @@ fn readings_of(
         .collect()
 }
 
-/// Loads of the runs, sums among them, with everything that is to be said of them.
+/// Returns the loads of the runs, sums among them, and adds all findings on them.
 ///
 /// # Errors
 /// Unreadable tables; sums of loads that S lacks.

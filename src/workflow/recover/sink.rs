@@ -110,12 +110,13 @@ impl RecordHead {
         stretch.map(|s| &*s.1)
     }
 
-    /// Whether anything is made of the history that has to read all of it again.
+    /// Returns whether an output needs all of the history a second time.
     pub fn is_read_again(&self) -> bool {
         !self.files.is_empty() || self.is_compared
     }
 
-    /// Value, low and high end of the 95 % interval of the loads of a sample, report units; `None` where the gauges that read don't tell it.
+    /// Returns value, low and high end of the 95 % interval of the loads of a sample, report units; `None` if the active gauges don't determine a
+    /// load.
     pub fn intervals<'a>(
         &'a self,
         sample: &Sample<'a>,
@@ -133,7 +134,7 @@ impl RecordHead {
 /// Some samples on end.
 #[derive(Clone, Debug)]
 pub struct Block {
-    /// Which sample of the record its first is.
+    /// Number of the first sample in the record.
     pub first: usize,
     /// Times, s.
     pub times: Vec<f64>,
@@ -148,9 +149,9 @@ pub struct Sample<'a> {
     pub at: usize,
     /// Time, s.
     pub time: f64,
-    /// Loads, job units; NaN where the gauges that read don't tell them.
+    /// Loads, job units; NaN if the active gauges don't determine them.
     pub loads: &'a [f64],
-    /// The estimate, where some gauge gave nothing.
+    /// Estimate without the gauges that give no reading; `None` if all gauges read.
     pub gap: Option<&'a Gain>,
 }
 

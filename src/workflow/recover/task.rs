@@ -39,7 +39,7 @@ pub(super) fn measured_of(job: &Job) -> Result<&Measured, Faults> {
     })
 }
 
-/// Says that loads are changes, where no reference is stated.
+/// Returns the finding that loads are changes, if no reference is stated.
 pub(super) fn changes(measured: &Measured) -> Option<Finding> {
     (measured.reference == Reference::None).then(|| {
         Finding::new(

@@ -1,8 +1,8 @@
-//! Data for drawings of a history of any length: smallest, mean and largest value of each load by span of samples.
+//! Data for charts of a history of any length: smallest, mean and largest value of each load by span of samples.
 
 use super::sink::Block;
 
-/// Spans at most, an even number: from here on two neighbours become one. Twice what a wide screen has of points.
+/// Largest number of spans, an even number. At this number two neighbours are merged. It is twice the number of points on a wide screen.
 const MOST: usize = 4000;
 
 /// Spans of equally many samples so far.

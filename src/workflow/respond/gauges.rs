@@ -155,7 +155,7 @@ pub(super) fn check(
     Ok(out)
 }
 
-/// Says that gauges take no part.
+/// Returns the finding that the gauges are not compared.
 fn not_compared(why: &str, remedy: &str) -> Finding {
     Finding::new(Severity::Info, "gauges-not-compared", "gauges", why, remedy)
 }

@@ -13,7 +13,7 @@ fn point(f: &mut Fields, i: usize) -> Option<[f64; 3]> {
     stated.then(|| f.reals(i, ["XS", "YS", "ZS"]))
 }
 
-/// The second line holds grids, elements or properties, as field 4 says; the third a point.
+/// Reads a CWELD. The second line contains grids, elements or properties, depending on field 4; the third line contains a point.
 pub(super) fn weld(f: &mut Fields) -> Weld {
     let id = f.id(0, "EID");
     let pid = f.opt_id(1, "PID");

@@ -32,7 +32,7 @@ pub(super) fn orientation(f: &mut Fields, i: usize) -> Orientation {
     Orientation::Vector(f.reals(i, ["X1", "X2", "X3"]))
 }
 
-/// OFFT; NASTRAN-95 has an integer there (1 vector, 2 grid), which says nothing new.
+/// Reads OFFT. NASTRAN-95 has an integer there (1 vector, 2 grid), which adds no information.
 fn offt(f: &mut Fields, i: usize) -> Option<[u8; 3]> {
     match f.value(i) {
         Value::Blank | Value::Integer(_) => None,

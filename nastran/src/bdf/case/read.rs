@@ -209,7 +209,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A set number; 0 or NONE is none.
+    /// Parses a set number; 0 or NONE selects no set.
     fn number(&mut self, name: &str, value: &str) -> Option<u32> {
         match value.parse::<u32>() {
             Ok(n) => Some(n),

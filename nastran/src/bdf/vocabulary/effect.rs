@@ -13,7 +13,7 @@ pub enum Effect {
     Acts,
     /// Load that is not carried and acts where its set, the first field, is selected.
     Load,
-    /// Acts together with this word of case control, or with what is named here (connectors, values of its own), and is not carried.
+    /// Acts together with this word of case control, or with the items named here (connectors, its own values), and is not carried.
     ActsWith(&'static str),
     /// Statement of executive control, above CEND.
     Executive,

@@ -137,7 +137,7 @@ impl Edits {
         self.replace_card(deck, at, "")
     }
 
-    /// Adds cards (whole lines) before ENDDATA, or at the end of the first deck where there is none.
+    /// Adds cards (whole lines) before ENDDATA, or at the end of the first deck if it has no ENDDATA.
     pub fn insert_cards(&mut self, deck: &Deck, text: &str) {
         let end = deck.sources.first().map_or(0, |s| s.bytes.len());
         let Position { source, offset } = deck.bounds.enddata.unwrap_or(Position {

@@ -3,7 +3,7 @@
 use super::fields::Fields;
 use crate::cards::{Bar, Beam, Bush, Conrod, Orientation, Rod, Spring, SpringStiffness};
 
-/// CBAR: `eid pid ga gb x1 x2 x3 f pa pb w1a w2a w3a w1b w2b w3b`; G0 in the place of x1 where f says so.
+/// Reads CBAR: `eid pid ga gb x1 x2 x3 f pa pb w1a w2a w3a w1b w2b w3b`; depending on f, G0 replaces x1.
 pub(super) fn bar(f: &mut Fields<'_>) -> Option<Bar> {
     let (id, pid, grids) = (f.id()?, f.id()?, f.ids()?);
     let (orientation, offt) = orientation(f)?;

@@ -20,8 +20,8 @@ pub(super) fn pshell(f: &mut Fields<'_>) -> Option<Pshell> {
     })
 }
 
-/// PCOMP: `pid n z0 nsm sb ft tref ge`, then n times `mid t theta sout`. A negative n says symmetric. Where n is 0 the plies end with
-/// four words -1.
+/// Reads PCOMP: `pid n z0 nsm sb ft tref ge`, then n times `mid t theta sout`. A negative n means symmetric. If n is 0, the plies end with four words
+/// -1.
 pub(super) fn pcomp(f: &mut Fields<'_>) -> Option<Pcomp> {
     let id = f.id()?;
     let n = f.int()?;

@@ -19,7 +19,7 @@ pub(in crate::op2) struct Geometry {
 pub(super) struct Record<'a> {
     pub(super) words: Words<'a>,
     pub(super) table: &'a str,
-    /// Words a card, and double precision, where the code says so.
+    /// Words of each card, and double precision, if the code states them.
     pub(super) stated: Option<(usize, bool)>,
 }
 

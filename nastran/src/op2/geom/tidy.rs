@@ -1,4 +1,4 @@
-//! Takes out what solvers write beside the analyst's cards, and what stands in two tables.
+//! Removes cards that solvers write in addition to the analyst's cards, and cards that are in two tables.
 
 use std::collections::HashSet;
 

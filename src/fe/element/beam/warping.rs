@@ -6,7 +6,7 @@ use crate::model::GridIx;
 
 /// lambda L under which hyperbolic functions lose figures to cancellation and the first terms of their series are as good.
 const SHORT: f64 = 0.05;
-/// lambda L above which exp(-lambda L) is nothing beside 1.
+/// lambda L above which exp(-lambda L) is negligible against 1.
 const LONG: f64 = 40.0;
 
 /// Stiffness over (theta_A, theta'_A, theta_B, theta'_B) of E Cw theta'''' - G J theta'' = 0, exact: with psi = L sqrt(GJ / E Cw),

@@ -14,7 +14,7 @@ pub(super) struct SolidLaw {
 }
 
 impl SolidLaw {
-    /// The law of a solid at its centre; `Err` says why there is none.
+    /// Returns the law of a solid at its centre; `Err` states why the solid has no law.
     pub(super) fn new(
         model: &Model,
         solid: &Solid,

@@ -148,7 +148,7 @@ fn intervals_follow_a_record_that_rests_and_then_shakes() {
     }
 }
 
-/// A mode at three times the band that is not among those that are told: what it answers is an eighth of its share at the end of the band.
+/// Tests a mode outside the model at three times the band. Its dynamic response is an eighth of its share at the end of the band.
 #[test]
 fn what_modes_that_are_not_told_answer_is_in_the_intervals() {
     let real = Structure {

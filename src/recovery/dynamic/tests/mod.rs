@@ -96,7 +96,7 @@ fn the_force_of_a_pulse_is_found_and_what_rings_after_it_is_none() {
 
 const N_GAUGES: usize = 5;
 
-/// Five gauges, two loads, four modes; the fourth lies beyond and is not among those that are told.
+/// Five gauges, two loads and four modes. The fourth mode is beyond the band and not part of the model.
 struct Structure {
     hz: [f64; 4],
     strain: [[f64; N_GAUGES]; 4],
@@ -188,7 +188,7 @@ fn load_weights(s: &Sensitivity, l: usize) -> Vec<f64> {
     gain.row(l).iter().copied().collect()
 }
 
-/// Variance that is told of what `weights` make of all readings at a sample.
+/// Returns the stated variance of the sum of all readings at a sample, weighted by `weights`.
 fn variance(s: &Sensitivity, rested: &AtRest, noise: f64, i: usize, weights: &[f64]) -> f64 {
     let all: Vec<usize> = (0..s.gauges.len()).collect();
     let w = crate::linalg::Vector::from_column_slice(weights);
@@ -268,8 +268,8 @@ fn a_gap_takes_what_hangs_on_it_and_the_rest_stays() {
     assert!(known > 600, "{known}");
 }
 
-/// Structures whose frequencies and damping differ from what is told as it is said that they may, and noise: how often the truth lies within 1.96
-/// standard deviations.
+/// Tests structures whose frequencies and damping deviate from the model by the stated standard deviations, with noise. Counts how often the true
+/// loads are within 1.96 standard deviations.
 #[test]
 fn intervals_hold_what_frequencies_damping_and_noise_make() {
     let mut random = ChaCha8Rng::seed_from_u64(5);

@@ -111,7 +111,7 @@ fn ratio(l: &LoadComparison) -> String {
     }
 }
 
-/// Cells of a load beside its recovered value on a terminal: bias, rms, share within the interval, damage ratio.
+/// Returns the cells of a load next to its recovered value on a terminal: bias, rms, share within the interval, damage ratio.
 pub(super) fn cells(comparison: &Comparison, load: &str) -> [String; 4] {
     match comparison.loads.iter().find(|l| l.load == load) {
         Some(l) => [

@@ -64,7 +64,7 @@ fn by_run(runs: &RecoveredRuns, spans: &[LoadSpan]) -> ConsoleTable {
     }
 }
 
-/// A row a load beside what was recorded of it.
+/// Returns a table with a row for each load and its differences from the recorded load.
 fn against_recorded(outcome: &Outcome<Recovered>, spans: &[LoadSpan]) -> ConsoleTable {
     let row = |s: &LoadSpan| {
         let value = format!("{} {}", plus_minus(s.peak(), s.half), s.unit);

@@ -1,7 +1,7 @@
 //! `loads.bdf`: recovered loads as bulk data, in the job's units.
 //!
-//! Every load is a FORCE or MOMENT of 1 in a set of its own. A run is a LOAD that adds them up; a history is a TLOAD1 and a TABLED1 a
-//! load and one DLOAD for all.
+//! Every load is a FORCE or MOMENT of 1 in a separate set. A run is a LOAD that adds these sets. A history is a TLOAD1 and a TABLED1 for each load,
+//! and one DLOAD for all loads.
 
 use super::tables::LoadsFile;
 use crate::host::fault::Faults;
@@ -16,19 +16,19 @@ use nastran::cards::Force;
 use std::io::Write;
 
 const NAME: &str = "loads.bdf";
-/// The first set where no deck says which are taken.
+/// Number of the first set if no deck shows which numbers are taken.
 const FIRST_SET: u32 = 1001;
 /// Samples read at a time.
 const PIECE: usize = 16_384;
 
-/// A load and the set that holds 1 of it.
+/// Load and the set that contains it with size 1.
 struct Unit {
     /// Column of the recovered loads.
     column: usize,
     set: u32,
 }
 
-/// Cards of 1 of each load, which loads they are, and the next free set. Loads without a place in the job are left out.
+/// Returns the cards of size 1 of each load, the loads of these cards, and the next free set. Loads without a place in the job are left out.
 fn unit_sets(recovered: &Recovered, names: &[String]) -> (String, Vec<Unit>, u32) {
     let fields = recovered.prepared.fields.as_ref();
     let deck = fields.map(|f| &f.deck.deck);
@@ -90,7 +90,7 @@ fn heading(recovered: &Recovered, what: &str) -> String {
     )
 }
 
-/// Writes the loads of every run; nothing where the job says of no load where it acts.
+/// Writes the loads of every run; nothing if the job states the place of no load.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -167,7 +167,7 @@ pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Pa
     recover_page(&job.title, scene.as_ref(), &found, &outcome.findings)
 }
 
-/// Loads over time, report units; how wide the interval of a sample is, their root mean square says.
+/// Returns the loads over time, report units. The half width of their intervals comes from the root mean square of sigma over the samples.
 fn traces(record: &RecoveredRecord) -> Vec<LoadTrace> {
     let spans = record.spans.list();
     let loads = record.loads.iter().zip(&record.head.units).enumerate();

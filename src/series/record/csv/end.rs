@@ -2,14 +2,14 @@
 
 use super::text::{Encoding, field_end};
 
-/// Lines before the last that tell how its last field would be written.
+/// Lines before the last line that show how its last field is written.
 const TELLING: usize = 8;
 
-/// Where the last line begins, if it has no end of line while others have one, and may be cut within its last field: `131.9` cut is
-/// `131.`, `131` or nothing.
+/// Returns the start of the last line if that line may be cut within its last field: `131.9` cut is `131.`, `131` or nothing. Such a line has no end
+/// of line although other lines have one.
 ///
-/// It is taken for whole where its last field has as many characters after the point as those before it. Fewer fields than in the line
-/// before are for others to refuse; two lines, of which the first may be the header, tell nothing.
+/// A last field with as many characters after the point as the fields before it is complete. A line with fewer fields than the line before is refused
+/// elsewhere. Of two lines, the first may be the header, so they show nothing.
 pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
     let (start, lines) = last_lines(bytes);
     let (last, before) = lines.split_first()?;
@@ -56,7 +56,7 @@ pub fn is_cut(bytes: &[u8]) -> bool {
 
 /// Whether every column of `rows` has its number of characters after the point, and the last number `own` has fewer.
 fn has_fewer_digits(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
-    /// Numbers that tell: one of ten ends in a zero, which a person leaves out, so that these stand alike by chance once in seventy.
+    /// Least count of numbers. One of ten ends in a zero, which a person leaves out: so many have equal digits by chance once in seventy.
     const NUMBERS: usize = 40;
     let Some(previous) = rows.first() else {
         return false;
@@ -83,7 +83,7 @@ fn has_fewer_digits(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
 /// Whether the last number `own` has no point while all numbers of its column have one, or no exponent, or less of one, than all of them: where
 /// digits of any number follow the point, what is lost of them changes little, and what is lost before it changes all.
 fn lacks_a_part(own: &[u8], rows: &[Vec<u8>], delimiter: u8) -> bool {
-    /// Rows that tell.
+    /// Smallest number of rows to compare with.
     const ROWS: usize = 5;
     /// Digits after the point that a number has by chance all zero, and not written, once in a hundred.
     const DIGITS: usize = 2;
@@ -174,7 +174,7 @@ fn fields(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
     }
 }
 
-/// Characters after the decimal point or comma; `None` where there is none.
+/// Returns the number of characters after the decimal point or comma; `None` for a field without one.
 fn after_point(field: &[u8]) -> Option<usize> {
     let at = field.iter().rposition(|b| matches!(b, b'.' | b','))?;
     Some(field.len() - at - 1)

@@ -137,7 +137,7 @@ impl Layout {
         Ok(layout)
     }
 
-    /// Whether this field is no channel: the time, or the part of it that stands in a field of its own.
+    /// Returns whether this field is a time and not a channel: the time, or the part of it in the next field.
     pub fn is_of_time(&self, field: usize) -> bool {
         match self.time {
             Some((at, TimeKind::DateBeside { .. })) => field == at || field == at + 1,

@@ -1,8 +1,8 @@
 //! Tables as loggers, measuring programs and spreadsheets write them, read a piece at a time.
 //!
-//! Comma, semicolon or tab between fields, a decimal comma beside the last two; UTF-8, UTF-16 or an eight-bit code; lines before the
-//! header, a row of units after it, units in the header, quoted fields; times in seconds, in a stated unit, as date and time in one column or
-//! in two that follow each other, or as time of day.
+//! Fields are separated by comma, semicolon or tab; the last two allow a decimal comma. Text is UTF-8, UTF-16 or an eight-bit code. Supported are
+//! lines before the header, a row of units after it, units in the header, and quoted fields. Times are in seconds, in a stated unit, a date and time
+//! in one column or in two adjacent columns, or a time of day.
 
 mod date;
 mod end;
@@ -42,7 +42,7 @@ impl Csv {
     /// The table in a file.
     ///
     /// # Errors
-    /// No header, a header without rows, a time column in a unit that is none of time.
+    /// No header, a header without rows, a time column in a unit that is not a unit of time.
     pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
         let layout = Layout::of((*bytes).as_ref())?;
         let left_out = unsure_end((*bytes).as_ref()).filter(|at| *at > layout.start);
@@ -294,7 +294,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Where no row of the beginning tells what marks a fraction, a number in the form of thousands tells nothing either.
+    /// Refuses a number in the form of thousands if no row of the beginning determines the decimal mark.
     #[inline(always)]
     fn check_mark(&self, rest: &[u8], used: usize) -> Result<(), Wrong> {
         if self.layout.mark != DecimalMark::CommaOrPoint {

@@ -31,13 +31,13 @@ pub(super) struct Field {
     bits: u32,
     conversion: Conversion,
     is_float: bool,
-    /// Byte after the data and mask of the bit that says invalid.
+    /// Byte after the data, and mask of the invalidation bit.
     invalid: Option<(usize, u8)>,
     all_invalid: bool,
 }
 
 impl Field {
-    /// The field of a channel; `None` where it is none of fixed length that is a plain number.
+    /// Returns the field of a channel; `None` for a channel that is not a plain number of fixed length.
     pub(super) fn of(c: &Channel) -> Option<Self> {
         let index = matches!(
             c.channel_type,

@@ -1,8 +1,7 @@
 //! ASAM MDF 4: the channels sampled together with those that are wanted, read by parts of their data blocks.
 //!
-//! `falcon_mdf` tells what lies where. Groups of fixed records in blocks, plain or deflated, are read from there a piece at a time
-//! ([`fixed`]); what is stored otherwise (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) is decoded
-//! whole by the library.
+//! `falcon_mdf` determines the layout of the file. Groups of fixed records in blocks, plain or deflated, are read a piece at a time ([`fixed`]).
+//! Other forms (groups whose records alternate, values apart from invalidation, Zstandard, LZ4) are decoded whole by the library.
 
 mod fault;
 mod field;
