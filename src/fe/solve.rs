@@ -28,10 +28,32 @@ const REFINED_ABOVE: f64 = 1e-7;
 /// Above this after refinement, digits that a gauge reads may be lost: the analyst is told (Nastran's users are told to worry at 1e-3).
 const INACCURATE_ABOVE: f64 = 1e-6;
 
-/// Solves unit loads on the free structure, subcases numbered 1 .. n.
+/// Solves unit loads on the free structure, subcases numbered 1 .. n. Inertia balances each load.
 ///
 /// # Errors
 /// See [`FeError`].
+///
+/// # Example
+/// Two equal masses on a rod: a force `F` at one end accelerates both, so `F / 2` is the tension of the rod.
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+/// use strainbridge::fe::{UnitLoad, solve_unit_loads};
+/// use strainbridge::model::{Model, Vec3};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.
+/// # PBAR,1,1,100.,2.+4,2.+4,1.+4\nMAT1,1,200000.,,.3\nCONM2,11,1,,1.\nCONM2,12,2,,1.\nENDDATA\n";
+/// let deck = read_deck("rod.bdf", DECK.into(), &mut MemoryLoader::default());
+/// let (model, _) = Model::from_deck(&deck);
+/// let grid = model.grid_ix(2).unwrap();
+/// let force = UnitLoad::AtGrid { grid, force: Vec3::x(), moment: Vec3::zeros() };
+/// let (solution, report) = solve_unit_loads(&model, &[force], &Default::default())?;
+///
+/// let (bar, e, area) = (model.beam_ix(1).unwrap(), 200_000.0, 100.0);
+/// let (_, axial) = solution.cases[0].beams.strain_at(bar, 0.5).unwrap();
+/// assert!((axial / (0.5 / (e * area)) - 1.0).abs() < 1e-9);
+/// assert!(report.balance[0].residual < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solve_unit_loads(
     model: &Model,
     loads: &[UnitLoad],
