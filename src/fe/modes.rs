@@ -70,7 +70,7 @@ pub struct ModalSolution {
 /// PARAM,WTMASS and PARAM,COUPMASS included.
 ///
 /// # Errors
-/// See [`FeError`]; a structure without mass.
+/// Returns every error of [`FeError`], for example [`FeError::NoMassToVibrate`] for a structure without mass.
 ///
 /// # Example
 /// Two free masses on a spring vibrate at `sqrt(k (1 / m1 + 1 / m2)) / 2 pi`:
@@ -153,7 +153,7 @@ pub fn solve_modes(
 /// Frequencies of the lowest elastic modes from the factor of a static solution.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub(super) fn frequencies(
     prepared: &Prepared<'_>,
     mass: &Mass,

@@ -31,7 +31,7 @@ const INACCURATE_ABOVE: f64 = 1e-6;
 /// Solves unit loads on the free structure, subcases numbered 1 .. n. Inertia balances each load.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 ///
 /// # Example
 /// Two equal masses on a rod: a force `F` at one end accelerates both, so `F / 2` is the tension of the rod.
@@ -65,7 +65,7 @@ pub fn solve_unit_loads(
 /// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solve_unit_loads_on(
     model: &Model,
     support: Support,
@@ -78,7 +78,7 @@ pub fn solve_unit_loads_on(
 /// Solves load cases; those with the same constraints share one factor.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solve_cases(
     model: &Model,
     cases: &[LoadCase],
@@ -92,7 +92,7 @@ pub fn solve_cases(
 /// Displacements of load cases, without strain: what is worth keeping of a solution.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solve_displacements(
     model: &Model,
     cases: &[LoadCase],
@@ -104,7 +104,7 @@ pub fn solve_displacements(
 /// The strain of solved load cases.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solution_of(
     model: &Model,
     cases: &[LoadCase],
@@ -377,7 +377,7 @@ pub(super) fn acting(
 /// Work of the factor of the free structure, longest chain in it, and what the busiest of 1, 2, 4, .. 64 threads does: [`Symbolic::tree_work`].
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn factor_on_paper(model: &Model) -> Result<(TreeWork, Vec<(usize, f64)>), FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared);
@@ -393,7 +393,7 @@ pub type Triplets = (usize, Vec<(usize, usize, f64)>);
 /// The stiffness of the free structure, supported determinately: for comparing factorisations with other programs.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn supported_stiffness(model: &Model) -> Result<Triplets, FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared);

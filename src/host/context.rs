@@ -72,6 +72,18 @@ impl Files for Disk {
 }
 
 /// Files in memory, by path. Tests and other programs give their files to a command with it.
+///
+/// # Example
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::{Files, InMemory};
+///
+/// let files = InMemory::default().with("runs.csv", "run,left\n").with("runs.csv", "run,right\n");
+/// // A later file replaces an earlier one of the same path.
+/// assert_eq!(&files.load(Path::new("runs.csv"))?[..], b"run,right\n");
+/// assert!(files.load(Path::new("other.csv")).is_err());
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct InMemory {
     files: BTreeMap<PathBuf, Vec<u8>>,

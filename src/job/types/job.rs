@@ -27,7 +27,7 @@ use crate::job::quantity::quantity_of_name;
 use crate::units::{Quantity, ReportUnits, UnitSystem};
 use std::path::PathBuf;
 
-/// A job: the settings of every command, read from `job.toml` and checked. Defaults are filled in, and tables that it names are read later.
+/// Settings of every command, read from `job.toml` and checked. Defaults are filled in, and commands read the tables of strain and runs.
 ///
 /// # Example
 /// ```
