@@ -25,14 +25,15 @@
 //! ```
 //! use strainbridge::{Context, Disk, Folder, Job, Severity};
 //!
-//! # // The carrier of `examples/frame` with a layout asked for, in a folder of its own.
+//! # // The carrier of `examples/frame` with a requested layout, in a temporary folder.
 //! # let examples = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
 //! # let folder = std::env::temp_dir().join(format!("strainbridge-lines-{}", std::process::id()));
 //! # std::fs::create_dir_all(&folder)?;
 //! # for name in ["frame.bdf", "gauges.csv", "strain.csv"] {
 //! #     std::fs::copy(examples.join(name), folder.join(name))?;
 //! # }
-//! # let layout = "[candidates]\nproperties = [1, 2]\nangle_step_deg = 45\n[placement]\ngauges = 12\nspacing = 100.0\n";
+//! # let layout = "[candidates]\nproperties = [1, 2]\nangle_step_deg = 45\n[placement]\ngauges = 12\nspacing = 100.0\n\
+//! #     angle_tolerance_deg = 1.0\nposition_tolerance = 2.0\n";
 //! # let text = std::fs::read_to_string(examples.join("recover.toml"))?;
 //! # std::fs::write(folder.join("truck.toml"), format!("{text}\n{layout}"))?;
 //! # std::env::set_current_dir(&folder)?;
@@ -45,7 +46,7 @@
 //! let loads = strainbridge::recover(&job, &cx)?; // runs, sigma, units, findings
 //! assert!(loads.findings.worst() < Some(Severity::Error));
 //! # assert_eq!(plan.gauges.len(), 12);
-//! # assert!(folder.join("truck.cache").is_dir(), "solutions are kept beside the job");
+//! # assert!(folder.join("truck.cache").is_dir(), "solutions are stored next to the job");
 //! # std::env::set_current_dir(examples)?;
 //! # std::fs::remove_dir_all(&folder)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())

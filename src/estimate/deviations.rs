@@ -13,7 +13,21 @@ fn largest_square() -> f64 {
         .powi(2)
 }
 
-/// Differences of many samples over their standard deviation.
+/// Differences of many samples from true values, over their stated standard deviation. [`Deviations::exceed`] tests the stated intervals.
+///
+/// # Example
+/// Two records of 10 independent samples, one with mean squares as stated and one three times as large:
+/// ```
+/// use strainbridge::estimate::{Deviations, chi_square_tail};
+///
+/// let as_stated = Deviations { mean_square: 1.0, effective: 10.0, common: 0.0 };
+/// assert!(!as_stated.exceed());
+/// // Chi-square with 10 degrees of freedom exceeds 29.59 with the probability 0.001 (Abramowitz and Stegun, table 26.8).
+/// assert!((chi_square_tail(29.588, 10.0) - 1e-3).abs() < 1e-6);
+/// assert!(Deviations { mean_square: 3.0, ..as_stated }.exceed());
+/// // A common error of all samples can be as large by chance.
+/// assert!(!Deviations { mean_square: 3.0, common: 1.0, ..as_stated }.exceed());
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Deviations {
     /// Mean of the squares; 1 is expected.

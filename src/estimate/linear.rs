@@ -12,7 +12,30 @@ pub enum ReadingErrors<'a> {
     Covariance(&'a [f64]),
 }
 
-/// The model `y = A f + e` with `f_l ~ N(0, prior_sd_l^2)`.
+/// Linear model `y = A f + e` with Gaussian errors `e` and priors `f_l ~ N(0, prior_sd_l^2)`. [`LinearGaussian::estimate`] solves it.
+///
+/// # Example
+/// The mean of three readings of one quantity is the estimate of least squares, with the variance `sigma^2 / 3`:
+/// ```
+/// use strainbridge::estimate::{LinearGaussian, ReadingErrors};
+/// use strainbridge::linalg::Matrix;
+///
+/// let rows = Matrix::from_element(3, 1, 1.0);
+/// let model = LinearGaussian {
+///     rows: &rows,
+///     errors: ReadingErrors::Variances(&[4.0, 4.0, 4.0]),
+///     prior_sd: &[None],
+///     scales: &[1.0],
+/// };
+/// let estimate = model.estimate(&[9.0, 10.0, 14.0]).unwrap();
+/// assert!((estimate.value[0] - 11.0).abs() < 1e-12);
+/// assert!((estimate.covariance[(0, 0)] - 4.0 / 3.0).abs() < 1e-12);
+/// assert!((estimate.chi2 - (4.0 + 1.0 + 9.0) / 4.0).abs() < 1e-12);
+///
+/// // A prior of N(0, 4/3) has the weight of the three readings and halves the value.
+/// let with_prior = LinearGaussian { prior_sd: &[Some((4.0_f64 / 3.0).sqrt())], ..model };
+/// assert!((with_prior.estimate(&[9.0, 10.0, 14.0]).unwrap().value[0] - 5.5).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct LinearGaussian<'a> {
     /// `A`, `n` readings by `k` parameters.

@@ -3,6 +3,25 @@
 use crate::finding::Finding;
 
 /// Loads of one run (a static state or the mean of a record), in job units, with their covariance.
+///
+/// # Example
+/// The sum of two loads whose errors are opposite is certain:
+/// ```
+/// use strainbridge::estimate::{LoadEstimate, NORMAL_95};
+///
+/// let mut loads = LoadEstimate {
+///     run: "R1".to_owned(),
+///     names: vec!["left".to_owned(), "right".to_owned()],
+///     values: vec![30.0, 50.0],
+///     covariance: vec![4.0, -4.0, -4.0, 4.0],
+///     coverage_factor: NORMAL_95,
+///     findings: Vec::new(),
+/// };
+/// loads.add_sums(&["axle".to_owned()], &[vec![(0, 1.0), (1, 1.0)]]);
+/// assert_eq!((loads.values[2], loads.sigma(2)), (80.0, 0.0));
+/// let [low, high] = loads.interval(0);
+/// assert!((high - low - 2.0 * NORMAL_95 * 2.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadEstimate {
     /// Run name.

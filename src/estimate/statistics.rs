@@ -11,7 +11,18 @@ pub fn median(mut values: Vec<f64>) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// Value at which half of the weight is reached, of values with their weights; sorts them. `None` of none.
+/// Returns the value at which half of the weight is reached, and sorts the pairs of value and weight. `None` without values.
+///
+/// # Example
+/// ```
+/// use strainbridge::estimate::{median, weighted_median};
+///
+/// let mut values = [(10.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
+/// assert_eq!(weighted_median(&mut values), median(vec![10.0, 1.0, 2.0]));
+/// // More than half of the weight is at 10.
+/// assert_eq!(weighted_median(&mut [(1.0, 1.0), (2.0, 1.0), (10.0, 3.0)]), Some(10.0));
+/// assert_eq!(weighted_median(&mut []), None);
+/// ```
 pub fn weighted_median(values: &mut [(f64, f64)]) -> Option<f64> {
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
     let total: f64 = values.iter().map(|v| v.1).sum();

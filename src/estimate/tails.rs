@@ -23,11 +23,34 @@ pub const COVERAGE: f64 = 0.95;
 pub const TOO_FEW: f64 = 0.01;
 
 /// Returns the probability that at most `held` of `of` independent 95 % intervals contain the truth; 1 for none.
+///
+/// # Example
+/// ```
+/// use strainbridge::estimate::{TOO_FEW, chance_of_so_few};
+///
+/// // One interval misses with the probability 0.05, two miss with its square.
+/// assert!((chance_of_so_few(0, 1) - 0.05).abs() < 1e-12);
+/// assert!((chance_of_so_few(0, 2) - 0.0025).abs() < 1e-12);
+/// assert_eq!(chance_of_so_few(20, 20), 1.0);
+/// // 15 of 20 intervals is evidence that they are too narrow.
+/// assert!(chance_of_so_few(15, 20) < TOO_FEW);
+/// ```
 pub fn chance_of_so_few(held: usize, of: usize) -> f64 {
     Binomial::new(COVERAGE, of as u64).map_or(1.0, |b| b.cdf(held as u64))
 }
 
-/// Returns the upper tail probability of chi-square with `dof` degrees of freedom; 1 without any.
+/// Returns the upper tail probability of chi-square with `dof` degrees of freedom; 1 without any. A value that is not a number gives 1 too.
+///
+/// # Example
+/// ```
+/// use strainbridge::estimate::chi_square_tail;
+///
+/// // Abramowitz and Stegun, table 26.8: 3.841 and 18.307 are exceeded with the probability 0.05.
+/// assert!((chi_square_tail(3.84146, 1.0) - 0.05).abs() < 1e-6);
+/// assert!((chi_square_tail(18.30704, 10.0) - 0.05).abs() < 1e-6);
+/// // Two degrees of freedom have a closed form: exp(-x / 2).
+/// assert!((chi_square_tail(6.0, 2.0) - (-3.0_f64).exp()).abs() < 1e-12);
+/// ```
 pub fn chi_square_tail(chi2: f64, dof: f64) -> f64 {
     of(chi2, |x| Some(ChiSquared::new(dof).ok()?.sf(x)))
 }

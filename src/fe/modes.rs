@@ -70,7 +70,27 @@ pub struct ModalSolution {
 /// PARAM,WTMASS and PARAM,COUPMASS included.
 ///
 /// # Errors
-/// See [`FeError`]; a structure without mass.
+/// Returns every error of [`FeError`], for example [`FeError::NoMassToVibrate`] for a structure without mass.
+///
+/// # Example
+/// Two free masses on a spring vibrate at `sqrt(k (1 / m1 + 1 / m2)) / 2 pi`:
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+/// use strainbridge::fe::solve_modes;
+/// use strainbridge::model::Model;
+///
+/// # const DECK: &str = "SOL 103\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,1.,0.,0.,,23456
+/// # CELAS2,1,8000.,1,1,2,1\nCONM2,2,1,,2.\nCONM2,3,2,,3.\nENDDATA\n";
+/// let deck = read_deck("masses.bdf", DECK.into(), &mut MemoryLoader::default());
+/// let (model, _) = Model::from_deck(&deck);
+/// let found = solve_modes(&model, None, None, 1, &Default::default())?;
+/// let exact = (8000.0_f64 * (1.0 / 2.0 + 1.0 / 3.0)).sqrt() / std::f64::consts::TAU;
+/// assert!((found.modes[0].frequency / exact - 1.0).abs() < 1e-9);
+/// // Momentum: the masses move in opposite directions, and their centre stays.
+/// let shape = &found.modes[0].shape;
+/// assert!((2.0 * shape[0][0] + 3.0 * shape[1][0]).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solve_modes(
     model: &Model,
     spc: Option<u32>,
@@ -133,7 +153,7 @@ pub fn solve_modes(
 /// Frequencies of the lowest elastic modes from the factor of a static solution.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub(super) fn frequencies(
     prepared: &Prepared<'_>,
     mass: &Mass,

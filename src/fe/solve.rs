@@ -28,10 +28,32 @@ const REFINED_ABOVE: f64 = 1e-7;
 /// Epsilon after refinement above which digits that a gauge reads may be lost, which a finding reports (the usual limit of Nastran users is 1e-3).
 const INACCURATE_ABOVE: f64 = 1e-6;
 
-/// Solves unit loads on the free structure, subcases numbered 1 .. n.
+/// Solves unit loads on the free structure, subcases numbered 1 .. n. Inertia balances each load.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
+///
+/// # Example
+/// Two equal masses on a rod: a force `F` at one end accelerates both, so `F / 2` is the tension of the rod.
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+/// use strainbridge::fe::{UnitLoad, solve_unit_loads};
+/// use strainbridge::model::{Model, Vec3};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.
+/// # PBAR,1,1,100.,2.+4,2.+4,1.+4\nMAT1,1,200000.,,.3\nCONM2,11,1,,1.\nCONM2,12,2,,1.\nENDDATA\n";
+/// let deck = read_deck("rod.bdf", DECK.into(), &mut MemoryLoader::default());
+/// let (model, _) = Model::from_deck(&deck);
+/// let grid = model.grid_ix(2).unwrap();
+/// let force = UnitLoad::AtGrid { grid, force: Vec3::x(), moment: Vec3::zeros() };
+/// let (solution, report) = solve_unit_loads(&model, &[force], &Default::default())?;
+///
+/// let (bar, e, area) = (model.beam_ix(1).unwrap(), 200_000.0, 100.0);
+/// let (_, axial) = solution.cases[0].beams.strain_at(bar, 0.5).unwrap();
+/// assert!((axial / (0.5 / (e * area)) - 1.0).abs() < 1e-9);
+/// assert!(report.balance[0].residual < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn solve_unit_loads(
     model: &Model,
     loads: &[UnitLoad],
@@ -43,7 +65,7 @@ pub fn solve_unit_loads(
 /// Solves unit loads on a structure held like this, subcases numbered 1 .. n.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solve_unit_loads_on(
     model: &Model,
     support: Support,
@@ -56,7 +78,7 @@ pub fn solve_unit_loads_on(
 /// Solves load cases; those with the same constraints share one factor.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solve_cases(
     model: &Model,
     cases: &[LoadCase],
@@ -70,7 +92,7 @@ pub fn solve_cases(
 /// Displacements of load cases, without strain: what is worth keeping of a solution.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solve_displacements(
     model: &Model,
     cases: &[LoadCase],
@@ -82,7 +104,7 @@ pub fn solve_displacements(
 /// The strain of solved load cases.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn solution_of(
     model: &Model,
     cases: &[LoadCase],
@@ -355,7 +377,7 @@ pub(super) fn acting(
 /// Work of the factor of the free structure, longest chain in it, and what the busiest of 1, 2, 4, .. 64 threads does: [`Symbolic::tree_work`].
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn factor_on_paper(model: &Model) -> Result<(TreeWork, Vec<(usize, f64)>), FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared);
@@ -371,7 +393,7 @@ pub type Triplets = (usize, Vec<(usize, usize, f64)>);
 /// The stiffness of the free structure, supported determinately: for comparing factorisations with other programs.
 ///
 /// # Errors
-/// See [`FeError`].
+/// Returns every error of [`FeError`].
 pub fn supported_stiffness(model: &Model) -> Result<Triplets, FeError> {
     let prepared = Prepared::new(model);
     let mass = Mass::new(&prepared);

@@ -33,10 +33,27 @@ impl Surface {
     }
 }
 
-/// The symmetric strain tensor in the basic frame, tensor shear: `E = R' e R`.
+/// Returns the symmetric strain tensor in the basic frame, tensor shear: `E = R' e R`.
 ///
-/// `strain` is exx, eyy, gxy in the frame with rows `axes` (R); gxy is engineering shear and is halved here; `ezz` is the normal strain
+/// `strain` is exx, eyy, gxy in the frame with rows `axes` (R); gxy is engineering shear and is halved here. `ezz` is the normal strain
 /// across the thickness, see [`normal_strain_ratio`]. Shear across the thickness is zero at a free surface.
+///
+/// # Example
+/// ```
+/// use strainbridge::fe::strain_tensor::{basic_tensor, principal_in_plane, strain_along};
+/// use strainbridge::model::{Mat3, Vec3};
+///
+/// // The x axis of the element is the y axis of the basic frame.
+/// let axes = Mat3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+/// let strain = [300e-6, 100e-6, 200e-6];
+/// let tensor = basic_tensor(strain, -50e-6, &axes);
+/// assert!((strain_along(&tensor, &Vec3::y()) - 300e-6).abs() < 1e-18);
+/// assert!((strain_along(&tensor, &Vec3::x()) - 100e-6).abs() < 1e-18);
+/// // Trace and principal strains do not depend on the frame.
+/// assert!((tensor.trace() - 350e-6).abs() < 1e-18);
+/// let largest = tensor.symmetric_eigenvalues().max();
+/// assert!((largest - principal_in_plane(strain)[0]).abs() < 1e-15);
+/// ```
 pub fn basic_tensor(strain: PlaneStrain, ezz: f64, axes: &Mat3) -> Mat3 {
     let [exx, eyy, gxy] = strain;
     let local = Mat3::new(exx, gxy / 2.0, 0.0, gxy / 2.0, eyy, 0.0, 0.0, 0.0, ezz);
@@ -85,7 +102,21 @@ pub fn strain_from_curvature(row1: PlaneStrain, row2: PlaneStrain, z: f64) -> Pl
     std::array::from_fn(|i| row1[i] - z * row2[i])
 }
 
-/// Strain of plane stress from stress in an isotropic material: `exx = (oxx - nu oyy) / e`, `gxy = txy / g`. No thermal strain.
+/// Returns the strain of plane stress in an isotropic material: `exx = (oxx - nu oyy) / e`, `gxy = txy / g`. It contains no thermal strain.
+///
+/// # Example
+/// Equal tension on both axes of steel strains both axes by `o (1 - nu) / e`:
+/// ```
+/// use strainbridge::fe::strain_tensor::strain_from_stress;
+///
+/// let (e, nu) = (210e9, 0.3);
+/// let g = e / (2.0 * (1.0 + nu));
+/// let strain = strain_from_stress([100e6, 100e6, 0.0], e, g, nu);
+/// assert!((strain[0] - 100e6 * 0.7 / e).abs() < 1e-15 && strain[0] == strain[1]);
+/// // Pure shear `t` is tension `t` and pressure `t` at 45 degrees, so gxy / 2 = t (1 + nu) / e.
+/// let shear = strain_from_stress([0.0, 0.0, 50e6], e, g, nu);
+/// assert!((shear[2] / 2.0 - 50e6 * 1.3 / e).abs() < 1e-15);
+/// ```
 pub fn strain_from_stress(stress: PlaneStrain, e: f64, g: f64, nu: f64) -> PlaneStrain {
     let [oxx, oyy, txy] = stress;
     [(oxx - nu * oyy) / e, (oyy - nu * oxx) / e, txy / g]

@@ -3,6 +3,19 @@
 use serde::{Deserialize, Serialize};
 
 /// Severity of a finding. The worst severity of an answer decides its exit code.
+///
+/// Severities are ordered: `Info < Warning < Error`.
+///
+/// # Example
+/// ```
+/// use strainbridge::Severity;
+///
+/// let of_findings = [Severity::Info, Severity::Warning, Severity::Info];
+/// assert_eq!(of_findings.iter().max(), Some(&Severity::Warning));
+/// assert!(Severity::Warning < Severity::Error);
+/// assert_eq!(Severity::named("error"), Some(Severity::Error));
+/// assert_eq!(Severity::named("fatal"), None);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {

@@ -17,7 +17,35 @@ use crate::model::{Mat3, Model, Shell, Vec3};
 /// A channel is a linear functional of the strain at the places of its arms; [`reading`](super::reading) evaluates it in a load case.
 ///
 /// # Errors
-/// Where it can't be laid onto the model.
+/// Returns the reason why the gauge can't be placed on the model.
+///
+/// # Example
+/// A square plate under tension along x reads `e`, `-nu e`, and `e (1 - nu) / 2` at 45 degrees:
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+/// use strainbridge::fe::{LoadCase, solve_cases};
+/// use strainbridge::gauge::{CornerRows, GaugeSpec, build, reading};
+/// use strainbridge::model::Model;
+///
+/// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,10.,0.,0.\nGRID,3,,10.,10.,0.
+/// # GRID,4,,0.,10.,0.\nCQUAD4,1,1,1,2,3,4\nPSHELL,1,1,1.,1,,1\nMAT1,1,1000.,,.25\nSPC1,1,13456,1,4\nSPC1,1,2,1\nSPC1,1,345,2,3
+/// # FORCE,2,2,,5.,1.,0.,0.\nFORCE,2,3,,5.,1.,0.,0.\nENDDATA\n";
+/// let deck = read_deck("plate.bdf", DECK.into(), &mut MemoryLoader::default());
+/// let (model, _) = Model::from_deck(&deck);
+/// let subcases = deck.case_control.effective_subcases();
+/// let case = LoadCase::of_subcase(&model, &subcases[0], "tension".to_owned());
+/// let (solution, _) = solve_cases(&model, &[case], &Default::default())?;
+///
+/// let shell = model.shell_ix(1).unwrap();
+/// let e = 10.0 / 10.0 / 1000.0; // force over area over modulus
+/// for (degrees, expected) in [(0.0_f64, e), (90.0, -0.25 * e), (45.0, e * 0.75 / 2.0)] {
+///     let spec = GaugeSpec { angle_rad: degrees.to_radians(), ..GaugeSpec::on("G1", shell) };
+///     let (channels, _) = build(&model, &spec, CornerRows::Present)?;
+///     let strain = reading(&channels[0], &solution.cases[0]).unwrap();
+///     assert!((strain - expected).abs() < 1e-9 * e);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn build(
     model: &Model,
     spec: &GaugeSpec,

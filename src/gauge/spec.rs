@@ -42,7 +42,25 @@ impl Bridge {
     }
 }
 
-/// Three grids at one place.
+/// Rosette of three grids at one place. The legs a, b, c give the whole strain in the surface.
+///
+/// # Example
+/// Strain along an angle is `exx cos^2 + eyy sin^2 + gxy sin cos`, so the legs of a rectangular rosette give exx, gxy and eyy:
+/// ```
+/// use strainbridge::gauge::Rosette;
+///
+/// let [exx, eyy, gxy] = [400e-6, -100e-6, 300e-6];
+/// let along = |angle: f64| {
+///     let (s, c) = angle.sin_cos();
+///     exx * c * c + eyy * s * s + gxy * s * c
+/// };
+/// let [a, b, c] = Rosette::Rectangular.legs().map(|(_, angle)| along(angle));
+/// assert!((a - exx).abs() < 1e-15 && (c - eyy).abs() < 1e-15);
+/// assert!((2.0 * b - a - c - gxy).abs() < 1e-15);
+/// // The mean of a delta rosette is the mean of the principal strains.
+/// let mean = Rosette::Delta.legs().map(|(_, angle)| along(angle)).iter().sum::<f64>() / 3.0;
+/// assert!((mean - (exx + eyy) / 2.0).abs() < 1e-15);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rosette {
     /// Legs a, b, c at 0, 45, 90 degrees from the axis.

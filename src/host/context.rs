@@ -37,6 +37,23 @@ pub trait Files: Sync {
 }
 
 /// Files of the file system. Relative paths start at the working directory of the process.
+///
+/// # Example
+/// ```
+/// use std::io::ErrorKind;
+/// use std::path::Path;
+/// use strainbridge::Disk;
+/// use strainbridge::host::context::Files;
+///
+/// let runs = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/runs.csv"));
+/// let bytes = Disk.load(runs)?;
+/// assert!(bytes.starts_with(b"run,"));
+/// assert_eq!(Disk.stamp(runs)?.size, bytes.len() as u64);
+///
+/// let missing = Disk.load(Path::new("no-such-file.csv")).err();
+/// assert_eq!(missing.map(|e| e.kind()), Some(ErrorKind::NotFound));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Disk;
 
@@ -55,6 +72,18 @@ impl Files for Disk {
 }
 
 /// Files in memory, by path. Tests and other programs give their files to a command with it.
+///
+/// # Example
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::{Files, InMemory};
+///
+/// let files = InMemory::default().with("runs.csv", "run,left\n").with("runs.csv", "run,right\n");
+/// // A later file replaces an earlier one of the same path.
+/// assert_eq!(&files.load(Path::new("runs.csv"))?[..], b"run,right\n");
+/// assert!(files.load(Path::new("other.csv")).is_err());
+/// # Ok::<(), std::io::Error>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct InMemory {
     files: BTreeMap<PathBuf, Vec<u8>>,
@@ -116,6 +145,33 @@ pub struct Silent;
 impl Progress for Silent {}
 
 /// Surroundings of a command: files, store of solutions, and progress. Every command takes one.
+///
+/// # Example
+/// A program that has its deck in memory, stores the solution and lists the stages:
+/// ```
+/// use std::path::Path;
+/// use std::sync::Mutex;
+/// use strainbridge::host::context::{InMemory, Progress};
+/// use strainbridge::host::store::Memory;
+/// use strainbridge::{Context, solve_deck};
+///
+/// struct Stages(Mutex<Vec<String>>);
+/// impl Progress for Stages {
+///     fn begin(&self, stage: &str) {
+///         self.0.lock().unwrap().push(stage.to_owned());
+///     }
+/// }
+///
+/// # const ROD: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.,,23456\nCROD,1,1,1,2
+/// # PROD,1,1,100.\nMAT1,1,210000.,,.3\nSPC1,1,123456,1\nFORCE,2,2,,2100.,1.,0.,0.\nENDDATA\n";
+/// let files = InMemory::default().with("rod.bdf", ROD);
+/// let stages = Stages(Mutex::default());
+/// let cx = Context::new(&files).store(&Memory::default()).progress(&stages);
+/// let rod = solve_deck(Path::new("rod.bdf"), Default::default(), &cx)?;
+/// assert_eq!(rod.inputs[0].path, "rod.bdf");
+/// assert!(stages.0.lock().unwrap().contains(&"solve".to_owned()));
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 #[derive(Clone)]
 pub struct Context<'a> {
     /// Source of files.

@@ -6,6 +6,21 @@ use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 /// Fault of an input, printed as `file:line: field: what is wrong: what to do`. [`bounded`] shortens long names in its text.
+///
+/// # Example
+/// ```
+/// use strainbridge::Fault;
+///
+/// let fault = Fault::at("job.toml", 7, "load.grid", "grid 12 is not in the deck", "name a grid of the deck");
+/// assert_eq!(fault.line, Some(7));
+/// assert_eq!(
+///     fault.to_string(),
+///     "job.toml:7: load.grid: grid 12 is not in the deck: name a grid of the deck"
+/// );
+/// // A fault of a whole file has no line, and editors jump to the first one.
+/// let fault = Fault::of("job.toml", "model", "the job has no [model]", "name the deck");
+/// assert!(fault.line.is_none() && fault.to_string().starts_with("job.toml:1: model: "));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Fault {
     /// File, as the job or the command line states it.
@@ -74,6 +89,21 @@ impl fmt::Display for Fault {
 pub type FaultList = Vec<Fault>;
 
 /// All faults of the inputs, at least one. It is the error type of every command.
+///
+/// A slice of [`Fault`]s, so `iter`, `len` and indices work on it.
+///
+/// # Example
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Faults, Job};
+///
+/// const JOB: &str = "units = \"m-kg-s\"\ncolour = \"red\"\nmeasured = { noise_microstrain = \"1\" }\n";
+/// let files = InMemory::default().with("job.toml", JOB);
+/// let faults: Faults = Job::read("job.toml", &files).unwrap_err();
+/// assert!(faults.len() >= 2, "both lines are reported at once");
+/// assert!(faults.iter().any(|f| f.line == Some(2) && f.field == "colour"));
+/// assert!(faults.iter().any(|f| f.line == Some(3)));
+/// ```
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Faults(Vec<Fault>);
 

@@ -31,6 +31,34 @@ pub trait Answer: Serialize {
 }
 
 /// Answer of a command with inputs, findings and units. It dereferences to the answer, so `plan.gauges` is a field of the answer.
+///
+/// # Example
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, recover};
+///
+/// # const JOB: &str = r#"
+/// # units = "m-kg-s"
+/// # load = [{ name = "left" }, { name = "right" }]
+/// # sensitivity = { file = "s.csv" }
+/// # measured = { strain = "strain.csv", noise_microstrain = 1.0 }
+/// # "#;
+/// # let files = InMemory::default()
+/// #     .with("job.toml", JOB)
+/// #     .with("s.csv", "gauge,left,right\nG1,0.10,0.02\nG2,0.02,0.10\nG3,0.05,0.05\n")
+/// #     .with("strain.csv", "run,G1,G2,G3\nR1,221,139,151\n");
+/// let job = Job::read("job.toml", &files)?;
+/// let outcome = recover(&job, &Context::new(&files))?;
+/// assert!(outcome.is_reliable());
+/// assert!(outcome.inputs.iter().any(|i| i.path == "strain.csv" && i.sha256.len() == 64));
+/// assert!(outcome.units.list().contains(&("force", "N".to_owned())));
+///
+/// // The sentence for people is the first text of the file for machines.
+/// let json: serde_json::Value = serde_json::from_str(&outcome.to_json(&Default::default())?)?;
+/// assert_eq!(json["command"], "recover");
+/// assert_eq!(json["summary"], outcome.summary());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Outcome<A> {
     /// Units of the answer.

@@ -10,7 +10,21 @@ use faer::{Auto, MatMut, MatRef, Par, Spec};
 /// Order from which blocks pay: below it the setting up of blocks takes longer than a plain loop.
 const BLOCKED: usize = 64;
 
-/// `L` of `C = L L'`, and `ln det C`.
+/// Lower Cholesky factor `L` of a covariance `C = L L'`, with `ln det C`. It gives `C^-1 x` and `x' C^-1 x` without an inverse.
+///
+/// # Example
+/// ```
+/// use strainbridge::linalg::cholesky::Cholesky;
+///
+/// let covariance = [4.0, 2.0, 2.0, 3.0]; // det = 8
+/// let factor = Cholesky::of(&covariance, 2).unwrap();
+/// assert!((factor.log_det() - 8.0_f64.ln()).abs() < 1e-12);
+/// let x = factor.solve(&[8.0, 8.0]); // C x = b
+/// assert!((4.0 * x[0] + 2.0 * x[1] - 8.0).abs() < 1e-12);
+/// assert!((2.0 * x[0] + 3.0 * x[1] - 8.0).abs() < 1e-12);
+/// // Correlations above 1 are impossible.
+/// assert!(Cholesky::of(&[1.0, 2.0, 2.0, 1.0], 2).is_none());
+/// ```
 #[derive(Clone, Debug)]
 pub struct Cholesky {
     n: usize,

@@ -21,7 +21,20 @@ pub struct Svd {
 /// Relative size below which a singular value counts as zero: what single-precision result files distinguish from rounding.
 pub const RANK_TOLERANCE: f64 = 1e-6;
 
-/// The singular value decomposition; `None` where `a` holds numbers that are not finite.
+/// Returns the thin singular value decomposition `a = u diag(s) v'`, `s` descending. `None` if an entry of `a` is not finite.
+///
+/// # Example
+/// ```
+/// use strainbridge::linalg::{Matrix, dense};
+///
+/// let a = Matrix::from_row_slice(3, 2, &[3.0, 0.0, 0.0, -2.0, 0.0, 0.0]);
+/// let d = dense::svd(&a).unwrap();
+/// assert!((d.s[0] - 3.0).abs() < 1e-12 && (d.s[1] - 2.0).abs() < 1e-12);
+/// let again = &d.u * Matrix::from_diagonal(&d.s.clone().into()) * d.v.transpose();
+/// assert!((again - &a).amax() < 1e-12);
+/// assert!((dense::condition(&a) - 1.5).abs() < 1e-12);
+/// assert_eq!(dense::rank(&a), 2);
+/// ```
 pub fn svd(a: &Matrix) -> Option<Svd> {
     if a.iter().any(|v| !v.is_finite()) {
         return None;

@@ -83,9 +83,20 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>> + Sync> LeastSquaresProblem<f64, Dyn, Dyn
     }
 }
 
-/// Parameters near `start` that minimise the sum of squared residuals.
+/// Returns parameters near `start` that minimise the sum of squared residuals. `None` of `residuals` ends the search.
 ///
-/// `scale` is the size of each parameter (its steps and tolerances are relative to it, also where the start is zero).
+/// `scale` is the size of each parameter. Steps and tolerances are relative to it, also if the start is zero.
+///
+/// # Example
+/// Rosenbrock's valley has its minimum at (1, 1):
+/// ```
+/// use strainbridge::linalg::levenberg::{Stop, levenberg_marquardt};
+///
+/// let residuals = |x: &[f64]| Some(vec![10.0 * (x[1] - x[0] * x[0]), 1.0 - x[0]]);
+/// let found = levenberg_marquardt(residuals, &[-1.2, 1.0], &[1.0, 1.0]);
+/// assert_eq!(found.stop, Stop::Converged);
+/// assert!((found.x[0] - 1.0).abs() < 1e-6 && (found.x[1] - 1.0).abs() < 1e-6);
+/// ```
 pub fn levenberg_marquardt<F>(residuals: F, start: &[f64], scale: &[f64]) -> Minimum
 where
     F: Fn(&[f64]) -> Option<Vec<f64>> + Sync,

@@ -143,7 +143,21 @@ fn solve_dense(mut a: DMatrix<f64>, y: &DVector<f64>) -> Solution {
     }
 }
 
-/// Least-squares solution of a small dense system by rows; `None` when the rows are ragged or empty.
+/// Returns the least-squares solution of a small dense system `A x = y` by rows. `None` if the rows are ragged or empty.
+///
+/// # Example
+/// The line `y = 1 + 2 t` through three points:
+/// ```
+/// use strainbridge::linalg::tall::solve_rows;
+///
+/// let rows = [0.0, 1.0, 2.0].map(|t| vec![1.0, t]);
+/// let line = solve_rows(&rows, &[1.0, 3.0, 5.0]).unwrap();
+/// assert!((line.x[0] - 1.0).abs() < 1e-12 && (line.x[1] - 2.0).abs() < 1e-12);
+/// // (A'A)^-1 = [[5, -3], [-3, 3]] / 6
+/// assert!((line.inverse[0][0] - 5.0 / 6.0).abs() < 1e-12);
+/// assert!((line.inverse[0][1] + 0.5).abs() < 1e-12);
+/// assert!(solve_rows(&rows, &[1.0]).is_none());
+/// ```
 pub fn solve_rows(a: &[Vec<f64>], y: &[f64]) -> Option<Solution> {
     let n = a.first()?.len();
     if a.len() != y.len() || a.iter().any(|r| r.len() != n) || n == 0 {

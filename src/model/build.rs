@@ -37,7 +37,26 @@ impl Model {
         (model, faults)
     }
 
-    /// The model that a deck means: its cards, PARAMs of case control (which win), names of properties and components.
+    /// Builds the model of a deck and lists every fault. PARAMs of case control override those of bulk data, and properties keep their names.
+    ///
+    /// A model with a fault of weight [`super::FaultWeight::Error`] can be shown, but not solved.
+    ///
+    /// # Example
+    /// The mass of a plate is `rho t a b`, and its centre of gravity is its middle:
+    /// ```
+    /// use nastran::bdf::{MemoryLoader, read_deck};
+    /// use strainbridge::model::Model;
+    ///
+    /// # const DECK: &str = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,300.,0.,0.\nGRID,3,,300.,200.,0.\nGRID,4,,0.,200.,0.
+    /// # CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,5.,1,,1\nMAT1,1,210000.,,.3,7.85-9\nENDDATA\n";
+    /// let deck = read_deck("plate.bdf", DECK.into(), &mut MemoryLoader::default());
+    /// let (model, faults) = Model::from_deck(&deck);
+    /// assert!(faults.is_empty());
+    /// assert_eq!(model.shells[model.shell_ix(7).unwrap().us()].id, 7);
+    /// let weight = model.weight();
+    /// assert!((weight.mass / (7.85e-9 * 5.0 * 300.0 * 200.0) - 1.0).abs() < 1e-12); // t
+    /// assert!((weight.cg.x - 150.0).abs() < 1e-9 && (weight.cg.y - 100.0).abs() < 1e-9);
+    /// ```
     pub fn from_deck(deck: &Deck) -> (Model, Vec<ModelFault>) {
         let (structure, loads) = super::unsupported_cards::of_deck(deck);
         let (case_params, differing) = super::case_params::params_of_case_control(deck);

@@ -36,8 +36,24 @@ impl Frame {
         })
     }
 
-    /// Basic location of a point given in this system's coordinates; angles in degrees: theta of a cylindrical system about z,
-    /// theta of a spherical one from z, phi about z.
+    /// Returns the basic location of a point given in this system's coordinates. Angles are in degrees.
+    ///
+    /// Theta of a cylindrical system is about z. Theta of a spherical system is from z, and phi is about z.
+    ///
+    /// # Example
+    /// ```
+    /// use nastran::cards::CoordKind;
+    /// use strainbridge::model::{Frame, Vec3};
+    ///
+    /// let cylinder = Frame { kind: CoordKind::Cylindrical, ..Frame::basic() };
+    /// let x = cylinder.to_basic([2.0, 90.0, 5.0]);
+    /// assert!((x - Vec3::new(0.0, 2.0, 5.0)).norm() < 1e-12);
+    /// // There the first axis is radial and the second tangential.
+    /// let tangential = cylinder.vector_to_basic([0.0, 1.0, 0.0], x);
+    /// assert!((tangential - Vec3::new(-1.0, 0.0, 0.0)).norm() < 1e-12);
+    /// let sphere = Frame { kind: CoordKind::Spherical, ..Frame::basic() };
+    /// assert!((sphere.to_basic([2.0, 90.0, 90.0]) - Vec3::new(0.0, 2.0, 0.0)).norm() < 1e-12);
+    /// ```
     pub fn to_basic(&self, x: [f64; 3]) -> Vec3 {
         let [a, b, c] = x;
         let local = match self.kind {

@@ -26,7 +26,23 @@ impl RefinedModel {
 }
 
 impl Model {
-    /// Every shell divided in four at the middles of its sides: [`Model::refined_at`] all of them.
+    /// Returns the model with every shell divided in four at the middles of its sides, see [`Model::refined_at`]. `None` if that is impossible.
+    ///
+    /// # Example
+    /// ```
+    /// use nastran::bdf::{MemoryLoader, read_deck};
+    /// use strainbridge::model::Model;
+    ///
+    /// # const DECK: &str = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,3.,0.,0.\nGRID,3,,4.,2.,0.\nGRID,4,,0.,2.,0.
+    /// # CQUAD4,7,1,1,2,3,4\nPSHELL,1,1,.1,1,,1\nMAT1,1,2.1+11,,.3,7850.\nENDDATA\n";
+    /// let deck = read_deck("plate.bdf", DECK.into(), &mut MemoryLoader::default());
+    /// let (coarse, _) = Model::from_deck(&deck);
+    /// let fine = coarse.refined().unwrap();
+    /// assert!(fine.is_whole() && fine.children.len() == 1);
+    /// assert_eq!((fine.model.shells.len(), fine.model.grids.len()), (4, 9));
+    /// // Division changes neither mass nor centre of gravity by more than the rule of the shell.
+    /// assert!((fine.model.weight().mass / coarse.weight().mass - 1.0).abs() < 1e-12);
+    /// ```
     pub fn refined(&self) -> Option<RefinedModel> {
         self.refined_at(&vec![true; self.shells.len()])
     }

@@ -94,8 +94,27 @@ impl Carriers {
     }
 }
 
-/// Forces that an RBE3 with equal weights and translations 123 puts on its arms for a force at `at`:
-/// `f_k = S_k (sum S'S)^-1 (F, 0)`, `S_k = [I, -[x_k - at] x]`. `None` where the arms lie on a line.
+/// Returns the forces that an RBE3 with equal weights and translations 123 puts on its arms for a force at `at`.
+///
+/// The force of an arm is `f_k = S_k (sum S'S)^-1 (F, 0)` with `S_k = [I, -[x_k - at] x]`. `None` if all arms are on one line.
+///
+/// # Example
+/// The forces on the arms are in equilibrium with the force, and near arms take more of it:
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+/// use strainbridge::model::{GridIx, Model, Vec3};
+/// use strainbridge::payload::spread;
+///
+/// let text = "BEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,2.,0.,0.\nGRID,3,,2.,1.,0.\nGRID,4,,0.,1.,0.\nENDDATA\n";
+/// let deck = read_deck("arms.bdf", text.into(), &mut MemoryLoader::default());
+/// let (model, _) = Model::from_deck(&deck);
+/// let (at, force) = (Vec3::new(0.5, 0.6, 0.3), Vec3::new(0.0, 0.0, -100.0));
+/// let forces = spread(&model, &[0, 1, 2, 3].map(GridIx), at, force).unwrap();
+/// let sum: Vec3 = forces.iter().map(|f| f.1).sum();
+/// let moment: Vec3 = forces.iter().map(|(g, f)| (model.grids[g.us()].x - at).cross(f)).sum();
+/// assert!((sum - force).norm() < 1e-9 && moment.norm() < 1e-9);
+/// assert!(forces[0].1.z < forces[1].1.z); // both downward, grid 1 is nearer
+/// ```
 pub fn spread(
     model: &Model,
     arms: &[GridIx],

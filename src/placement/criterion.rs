@@ -12,7 +12,24 @@
 
 use crate::linalg::spd;
 
-/// Criterion that a layout maximises.
+/// Criterion that a layout maximises. [`Criterion::at`] gives its value at an information matrix `M`.
+///
+/// # Example
+/// ```
+/// use strainbridge::placement::Criterion;
+///
+/// let m = [4.0, 1.0, 1.0, 2.0]; // det = 7
+/// let value = |c: Criterion| c.at(&m, 2).unwrap().value;
+/// assert!((value(Criterion::D) - 7.0_f64.ln()).abs() < 1e-12);
+/// // Only the second column is wanted: det M over the entry of the nuisance column.
+/// assert!((value(Criterion::Ds(1)) - (7.0_f64 / 4.0).ln()).abs() < 1e-12);
+/// // A-optimality: the sum of the variances, the trace of M^-1, is 6 / 7.
+/// let a = value(Criterion::Linear(vec![1.0, 0.0, 0.0, 1.0]));
+/// assert!((a + 2.0 * (6.0_f64 / 7.0).ln()).abs() < 1e-12);
+/// // The slope of ln det M is M^-1.
+/// let slope = Criterion::D.at(&m, 2).unwrap().slope(2);
+/// assert!((slope[0] - 2.0 / 7.0).abs() < 1e-12 && (slope[1] + 1.0 / 7.0).abs() < 1e-12);
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Criterion {
     /// The determinant for all columns.

@@ -92,10 +92,29 @@ impl fmt::Display for PlaceError {
 
 impl std::error::Error for PlaceError {}
 
-/// The best layout found for `spec`, with the bound that no other can pass.
+/// Returns the best layout found for `spec`, with the bound that no other layout can pass.
 ///
 /// # Errors
-/// Where there are too few places, or the loads can't be separated by that many gauges.
+/// Returns an error if there are too few places, or if that many gauges can't separate the loads.
+///
+/// # Example
+/// Three gauges for two loads, among five whose determinants are easily compared by hand:
+/// ```
+/// use strainbridge::placement::candidates::{Candidates, Scatter};
+/// use strainbridge::placement::{Spec, place};
+///
+/// let rows = [[1.0, 0.0], [0.0, 1.0], [3.0, 0.0], [0.0, 2.0], [2.0, 2.0]];
+/// let fill = |place: usize, row: &mut [f64]| row.copy_from_slice(&rows[place]);
+/// let candidates = Candidates::from_rows(2, rows.len(), Scatter::uniform(1.0), fill);
+/// let layout = place(&candidates, &Spec::new(3, 2))?;
+/// let mut chosen: Vec<u32> = layout.gauges.iter().map(|g| g.place).collect();
+/// chosen.sort_unstable();
+/// // S'S = [[13, 4], [4, 8]], det = 88, is the largest of ten layouts.
+/// assert_eq!(chosen, [2, 3, 4]);
+/// assert!((layout.log_det - 88.0_f64.ln()).abs() < 1e-9);
+/// assert!(layout.log_det <= layout.upper_bound + 1e-9 && layout.proved);
+/// # Ok::<(), strainbridge::placement::PlaceError>(())
+/// ```
 pub fn place(c: &Candidates, spec: &Spec) -> Result<Layout, PlaceError> {
     // Loads asked for.
     let k = spec.criterion.degree(c.n_loads());

@@ -6,12 +6,37 @@ use crate::estimate::{LinearEstimate, LinearGaussian, ReadingErrors};
 use crate::linalg::Matrix;
 use crate::sensitivity::{LoadForms, Sensitivity, Uncertainty};
 
-/// `f = gain y` for readings `y` of the gauges [`Self::used`], weighed for the model's error at typical loads.
+/// Linear estimate of loads, `f = gain y`, for readings `y` of the gauges [`Self::used`]. The model's error is weighted at typical loads.
 ///
-/// With `N` the noise, `M(f)` the errors of single coefficients at loads `f`, `C(f)` those of whole columns and `P` the stated sizes of
-/// nuisance loads, its errors have the covariance
-/// `gain (N + M(f)) gain' + (gain S - 1) P (gain S - 1)' + C(f)`:
-/// that of the posterior where the weights are those of `f` itself.
+/// The covariance of the errors is `gain (N + M(f)) gain' + (gain S - 1) P (gain S - 1)' + C(f)`. `N` is the noise. `M(f)` are the errors
+/// of single coefficients and `C(f)` the errors of whole columns, both at loads `f`. `P` are the stated sizes of nuisance loads. It is the
+/// covariance of the posterior if the weights are those of `f` itself.
+///
+/// # Example
+/// The gain inverts S: `gain S = 1`, and readings `S f` give `f` without the third gauge too.
+/// ```
+/// use strainbridge::linalg::Matrix;
+/// use strainbridge::recovery::{ErrorModel, Gain, Widening};
+/// use strainbridge::sensitivity::{Load, Sensitivity};
+///
+/// let s = Sensitivity {
+///     gauges: ["G1", "G2", "G3"].map(str::to_owned).to_vec(),
+///     loads: vec![Load::named("left"), Load::named("right")],
+///     values: 1e-6 * Matrix::from_row_slice(3, 2, &[2.0, 1.0, -1.0, 3.0, 1.0, 1.0]),
+///     uncertainty: None,
+///     noise: None,
+/// };
+/// let errors = ErrorModel { noise: 1e-6, model_rel: 0.0 };
+/// let readings = [5e-6, f64::NAN, 3e-6]; // S f for f = (2, 1); G2 gave nothing
+/// let gain = Gain::new(&s, &[0, 2], errors, 1.0, &[0.0, 0.0]).unwrap();
+/// assert!(gain.loads(&readings).iter().zip([2.0, 1.0]).all(|(f, exact)| (f - exact).abs() < 1e-9));
+///
+/// let all = Gain::new(&s, &[0, 1, 2], errors, 1.0, &[0.0, 0.0]).unwrap();
+/// assert!((&all.gain * &s.values - Matrix::identity(2, 2)).amax() < 1e-12);
+/// // More gauges never widen an interval.
+/// let [few, many] = [&gain, &all].map(|g| g.sigma(&[2.0, 1.0], &Widening::none()));
+/// assert!(many.iter().zip(&few).all(|(m, f)| m <= f));
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gain {
     /// Gauges of S that read, ascending.

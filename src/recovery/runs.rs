@@ -19,6 +19,34 @@ use crate::sensitivity::{Sensitivity, Uncertainty};
 ///
 /// # Reference
 /// R. T. Birge, Phys. Rev. 40 (1932) 207; A. C. Aitken, Proc. R. Soc. Edinburgh 55 (1935) 42.
+///
+/// # Example
+/// ```
+/// use strainbridge::linalg::Matrix;
+/// use strainbridge::recovery::{ErrorModel, Readings, recover};
+/// use strainbridge::sensitivity::{Load, Sensitivity};
+///
+/// let s = Sensitivity {
+///     gauges: ["G1", "G2", "G3"].map(str::to_owned).to_vec(),
+///     loads: vec![Load::named("left"), Load::named("right")],
+///     values: 1e-6 * Matrix::from_row_slice(3, 2, &[1.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
+///     uncertainty: None,
+///     noise: None,
+/// };
+/// let run = |strain: [f64; 3]| Readings {
+///     run: "R1".to_owned(),
+///     strain: strain.map(|v| 1e-6 * v).to_vec(),
+///     noise_factor: 1.0,
+/// };
+/// let errors = ErrorModel { noise: 1e-6, model_rel: 0.0 };
+/// let found = recover(&s, &[run([100.0, 50.0, 150.3])], errors);
+/// let loads = &found.runs[0].estimate;
+/// // Least squares by hand: S'S = [[2, 1], [1, 2]], so the excess of 0.3 adds 0.1 to each load.
+/// assert!((loads.values[0] - 100.1).abs() < 1e-9 && (loads.values[1] - 50.1).abs() < 1e-9);
+/// // The covariance is noise^2 (S'S)^-1 = [[2, -1], [-1, 2]] / 3.
+/// assert!((loads.covariance[0] - 2.0 / 3.0).abs() < 1e-9);
+/// assert!((loads.covariance[1] + 1.0 / 3.0).abs() < 1e-9);
+/// ```
 pub fn recover(s: &Sensitivity, readings: &[Readings], errors: ErrorModel) -> Recovery {
     recover_with_alternatives(s, readings, errors, &mut Vec::new)
 }

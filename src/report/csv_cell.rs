@@ -3,8 +3,19 @@
 use crate::series::cell::guarded;
 use std::borrow::Cow;
 
-/// The text as a cell of a CSV table: in quotes where it holds a comma, a quote or a line break (RFC 4180), with an apostrophe before it
-/// where a spreadsheet would take it for a formula.
+/// Returns the text as a cell of a CSV table. Text with a comma, a quote or a line break is quoted (RFC 4180).
+///
+/// Text that a spreadsheet would take for a formula gets an apostrophe in front.
+///
+/// # Example
+/// ```
+/// use strainbridge::report::csv_cell;
+///
+/// assert_eq!(csv_cell("left wheel"), "left wheel");
+/// assert_eq!(csv_cell("left, rear"), "\"left, rear\"");
+/// assert_eq!(csv_cell("the \"old\" rail"), "\"the \"\"old\"\" rail\"");
+/// assert_eq!(csv_cell("=1+1"), "'=1+1");
+/// ```
 pub fn csv_cell(text: &str) -> Cow<'_, str> {
     let text = guarded(text);
     if text.contains([',', ';', '"', '\n', '\r', '\t']) {

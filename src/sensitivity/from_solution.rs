@@ -90,10 +90,42 @@ fn cause(gauge: &Gauge, case: &CaseResult) -> NoStrainCause {
     }
 }
 
-/// `S[g][l] = reading of gauge g in the case of load l / applied`.
+/// Returns S from load cases: `S[g][l] = reading of gauge g in the case of load l / applied`.
 ///
 /// # Errors
-/// Every gauge that has no strain in some case.
+/// Returns every gauge that has no strain in some case.
+///
+/// # Example
+/// A gauge at the free end of a cantilever reads nothing, and a gauge at mid-length reads half the strain of the root:
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+/// use strainbridge::fe::{LoadCase, solve_cases};
+/// use strainbridge::gauge::{CornerRows, GaugePlace, GaugeSpec, build};
+/// use strainbridge::model::{Model, ShellIx};
+/// use strainbridge::sensitivity::{Load, LoadCaseOf, from_cases};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.
+/// # PBAR,1,1,600.,2.+4,8.+4,1.+4\n,10.,0.\nMAT1,1,210000.,,.3\nSPC1,1,123456,1\nFORCE,2,2,,500.,0.,0.,1.\nENDDATA\n";
+/// let deck = read_deck("cantilever.bdf", DECK.into(), &mut MemoryLoader::default());
+/// let (model, _) = Model::from_deck(&deck);
+/// let subcase = &deck.case_control.effective_subcases()[0];
+/// let case = LoadCase::of_subcase(&model, subcase, "tip".to_owned());
+/// let (solution, _) = solve_cases(&model, &[case], &Default::default())?;
+///
+/// let beam = model.beam_ix(1).unwrap();
+/// let mut gauges = Vec::new();
+/// for (name, station) in [("root", 0.0), ("middle", 0.5), ("end", 1.0)] {
+///     let place = GaugePlace::Beam { beam, point: 0, station };
+///     let spec = GaugeSpec { place, ..GaugeSpec::on(name, ShellIx(0)) };
+///     gauges.extend(build(&model, &spec, CornerRows::Absent)?.0);
+/// }
+/// let tip = LoadCaseOf { load: Load::named("tip"), applied: 500.0, case: &solution.cases[0] };
+/// let s = from_cases(&gauges, &[tip]).unwrap();
+/// let root = -1000.0 * 10.0 / (210_000.0 * 20_000.0); // -L c / (E I), strain per newton
+/// assert!((s.values[(0, 0)] / root - 1.0).abs() < 1e-9);
+/// assert!((s.values[(1, 0)] / root - 0.5).abs() < 1e-9 && (s.values[(2, 0)] / root).abs() < 1e-9);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn from_cases(gauges: &[Gauge], loads: &[LoadCaseOf]) -> Result<Sensitivity, Vec<NoStrain>> {
     let mut missing = Vec::new();
     let mut values = Matrix::zeros(gauges.len(), loads.len());

@@ -10,9 +10,29 @@ pub const CONDITION_LIMIT: f64 = 50.0;
 /// Share of the largest coefficient under which a load is left out of a combination's words.
 const NAMED_SHARE: f64 = 0.1;
 
-/// Findings on loads that cause no strain, loads and combinations that can't be separated (`error`) or only weakly (`warning`).
+/// Returns findings on loads without strain, and on loads and combinations that these gauges can't separate (`error`) or only weakly (`warning`).
 ///
 /// A combination is a right singular vector of S with scaled columns: a set of loads that together strain the gauges (almost) not at all.
+///
+/// # Example
+/// ```
+/// use strainbridge::Severity;
+/// use strainbridge::linalg::Matrix;
+/// use strainbridge::sensitivity::{Load, Sensitivity, check_separability};
+///
+/// let s = |values: &[f64]| Sensitivity {
+///     gauges: ["G1", "G2", "G3"].map(str::to_owned).to_vec(),
+///     loads: vec![Load::named("left"), Load::named("right")],
+///     values: Matrix::from_row_slice(3, 2, values),
+///     uncertainty: None,
+///     noise: None,
+/// };
+/// assert!(check_separability(&s(&[1.0, 0.0, 0.0, 1.0, 1.0, 1.0])).is_empty());
+/// // Each gauge reads the right load twice as much as the left one.
+/// let found = check_separability(&s(&[1.0, 2.0, 2.0, 4.0, 3.0, 6.0]));
+/// assert_eq!((found[0].code, found[0].severity), ("loads-not-separable", Severity::Error));
+/// assert_eq!(found[0].subject, "left, right");
+/// ```
 pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
     let mut findings = Vec::new();
     if s.loads.is_empty() || s.gauges.is_empty() {

@@ -35,7 +35,27 @@ impl Load {
     }
 }
 
-/// `S`, `n_gauges x n_loads`, strain (not microstrain) per job unit of load.
+/// Sensitivity `S` of `n_gauges x n_loads`, strain (not microstrain) per job unit of load, with names and errors. `eps = S f`.
+///
+/// # Example
+/// ```
+/// use strainbridge::linalg::Matrix;
+/// use strainbridge::sensitivity::{Load, Sensitivity};
+///
+/// let s = Sensitivity {
+///     gauges: ["G1", "G2", "G3"].map(str::to_owned).to_vec(),
+///     loads: vec![Load::named("left"), Load::named("right")],
+///     values: 1e-6 * Matrix::from_row_slice(3, 2, &[4.0, 0.0, 0.0, 1.0, 0.0, 0.0]),
+///     uncertainty: None,
+///     noise: None,
+/// };
+/// assert_eq!(s.rank(), 2);
+/// assert!((s.condition_number() - 4.0).abs() < 1e-12);
+/// // Columns of unit norm are orthogonal here: the units of the loads do not matter.
+/// assert!((s.condition_number_scaled() - 1.0).abs() < 1e-12);
+/// // The second gauge alone determines one load.
+/// assert_eq!(s.of_gauges(&[1]).rank(), 1);
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sensitivity {
     /// Row names.

@@ -40,7 +40,21 @@ pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64>
         .collect()
 }
 
-/// x delayed by a time that need not be a whole number of samples (negative: advanced); ends repeat zero-padding.
+/// Returns x delayed by a time that need not be a whole number of samples (negative: advanced). The signal is zero-padded about its mean.
+///
+/// # Example
+/// A smooth pulse, delayed by 3.4 samples:
+/// ```
+/// use strainbridge::series::align::delayed;
+///
+/// let pulse = |t: f64| (-0.5 * ((t - 50.0) / 4.0).powi(2)).exp();
+/// let x: Vec<f64> = (0..128).map(|i| pulse(f64::from(i))).collect();
+/// let late = delayed(&x, 100.0, 0.034);
+/// assert_eq!(late.len(), x.len());
+/// for (i, v) in (20..100).zip(&late[20..100]) {
+///     assert!((v - pulse(f64::from(i) - 3.4)).abs() < 2e-3);
+/// }
+/// ```
 pub fn delayed(x: &[f64], rate_hz: f64, seconds: f64) -> Vec<f64> {
     let offset = super::detrend::mean(x);
     let zero_mean: Vec<f64> = x.iter().map(|v| v - offset).collect();

@@ -3,10 +3,26 @@
 use super::detrend::without_mean;
 use super::spectrum::{Band, Fourier};
 
-/// x limited to the band and integrated `times` times (0: only limited; negative: differentiated), same length and rate.
+/// Returns x limited to the band and integrated `times` times (0: only limited; negative: differentiated), same length and rate.
 ///
-/// Division by i omega of the zero-padded transform. The high-pass in `band` is what keeps noise at low frequency, which double
-/// integration multiplies by 1/omega^2, from swamping the answer. The first and last [`Band::settling_s`] are not to be trusted.
+/// The method is division by i omega of the zero-padded transform. Double integration multiplies noise at low frequency by 1/omega^2, and the
+/// high-pass in `band` limits it. Do not use the first and last [`Band::settling_s`] of the result.
+///
+/// # Example
+/// The displacement of a sine is its acceleration over `-omega^2`:
+/// ```
+/// use std::f64::consts::TAU;
+/// use strainbridge::series::integrate::integrated;
+/// use strainbridge::series::spectrum::Band;
+///
+/// let (rate_hz, omega) = (200.0, TAU * 5.0);
+/// let acceleration: Vec<f64> = (0..4000).map(|i| (omega * f64::from(i) / rate_hz).sin()).collect();
+/// let band = Band { low_hz: 0.5, high_hz: f64::INFINITY };
+/// let displacement = integrated(&acceleration, rate_hz, band, 2);
+/// for (a, d) in acceleration.iter().zip(&displacement).skip(1000).take(2000) {
+///     assert!((d * omega * omega + a).abs() < 2e-3);
+/// }
+/// ```
 pub fn integrated(x: &[f64], rate_hz: f64, band: Band, times: i32) -> Vec<f64> {
     let mut fourier = Fourier::default();
     let spectrum = fourier.spectrum(&without_mean(x), rate_hz);

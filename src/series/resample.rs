@@ -1,8 +1,21 @@
 //! Samples between samples.
 
-/// x with `factor - 1` samples put between neighbours by band-limited interpolation; length (n - 1) factor + 1.
+/// Returns x with `factor - 1` samples between neighbours by band-limited interpolation; length (n - 1) factor + 1.
 ///
-/// The line through first and last sample is taken off first, so the zero-padded transform sees no step at the ends.
+/// The method subtracts the line through first and last sample first, so the zero-padded transform has no step at the ends.
+///
+/// # Example
+/// ```
+/// use strainbridge::series::resample::upsampled;
+///
+/// let pulse = |t: f64| 3.0 + 0.1 * t + (-0.5 * ((t - 32.0) / 4.0).powi(2)).exp();
+/// let x: Vec<f64> = (0..65).map(|i| pulse(f64::from(i))).collect();
+/// let dense = upsampled(&x, 4);
+/// assert_eq!(dense.len(), 64 * 4 + 1);
+/// for (i, v) in dense.iter().enumerate() {
+///     assert!((v - pulse(i as f64 / 4.0)).abs() < 1e-6);
+/// }
+/// ```
 pub fn upsampled(x: &[f64], factor: usize) -> Vec<f64> {
     let n = x.len();
     let factor = factor.max(1);

@@ -8,7 +8,16 @@ const PLAIN: std::ops::Range<f64> = 1e-3..1e6;
 const TINY: f64 = 1e-6;
 
 /// Returns a value with the half width of its 95 % interval: `4.53 ± 0.36`. The half width has two significant digits; the value ends at the
-/// same place, and has at most four significant digits. A dash stands for an unknown value.
+/// same place, and has at most four significant digits. A dash is the text for an unknown value.
+///
+/// # Example
+/// ```
+/// use strainbridge::units::plus_minus;
+///
+/// assert_eq!(plus_minus(4.5321, 0.3612), "4.53 ± 0.36");
+/// assert_eq!(plus_minus(38012.3, 1234.0), "38000 ± 1200");
+/// assert_eq!(plus_minus(f64::NAN, 1.0), "-");
+/// ```
 pub fn plus_minus(value: f64, half: f64) -> String {
     if !value.is_finite() || !half.is_finite() || half <= 0.0 {
         return match value.is_finite() && half.is_finite() {

@@ -197,9 +197,23 @@ fn implausible(
     )
 }
 
-/// The system in which the deck's numbers are most plausible: PARAM,UNITSYS where it names one, else of those whose Young's moduli
-/// [`check_units`] accepts the one nearest to 100 GPa and 5,000 kg/m^3 (steel, aluminium, titanium, plastics) on a logarithmic scale.
-/// `None` where no modulus is stated or all systems contradict the deck.
+/// Returns the system in which the numbers of a deck are most plausible. PARAM,UNITSYS decides if it names a system.
+///
+/// Otherwise it is the system whose modulus and density are nearest to 100 GPa and 5,000 kg/m^3 on a logarithmic scale. These values are
+/// between those of steel, aluminium, titanium and plastics. Only systems whose Young's moduli [`check_units`] accepts count.
+/// `None` without a modulus, or if all systems contradict the deck.
+///
+/// # Example
+/// ```
+/// use strainbridge::units::{UnitSystem, likely_system};
+///
+/// // Steel by material id: 210 GPa and 7850 kg/m^3 in three systems.
+/// let system = |e, rho| likely_system(None, &[(1, e)], &[(1, rho)]);
+/// assert_eq!(system(2.1e11, 7850.0), Some(UnitSystem::MKgS));
+/// assert_eq!(system(2.1e5, 7.85e-9), Some(UnitSystem::MmTS));
+/// assert_eq!(system(3.0e7, 7.3e-4), Some(UnitSystem::InLbfS));
+/// assert_eq!(likely_system(Some("N-MM"), &[], &[]), Some(UnitSystem::MmTS));
+/// ```
 pub fn likely_system(
     unitsys: Option<&str>,
     moduli: &[(u32, f64)],

@@ -43,7 +43,19 @@ impl ReportUnits {
     }
 }
 
-/// Factor from model units to a unit: `value_in_unit = value_in_system * factor`.
+/// Returns the factor from model units to a unit: `value_in_unit = value_in_system * factor`. Both measure the quantity of `to`.
+///
+/// # Example
+/// ```
+/// use strainbridge::units::{Quantity, UnitSystem, factor, find_unit};
+///
+/// let kilonewton = find_unit(Quantity::Force, "kN").unwrap();
+/// assert!((5000.0 * factor(UnitSystem::MmTS, kilonewton) - 5.0).abs() < 1e-12); // N
+/// // A pound is 0.45359237 kg exactly; a mass of the inch system is in lbf s^2 / in.
+/// let pound = find_unit(Quantity::Mass, "lb").unwrap();
+/// let gravity = UnitSystem::InLbfS.standard_gravity();
+/// assert!((factor(UnitSystem::InLbfS, pound) / gravity - 1.0).abs() < 1e-12);
+/// ```
 pub fn factor(from: UnitSystem, to: Unit) -> f64 {
     from.si(to.quantity) / to.si
 }

@@ -5,7 +5,21 @@ use super::unit::{POUND_FORCE_N, Quantity, Unit};
 /// Metres in an inch (exact).
 const INCH_M: f64 = 0.0254;
 
-/// A consistent unit system; time is in seconds in all of them.
+/// A consistent unit system; time is in seconds in all of them. In each one, force is mass times acceleration without a factor.
+///
+/// # Example
+/// ```
+/// use strainbridge::units::{Quantity, UnitSystem};
+///
+/// let system = UnitSystem::from_name("mm-t-s").unwrap();
+/// // A tonne times a millimetre per square second is a newton, and a newton per square millimetre is a megapascal.
+/// assert_eq!(system.si(Quantity::Force), 1.0);
+/// assert_eq!(system.unit(Quantity::Stress).name, "MPa");
+/// assert!((system.si(Quantity::Stress) / 1e6 - 1.0).abs() < 1e-12);
+/// assert_eq!(system.standard_gravity(), 9806.65);
+/// // PARAM,UNITSYS of a deck names the system too.
+/// assert_eq!(UnitSystem::from_unitsys("N-mm"), Some(system));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitSystem {
     /// metre, kilogram, second: newton, pascal.

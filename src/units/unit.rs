@@ -93,7 +93,20 @@ pub const UNITS: [Unit; 33] = {
     ]
 };
 
-/// The unit of that name for that quantity. Moments may be written `kN m`, `kN*m`, `kN.m`, `kNm`.
+/// Returns the unit of a quantity by its name; `None` for an unknown name. Moments may be written `kN m`, `kN*m`, `kN.m`, `kNm`.
+///
+/// # Example
+/// ```
+/// use strainbridge::units::{Quantity, find_unit};
+///
+/// let names = ["kN m", "kN*m", "kNm"];
+/// assert!(names.iter().all(|n| find_unit(Quantity::Moment, n).is_some_and(|u| u.si == 1e3)));
+/// // A unit of another quantity is not found.
+/// assert_eq!(find_unit(Quantity::Force, "kN m"), None);
+/// // A foot is 0.3048 m exactly, and contains 12 inches.
+/// let metres = |name| find_unit(Quantity::Length, name).map_or(f64::NAN, |u| u.si);
+/// assert!((metres("ft") - 12.0 * metres("in")).abs() < 1e-15);
+/// ```
 pub fn find_unit(quantity: Quantity, name: &str) -> Option<Unit> {
     let plain = |s: &str| {
         s.chars()

@@ -184,8 +184,22 @@ pub struct LeafSeat {
     pub shackle_angle_rad: f64,
 }
 
-/// Vertical force at hanger and shackle and horizontal force at both, from the vertical force on the chassis: the leaf is a beam
-/// on a hinge and a roller whose reaction is along the shackle.
+/// Returns the vertical force at hanger and shackle and the horizontal force at both, from the vertical force on the chassis.
+///
+/// The leaf is a beam on a hinge and a roller whose reaction is along the shackle.
+///
+/// # Example
+/// ```
+/// use strainbridge::vehicle::chassis::{LeafSeat, split_leaf};
+///
+/// let seat = LeafSeat { hanger_to_axle: 0.6, axle_to_shackle: 0.9, shackle_angle_rad: 0.2 };
+/// let [hanger, shackle, horizontal] = split_leaf(10_000.0, seat);
+/// // Equilibrium: sum of forces, and moments about the axle.
+/// assert!((hanger + shackle - 10_000.0).abs() < 1e-9);
+/// assert!((hanger * seat.hanger_to_axle - shackle * seat.axle_to_shackle).abs() < 1e-9);
+/// // The reaction at the shackle is along the shackle.
+/// assert!((horizontal / shackle - 0.2_f64.tan()).abs() < 1e-12);
+/// ```
 pub fn split_leaf(force: f64, seat: LeafSeat) -> [f64; 3] {
     let length = seat.hanger_to_axle + seat.axle_to_shackle;
     let shackle = force * seat.hanger_to_axle / length;

@@ -93,7 +93,7 @@ pub struct PresetRequest {
     pub channels: BTreeMap<String, String>,
 }
 
-/// Returns the vehicle of a request.
+/// Returns the vehicle of a request, with its bodies, sensors, wheels and links.
 ///
 /// - `front2`: a_body, a_wheel, f_wheel (thesis 5.1, 5.2); `front_pair`: also `_other`
 /// - `rear3`: a_body, a_mid, a_rear, f_mid, f_rear (thesis 5.3 to 5.5)
@@ -105,6 +105,23 @@ pub struct PresetRequest {
 ///
 /// # Errors
 /// [`PresetError`] when the model, a term or a needed place is unknown.
+///
+/// # Example
+/// ```
+/// use strainbridge::vehicle::preset::{PresetRequest, vehicle};
+///
+/// let quarter = PresetRequest { model: "front2".to_owned(), ..PresetRequest::default() };
+/// let truck = vehicle(&quarter)?;
+/// let names: Vec<String> = truck.parameters().into_iter().map(|p| p.name).collect();
+/// // Body, wheel, and a spring and a damper between them.
+/// assert_eq!(names, ["m_b", "m_f", "k_s", "c_s"]);
+/// // The weights of a link's ends add up to 0: a rigid motion does not stretch it.
+/// assert_eq!(truck.links[0].ends.iter().map(|end| end.0).sum::<f64>(), 0.0);
+///
+/// let unknown = PresetRequest { model: "front5".to_owned(), ..PresetRequest::default() };
+/// assert!(vehicle(&unknown).is_err());
+/// # Ok::<(), strainbridge::vehicle::preset::PresetError>(())
+/// ```
 pub fn vehicle(request: &PresetRequest) -> Result<Vehicle, PresetError> {
     let mut v = match request.model.as_str() {
         "front2" => quarter("front2", &["wheel"], &["f"], &["s"]),

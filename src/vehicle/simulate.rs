@@ -90,6 +90,31 @@ struct Machine<'a> {
 ///
 /// # Errors
 /// [`SimulationError`] when inertia is missing, histories differ in length, or the motion runs away.
+///
+/// # Example
+/// Newton's second law for a quarter truck: its masses times their accelerations are the wheel force at each time.
+/// ```
+/// use strainbridge::vehicle::preset::{PresetRequest, vehicle};
+/// use strainbridge::vehicle::simulate::{Drive, simulate};
+///
+/// let quarter = PresetRequest { model: "front2".to_owned(), ..PresetRequest::default() };
+/// let truck = vehicle(&quarter)?;
+/// let [m_b, m_f, k_s, c_s] = [3000.0, 600.0, 4e5, 1.1e4];
+/// let force: Vec<f64> = (0..200).map(|i| 1e4 * (0.1 * f64::from(i)).sin()).collect();
+/// let drive = Drive {
+///     rate_hz: 200.0,
+///     forces: vec![Some(force.clone())],
+///     given: vec![None, None],
+///     constant: vec![0.0, 0.0],
+///     steps: 4,
+/// };
+/// let motion = simulate(&truck, &[m_b, m_f, k_s, c_s], &drive)?;
+/// for (i, force) in force.iter().enumerate() {
+///     let [body, wheel] = [0, 1].map(|b| motion.acceleration[b][0][i]);
+///     assert!((m_b * body + m_f * wheel - force).abs() < 1e-6);
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn simulate(
     vehicle: &Vehicle,
     values: &[f64],

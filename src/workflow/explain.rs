@@ -4,7 +4,19 @@ use crate::finding::explain::{self, Code};
 use crate::host::fault::{Fault, Faults};
 use crate::job::suggest::remedy;
 
-/// Returns cause, limit, remedy and example of every finding, sorted by code.
+/// Returns cause, limit, remedy and example of every finding, sorted by code. Editors and web pages show them next to a finding.
+///
+/// # Example
+/// ```
+/// use strainbridge::{explain, explain_all};
+///
+/// let all = explain_all();
+/// assert!(all.is_sorted_by_key(|entry| entry.code));
+/// for entry in all {
+///     assert_eq!(explain(entry.code).unwrap().code, entry.code);
+///     assert!(!entry.cause.is_empty() && !entry.remedy.is_empty());
+/// }
+/// ```
 pub fn explain_all() -> &'static [Code] {
     explain::codes()
 }
@@ -13,6 +25,18 @@ pub fn explain_all() -> &'static [Code] {
 ///
 /// # Errors
 /// Returns a fault with the closest code if no finding has `code`.
+///
+/// # Example
+/// ```
+/// use strainbridge::{Severity, explain};
+///
+/// let entry = explain("loads-not-separable").unwrap();
+/// assert!(entry.severity.contains(&Severity::Error));
+/// assert_eq!(explain("gauges-exchanged").unwrap().code, "inputs-exchanged");
+///
+/// let faults = explain("loads-not-seperable").unwrap_err();
+/// assert!(faults[0].remedy.contains("loads-not-separable"));
+/// ```
 pub fn explain(code: &str) -> Result<&'static Code, Faults> {
     explain::code(code).ok_or_else(|| {
         let wrong = format!("no finding has the code `{code}`");

@@ -97,10 +97,28 @@ impl Answer for Modes {
     }
 }
 
-/// Computes the lowest `count` elastic modes of the structure of a job, on the support of the job, with the strain of its gauges.
+/// Computes the lowest `count` elastic modes of the structure of a job, on the support of the job, with the strain of its gauges. Rigid
+/// motions of a free structure are counted and left out.
 ///
 /// # Errors
 /// Returns every fault of the job and its deck, or the fault that stops the solver.
+///
+/// # Example
+/// Elastic modes of a free structure do not move its centre of gravity, so their effective masses are zero:
+/// ```
+/// use strainbridge::{Context, Disk, Job, modes};
+///
+/// let job = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/recover.toml");
+/// let found = modes(&Job::read(job, &Disk)?, 2, &Context::new(&Disk))?;
+/// assert_eq!(found.rigid_motions, 6);
+/// assert!(found.modes[0].hz > 0.0 && found.modes[0].hz <= found.modes[1].hz);
+/// for mode in &found.modes {
+///     let largest = mode.effective_mass[..3].iter().copied().fold(0.0, f64::max);
+///     assert!(largest < 1e-6 * found.mass.unwrap());
+///     assert_eq!(mode.gauge_microstrain.len(), found.gauges.len());
+/// }
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
     let mut work = Work::of_job(cx, job);
     let Some(files) = &job.model else {
@@ -124,6 +142,23 @@ pub fn modes(job: &Job, count: usize, cx: &Context) -> Result<Outcome<Modes>, Fa
 ///
 /// # Errors
 /// Returns every fault of the deck, or the fault that stops the solver.
+///
+/// # Example
+/// A mass of 2 kg on a spring of 8000 N/m vibrates at `sqrt(k / m) / 2 pi`, about 10.07 Hz:
+/// ```
+/// use std::f64::consts::TAU;
+/// use std::path::Path;
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, modes_of_deck};
+///
+/// const DECK: &str = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,1.,0.,0.,,123456
+/// CELAS2,1,8000.,1,1,2,1\nCONM2,2,1,,2.\nSPC1,1,123456,2\nENDDATA\n";
+/// let files = InMemory::default().with("oscillator.bdf", DECK);
+/// let found = modes_of_deck(Path::new("oscillator.bdf"), 1, &Context::new(&files))?;
+/// let exact = (8000.0_f64 / 2.0).sqrt() / TAU;
+/// assert!((found.modes[0].hz / exact - 1.0).abs() < 1e-9);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn modes_of_deck(path: &Path, count: usize, cx: &Context) -> Result<Outcome<Modes>, Faults> {
     let mut work = Work::new(cx);
     let given = path.display().to_string();

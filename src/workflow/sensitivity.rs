@@ -63,6 +63,28 @@ impl Answer for Sensed {
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names.
+///
+/// # Example
+/// A gauge at the root of a cantilever, at the distance `c` above its axis, reads `-F L c / (E I)` under a tip load `F` upward:
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, sensitivity};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.
+/// # PBAR,1,1,600.,2.+4,8.+4,1.+4\n,10.,0.\nMAT1,1,210000.,,.3,7.85-9\nSPC1,1,123456,1\nENDDATA\n";
+/// const JOB: &str = r#"
+/// units = "mm-t-s"
+/// model = { deck = "cantilever.bdf" }
+/// load = [{ name = "tip", grid = 2, component = "FZ" }]
+/// gauge = [{ name = "root", element = 1, point = "C", station = 0.0 }]
+/// "#;
+/// let files = InMemory::default().with("cantilever.bdf", DECK).with("job.toml", JOB);
+/// let found = sensitivity(&Job::read("job.toml", &files)?, &Context::new(&files))?;
+/// let s = found.prepared.sensitivity.values[(0, 0)]; // strain per newton
+/// let (l, c, e, i) = (1000.0, 10.0, 210_000.0, 20_000.0);
+/// assert!((s / (-l * c / (e * i)) - 1.0).abs() < 1e-9);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;

@@ -119,10 +119,32 @@ struct Task {
     support: Option<String>,
 }
 
-/// Solves the unit loads of a job with the built-in solver.
+/// Solves the unit loads of a job with the built-in solver. Each load is a case, in the order of the job.
 ///
 /// # Errors
 /// Returns every fault of the job and its deck, or the fault that stops the solver.
+///
+/// # Example
+/// The tip of a cantilever moves by `F L^3 / (3 E I)`, and its support takes the load:
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, solve};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.
+/// # PBAR,1,1,600.,2.+4,8.+4,1.+4\nMAT1,1,210000.,,.3,7.85-9\nSPC1,1,123456,1\nENDDATA\n";
+/// const JOB: &str = r#"
+/// units = "mm-t-s"
+/// model = { deck = "cantilever.bdf" }
+/// load = [{ name = "tip", grid = 2, component = "FZ" }]
+/// "#;
+/// let files = InMemory::default().with("cantilever.bdf", DECK).with("job.toml", JOB);
+/// let solved = solve(&Job::read("job.toml", &files)?, Default::default(), &Context::new(&files))?;
+/// let tip = solved.solution.cases[0].displacement[1][2];
+/// let exact = 1000.0_f64.powi(3) / (3.0 * 210_000.0 * 20_000.0);
+/// assert!((tip / exact - 1.0).abs() < 1e-9);
+/// assert!((solved.reactions[0].total[2] + 1.0).abs() < 1e-9); // N
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn solve(
     job: &Job,
     options: SolveOptions,
@@ -135,10 +157,27 @@ pub fn solve(
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 
-/// Solves the static subcases of a deck with the built-in solver.
+/// Solves the static subcases of a deck with the built-in solver. Support and loads are the ones that each subcase selects.
 ///
 /// # Errors
 /// Returns every fault of the deck, or the fault that stops the solver.
+///
+/// # Example
+/// A rod of length L and area A under the tension F becomes longer by `F L / (E A)`:
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, solve_deck};
+///
+/// const ROD: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK
+/// GRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.,,23456\nCROD,1,1,1,2\nPROD,1,1,100.\nMAT1,1,210000.,,.3
+/// SPC1,1,123456,1\nFORCE,2,2,,2100.,1.,0.,0.\nENDDATA\n";
+/// let files = InMemory::default().with("rod.bdf", ROD);
+/// let solved = solve_deck(Path::new("rod.bdf"), Default::default(), &Context::new(&files))?;
+/// let end = solved.solution.cases[0].displacement[1][0];
+/// assert!((end - 2100.0 * 1000.0 / (210_000.0 * 100.0)).abs() < 1e-12);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn solve_deck(
     path: &Path,
     options: SolveOptions,

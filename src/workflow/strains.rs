@@ -57,6 +57,34 @@ impl Answer for Strains {
 ///
 /// # Errors
 /// Returns files that can't be read, or that are not a deck and its results.
+///
+/// # Example
+/// The strain of a bar in a punch file of Nastran:
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, strains};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.\nCBAR,1,1,1,2,0.,0.,1.
+/// # PBAR,1,1,600.,2.+4,8.+4,1.+4\n,10.,0.\nMAT1,1,210000.,,.3,7.85-9\nSPC1,1,123456,1\nENDDATA\n";
+/// # let head = ["$TITLE   = BAR", "$SUBTITLE=", "$LABEL   =", "$ELEMENT STRAINS", "$REAL OUTPUT",
+/// #     "$SUBCASE ID =           1", "$ELEMENT TYPE =          34  BAR"].map(|l| format!("{l:<72}{:>8}\n", 1));
+/// let words = [-2.5e-4, 0.0, 0.0, 0.0, 1e-5, 1e-5, -2.4e-4, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-5, 1e-5, 0.0];
+/// # let lines = words.chunks(3).enumerate().map(|(i, three)| {
+/// #     let slots: String = three.iter().map(|v| format!("{v:>18.6E}")).collect();
+/// #     format!("{:<72}{:>8}\n", format!("{:<18}{slots}", if i == 0 { "         1" } else { "-CONT-" }), 1)
+/// # });
+/// # let punch = head.concat() + &lines.collect::<String>();
+/// let files = InMemory::default().with("bar.bdf", DECK).with("bar.pch", punch);
+/// let found = strains(Path::new("bar.bdf"), &["bar.pch".into()], &Context::new(&files))?;
+/// assert_eq!(found.subcase_ids, [1]);
+/// let bar = found.model.beam_ix(1).unwrap();
+/// let (points, axial) = found.solution.cases[0].beams.strain_at(bar, 0.0).unwrap();
+/// // Recovery point C at end A: bending and axial strain together.
+/// assert!((points[0] - (-2.5e-4 + 1e-5)).abs() < 1e-12);
+/// assert!((axial - 1e-5).abs() < 1e-12);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome<Strains>, Faults> {
     let mut work = Work::new(cx);
     let given = deck.display().to_string();

@@ -122,6 +122,32 @@ fn records_of_fleet(result: &Value) -> Vec<String> {
 ///
 /// # Errors
 /// Returns folders that can't be read, a missing job or deck, or the faults of `again`.
+///
+/// # Example
+/// ```
+/// use strainbridge::{Context, Disk, modes_of_deck, verify};
+///
+/// # let folder = std::env::temp_dir().join(format!("strainbridge-verify-{}", std::process::id()));
+/// # std::fs::create_dir_all(folder.join("was"))?;
+/// # std::fs::create_dir_all(folder.join("now"))?;
+/// # let deck = "SOL 103\nCEND\nSPC = 1\nBEGIN BULK\nGRID,1,,0.,0.,0.,,23456\nGRID,2,,1.,0.,0.,,123456
+/// # CELAS2,1,8000.,1,1,2,1\nCONM2,2,1,,2.\nSPC1,1,123456,2\nENDDATA\n";
+/// # std::fs::write(folder.join("oscillator.bdf"), deck)?;
+/// let (was, now) = (folder.join("was"), folder.join("now"));
+/// let cx = Context::new(&Disk);
+/// let found = modes_of_deck(&folder.join("oscillator.bdf"), 1, &cx)?;
+/// std::fs::write(was.join("result.json"), found.to_json(&Default::default())?)?;
+///
+/// let compared = verify(&was, |made, deck| {
+///     assert_eq!(made.command, "modes");
+///     let json = modes_of_deck(deck, 1, &cx)?.to_json(&Default::default()).unwrap();
+///     std::fs::write(now.join("result.json"), json).unwrap();
+///     Ok(now.clone())
+/// }, &cx)?;
+/// assert!(compared.differs.is_empty() && compared.same.contains(&"result.json".to_owned()));
+/// # std::fs::remove_dir_all(&folder)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn verify(
     folder: &Path,
     again: impl FnOnce(&Made, &Path) -> Result<PathBuf, Faults>,

@@ -126,7 +126,20 @@ fn expand(name: &str, symbol: &impl Fn(&str) -> Option<String>) -> Result<String
     Ok(name.to_owned())
 }
 
-/// Files held in memory, by path.
+/// Loader of included files from memory, by path. Programs that do not read the file system give their files to [`super::read_deck`] with it.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+///
+/// let mut loader = MemoryLoader::default();
+/// loader.files.insert("model/parts/rail.bdf".to_owned(), b"GRID,1,,0.,0.,0.\n".to_vec());
+/// let text = "CEND\nBEGIN BULK\nINCLUDE 'parts/rail.bdf'\nINCLUDE 'parts/none.bdf'\nENDDATA\n";
+/// let deck = read_deck("model/main.bdf", text.into(), &mut loader);
+/// assert_eq!(deck.path(deck.cards.grids[0].at), "model/parts/rail.bdf");
+/// // The missing file is a fault of the line that includes it.
+/// assert_eq!(deck.faults.iter().map(|f| f.at.line).collect::<Vec<_>>(), [4]);
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct MemoryLoader {
     /// Path and bytes; `..` in requests is resolved.

@@ -21,9 +21,24 @@ use super::unknown_names::{check_executive, check_names};
 use super::vocabulary::changes_program;
 use crate::place::Place;
 
-/// The deck in `bytes` with all files it includes. What cannot be read is in [`Deck::faults`].
+/// Reads the deck in `bytes` with all files that it includes. [`Deck::faults`] lists everything that cannot be read.
 ///
-/// `main_path` is how messages call the first deck, and where relative INCLUDE names start.
+/// `main_path` is the name of the first deck in messages, and relative INCLUDE names start at its folder.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+///
+/// let text = "SOL 101\nCEND\nBEGIN BULK\nGRID    7               1.5-1   2.      .5\nGRID,8,,0.,0.,x\nENDDATA\n";
+/// let deck = read_deck("frame.bdf", text.into(), &mut MemoryLoader::default());
+/// assert_eq!(deck.sol, Some(101));
+/// let grid = &deck.cards.grids[0];
+/// assert_eq!((grid.id, grid.x), (7, [0.15, 2.0, 0.5]));
+/// // A blank field is `None`, and no default is filled in.
+/// assert_eq!((grid.cp, grid.at.line), (None, 4));
+/// assert_eq!(deck.faults.len(), 1);
+/// assert_eq!(deck.faults[0].at.line, 5);
+/// ```
 pub fn read_deck(main_path: &str, bytes: Vec<u8>, loader: &mut dyn Loader) -> Deck {
     let sections = read_sections(main_path, bytes, loader);
     let Part {

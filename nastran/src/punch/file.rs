@@ -8,7 +8,28 @@ use crate::results::{Block, Damage, Note, Quantity, Rows, Salvaged, ShellForm};
 /// Columns of a line as solvers write it: a line of this length is complete even without a line end.
 const FULL_LINE: usize = 80;
 
-/// A punch file: `read` builds the index, rows are decoded block by block from the borrowed bytes.
+/// Index of the blocks of a punch file. Rows are decoded block by block from the borrowed bytes.
+///
+/// # Example
+/// ```
+/// use nastran::punch::Punch;
+/// use nastran::results::Quantity;
+///
+/// # let head = ["$TITLE   = FRAME", "$SUBTITLE=", "$LABEL   = BRAKING", "$DISPLACEMENTS", "$REAL OUTPUT", "$SUBCASE ID =           3"];
+/// # let rows = ["        12       G      1.500000E+00      0.000000E+00     -2.500000E-01",
+/// #     "-CONT-                  0.000000E+00      1.000000E-03      0.000000E+00"];
+/// # let text: String = head.iter().chain(&rows).enumerate().map(|(i, l)| format!("{l:<72}{:>8}\n", i + 1)).collect();
+/// let punch = Punch::read(text.as_bytes())?;
+/// let block = &punch.blocks[0];
+/// assert_eq!((block.quantity, block.subcase), (Quantity::Displacement, 3));
+/// assert_eq!(block.titles, ["FRAME", "", "BRAKING"]);
+/// let rows = punch.rows(0)?;
+/// assert_eq!(rows.ids[0].entity, 12);
+/// assert_eq!(rows.row(0), [1.5, 0.0, -0.25, 0.0, 0.001, 0.0]);
+/// // A file that ends within an entry is refused.
+/// assert!(Punch::read(&text.as_bytes()[..7 * 81]).is_err());
+/// # Ok::<(), nastran::punch::PunchError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Punch<'a> {
     bytes: &'a [u8],

@@ -6,7 +6,34 @@ use crate::h5::{H5, H5Error, is_h5};
 use crate::op2::{Op2, Op2Error, Solver};
 use crate::punch::{Punch, PunchError};
 
-/// A result file of any kind that is read, told apart by content.
+/// Result file of any kind: OP2, punch or HDF5. The bytes determine the kind, and all kinds give the same blocks and rows.
+///
+/// # Example
+/// ```
+/// use nastran::op2::Op2Writer;
+/// use nastran::results::{Quantity, ResultsFile, RowId, Rows, columns};
+///
+/// # use nastran::results::{Analysis, Block};
+/// # let block = Block { table: String::new(), quantity: Quantity::Displacement, analysis: Analysis::Statics, subcase: 7, mode: 0, step: 0.0,
+/// #     element: None, form: None, von_mises: false, complex: false, sort2: false, num_wide: 0, entries: 0, titles: Default::default() };
+/// let rows = Rows {
+///     columns: columns::NODAL,
+///     ids: vec![RowId { entity: 12, at: 1, layer: 0 }],
+///     values: vec![1.5, 0.0, -0.25, 0.0, 0.125, 0.0], // exact in 32 bits
+///     labels: Vec::new(),
+/// };
+/// let mut writer = Op2Writer::new(Vec::new(), [11, 27, 2026])?;
+/// writer.write_block(&block, &rows)?; // `block`: displacements of subcase 7
+/// let bytes = writer.finish()?;
+///
+/// let file = ResultsFile::read(&bytes, "run.op2")?;
+/// assert_eq!((file.blocks()[0].quantity, file.blocks()[0].subcase), (Quantity::Displacement, 7));
+/// assert_eq!(file.rows(0)?, rows);
+/// // A file that is cut short is refused.
+/// let cut = ResultsFile::read(&bytes[..bytes.len() - 40], "run.op2");
+/// assert!(cut.is_err_and(|e| e.is_damage()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub enum ResultsFile<'a> {
     /// OP2.

@@ -10,6 +10,31 @@ const KEPT: usize = 64;
 const MOST_BYTES: u64 = 4 << 30;
 
 /// Folder that stores solutions of the built-in solver as `<key>.solution`. It removes the oldest ones above a fixed number and size.
+///
+/// # Example
+/// A second command on the same deck takes the stored solution:
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Folder, solve_deck};
+///
+/// # const ROD: &str = "SOL 101\nCEND\nSPC = 1\nLOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1000.,0.,0.,,23456\nCROD,1,1,1,2
+/// # PROD,1,1,100.\nMAT1,1,210000.,,.3\nSPC1,1,123456,1\nFORCE,2,2,,2100.,1.,0.,0.\nENDDATA\n";
+/// # let path = std::env::temp_dir().join(format!("strainbridge-folder-{}", std::process::id()));
+/// let folder = Folder::at(&path);
+/// assert_eq!(folder.size().0, 0);
+///
+/// let files = InMemory::default().with("rod.bdf", ROD);
+/// let cx = Context::new(&files).store(&folder);
+/// let solved = solve_deck(Path::new("rod.bdf"), Default::default(), &cx)?;
+/// let again = solve_deck(Path::new("rod.bdf"), Default::default(), &cx)?;
+/// assert_eq!(folder.size().0, 1);
+/// assert_eq!(solved.solution.cases[0].displacement, again.solution.cases[0].displacement);
+///
+/// assert_eq!(folder.clean()?.0, 1);
+/// assert!(!path.exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Folder(PathBuf);
 

@@ -27,7 +27,26 @@ use crate::job::quantity::quantity_of_name;
 use crate::units::{Quantity, ReportUnits, UnitSystem};
 use std::path::PathBuf;
 
-/// A job.
+/// Settings of every command, read from `job.toml` and checked. Defaults are filled in, and commands read the tables of strain and runs.
+///
+/// # Example
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::units::UnitSystem;
+/// use strainbridge::Job;
+///
+/// const JOB: &str = r#"
+/// units = "mm-t-s"
+/// model = { deck = "frame.bdf" }
+/// load = [{ name = "LF.FZ", grid = 71, component = "FZ" }]
+/// "#;
+/// let job = Job::read("job.toml", &InMemory::default().with("job.toml", JOB))?;
+/// assert_eq!(job.units, UnitSystem::MmTS);
+/// assert_eq!(job.loads[0].name, "LF.FZ");
+/// // Standard gravity is 9.80665 m/s^2, and the unit of length is the millimetre.
+/// assert_eq!(job.gravity(), 9806.65);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Job {
     /// The job file as given on the command line.

@@ -9,7 +9,31 @@ use super::graph::NONE;
 use super::symbolic::Symbolic;
 use rayon::prelude::*;
 
-/// L L' of the matrix scaled to a diagonal between 1/2 and 2.
+/// Factor of a sparse symmetric positive definite matrix. [`Factor::solve`] replaces right-hand sides by solutions.
+///
+/// # Example
+/// Three springs `k` in a row, one end held and a force `F` at the other: point `i` moves by `(i + 1) F / k`.
+/// ```
+/// use strainbridge::linalg::sparse::{BlockGraph, BlockMatrix, DenseTerm, Factor, Symbolic};
+///
+/// let pairs: [&[u32]; 3] = [&[0], &[0, 1], &[1, 2]];
+/// let graph = BlockGraph::from_cliques(3, || pairs.into_iter());
+/// let symbolic = Symbolic::analyse(&graph, &[1, 1, 1])?; // one unknown for each point
+/// let groups = pairs.map(<[u32]>::to_vec);
+/// let k = 50.0;
+/// let matrix = BlockMatrix::assembled(&symbolic, &graph, &groups, |i| {
+///     Ok::<_, ()>(DenseTerm {
+///         groups: groups[i].clone(),
+///         offsets: (0..=groups[i].len()).collect(),
+///         matrix: if i == 0 { vec![k] } else { vec![k, -k, -k, k] },
+///     })
+/// }).unwrap();
+/// let factor = Factor::new(&symbolic, matrix)?;
+/// let mut x = vec![0.0, 0.0, 10.0];
+/// factor.solve(&mut x);
+/// assert!(x.iter().zip([0.2, 0.4, 0.6]).all(|(x, exact)| (x - exact).abs() < 1e-12));
+/// # Ok::<(), strainbridge::linalg::sparse::FactorError>(())
+/// ```
 #[derive(Debug)]
 pub struct Factor<'a> {
     pub(super) symbolic: &'a Symbolic,

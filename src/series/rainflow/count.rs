@@ -44,14 +44,32 @@ pub struct Reversal<T> {
 /// A rainflow count in progress. Its state is the reversals that no cycle has closed yet (the residue, in time order).
 ///
 /// A cycle from B to C closes when the reversal A before it and the one after it, D, reach at least as far. Of reversals of equal value the
-/// later counts as the higher, so the cycles of a history do not depend on the order in which they are found. If another count gets the residues
-/// of the parts of a history, in sequence, it closes exactly the cycles that the parts could not. Full cycles and the residue's ranges as half
-/// cycles are the count of ASTM E1049 ([`Rainflow::finish`]). The half cycles of parts do not add up to the half cycles of the whole; the
-/// residues do.
+/// later counts as the higher. The cycles of a history therefore do not depend on the order in which they are found.
+///
+/// A count that gets the residues of the parts of a history, in sequence, closes exactly the cycles that the parts could not. Full cycles and
+/// the residue's ranges as half cycles are the count of ASTM E1049 ([`Rainflow::finish`]). The half cycles of parts do not add up to the half
+/// cycles of the whole; the residues do.
 ///
 /// # Reference
 /// C. Amzallag, J.P. Gerey, J.L. Robert, J. Bahuaud, Standardization of the rainflow counting method for fatigue analysis, Int. J. Fatigue
 /// 16 (1994) 287-293; ASTM E1049-85, section 5.4.4.
+///
+/// # Example
+/// The history of ASTM E1049, figure 6:
+/// ```
+/// use std::collections::BTreeMap;
+/// use strainbridge::series::rainflow::{Cycle, Point, Rainflow};
+///
+/// let mut counts: BTreeMap<i32, f64> = BTreeMap::new();
+/// let mut add = |c: Cycle| *counts.entry(c.range() as i32).or_default() += c.count;
+/// let mut count = Rainflow::default();
+/// for (at, value) in [-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0].into_iter().enumerate() {
+///     count.push(Point { at, value }, &mut add);
+/// }
+/// count.finish(&mut add);
+/// // Cycles by range, from the table of the standard.
+/// assert_eq!(counts, BTreeMap::from([(3, 0.5), (4, 1.5), (6, 0.5), (8, 1.0), (9, 0.5)]));
+/// ```
 #[derive(Clone, Debug)]
 pub struct Rainflow<T = ()> {
     open: Vec<Reversal<T>>,

@@ -12,8 +12,23 @@ pub struct Knee {
     pub slope: f64,
 }
 
-/// Pseudo-damage of a cycle as a power of its range, without a factor that depends on the part: `R^m`, and below a knee
-/// `R_k^m (R / R_k)^(m_2)`.
+/// Pseudo-damage of a cycle as a power of its range, without a factor that depends on the part.
+///
+/// The damage is `R^m`, and below a knee `R_k^m (R / R_k)^(m_2)`.
+///
+/// # Example
+/// ```
+/// use strainbridge::series::rainflow::{Knee, Law};
+///
+/// let line = Law::straight(5.0);
+/// // A fifth more range does 1.2^5 = 2.49 times the damage.
+/// assert!((line.damage(12.0) / line.damage(10.0) - 1.2_f64.powi(5)).abs() < 1e-12);
+/// let bent = Law { knee: Some(Knee { range: 10.0, slope: 9.0 }), ..line };
+/// assert_eq!(bent.damage(12.0), line.damage(12.0));
+/// // The damage is continuous at the knee, and smaller below it.
+/// assert!((bent.damage(10.0 - 1e-9) / line.damage(10.0) - 1.0).abs() < 1e-8);
+/// assert!((bent.damage(5.0) / line.damage(5.0) - 0.5_f64.powi(4)).abs() < 1e-12);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Law {
     /// The power m: the slope of the S-N line.

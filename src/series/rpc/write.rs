@@ -39,7 +39,28 @@ impl Target {
 /// frame, and `SAMPLES` states the end. Returns how many numbers were repeated.
 ///
 /// # Errors
-/// What `out` says.
+/// Returns the errors of `out`.
+///
+/// # Example
+/// Values come back within half a count of the 16-bit numbers:
+/// ```
+/// use strainbridge::series::rpc::{Target, read_rpc, write_rpc};
+///
+/// let force: Vec<f64> = (0..300).map(|i| 900.0 * (0.1 * f64::from(i)).sin()).collect();
+/// let target = Target { name: "FZ".to_owned(), unit: "N".to_owned(), min: -900.0, max: 900.0 };
+/// let half_a_count = 0.5 * target.scale();
+/// let mut bytes = Vec::new();
+/// let repeated = write_rpc(&mut bytes, &[target], 0.005, force.len(), |from, to, out| {
+///     out.extend_from_slice(&force[from..to]);
+/// })?;
+/// assert_eq!(repeated, 0);
+///
+/// let record = read_rpc(&bytes).map_err(std::io::Error::other)?;
+/// let read = record.samples("FZ").map_err(std::io::Error::other)?;
+/// assert_eq!((read.len(), record.rate_hz), (300, 200.0));
+/// assert!(read.iter().zip(&force).all(|(r, f)| (r - f).abs() <= 1.001 * half_a_count));
+/// # Ok::<(), std::io::Error>(())
+/// ```
 pub fn write_rpc(
     out: &mut dyn Write,
     targets: &[Target],

@@ -33,6 +33,21 @@ const ASSUMED_NOISE: f64 = 0.01;
 ///
 /// # Errors
 /// Returns every fault of the job and its deck, a region without a place for a mass, or a model that already weighs more.
+///
+/// # Example
+/// The reactions in `examples/frame` include a gearbox of 250 kg at (3.0 m, 0.1 m), which the deck lacks:
+/// ```
+/// use strainbridge::{Context, Disk, Job, ballast};
+///
+/// let job = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/ballast.toml");
+/// let found = ballast(&Job::read(job, &Disk)?, &Context::new(&Disk))?;
+/// let gearbox = &found.masses[0];
+/// assert!((gearbox.mass - 250.0).abs() < 0.5); // kg
+/// assert!((gearbox.position[0] - 3.0).abs() < 0.005); // m
+/// // Statics alone give the sum of the missing masses.
+/// assert!((found.together.mass - gearbox.mass).abs() < 0.5);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     let mut work = Work::of_job(cx, job);
     let read = read_asked(&mut work, job)?;

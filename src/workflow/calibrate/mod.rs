@@ -37,6 +37,36 @@ use crate::workflow::recover::listed;
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names, or runs without known loads.
+///
+/// # Example
+/// Readings that are exactly `eps = S f` give S back:
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, calibrate};
+///
+/// const JOB: &str = r#"
+/// units = "m-kg-s"
+/// load = [{ name = "front" }, { name = "rear" }]
+/// measured = { strain = "strain.csv", noise_microstrain = 0.01 }
+/// runs = { file = "runs.csv" }
+/// "#;
+/// let s = [[0.10, 0.02], [0.02, 0.10], [0.05, -0.05]]; // microstrain per newton
+/// let loads = [[100.0, 0.0], [0.0, 100.0], [50.0, 80.0], [80.0, -50.0], [30.0, 60.0], [90.0, 40.0]];
+/// # let (mut runs, mut strain) = ("run,front,rear\n".to_owned(), "run,G1,G2,G3\n".to_owned());
+/// # for (r, f) in loads.iter().enumerate() {
+/// #     let eps = s.map(|row: [f64; 2]| row[0] * f[0] + row[1] * f[1]);
+/// #     runs += &format!("R{r},{},{}\n", f[0], f[1]);
+/// #     strain += &format!("R{r},{},{},{}\n", eps[0], eps[1], eps[2]);
+/// # }
+/// let files = InMemory::default().with("job.toml", JOB).with("runs.csv", runs).with("strain.csv", strain);
+/// let found = calibrate(&Job::read("job.toml", &files)?, &Context::new(&files))?;
+/// for (g, row) in s.iter().enumerate() {
+///     for (l, expected) in row.iter().enumerate() {
+///         assert!((1e6 * found.sensitivity.values[(g, l)] - expected).abs() < 1e-4);
+///     }
+/// }
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;

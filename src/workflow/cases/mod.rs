@@ -104,6 +104,24 @@ pub fn edited_files(
 ///
 /// # Errors
 /// Returns every fault of the job and its deck, or entries that can't be edited.
+///
+/// # Example
+/// ```
+/// use std::path::Path;
+/// use strainbridge::{Context, Disk, Job, cases};
+///
+/// let job = Job::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/place.toml"), &Disk)?;
+/// let made = cases(&job, &Context::new(&Disk))?;
+/// assert_eq!(made.subcases.len(), job.loads.len());
+///
+/// let (name, deck) = &made.edited.files(Path::new("out"))[0];
+/// let deck = String::from_utf8_lossy(deck);
+/// assert_eq!(name, "unit_loads.bdf");
+/// assert_eq!(deck.lines().filter(|l| l.trim_start().starts_with("SUBCASE")).count(), 6);
+/// let given = std::fs::read_to_string(job.folder.join("frame.bdf"))?;
+/// assert!(given.lines().filter(|l| l.starts_with("CQUAD4")).all(|l| deck.contains(l)));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     let mut work = Work::of_job(cx, job);
     let fault = |field: &str, wrong: &str, remedy: &str| {

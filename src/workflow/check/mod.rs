@@ -27,6 +27,22 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// Returns an error only if the command itself fails, never for a fault of a file.
+///
+/// # Example
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, check};
+///
+/// let deck = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,1.,0.,0.\nCROD,1,7,1,2\nCONM2,2,3,,1.\nENDDATA\n";
+/// let files = InMemory::default().with("rod.bdf", deck);
+/// let found = check(&["rod.bdf".into()], &Context::new(&files))?;
+/// // Line 6 names property 7 and line 7 names grid 3, which the deck does not contain.
+/// let faults: Vec<String> = found.faults.iter().map(ToString::to_string).collect();
+/// assert!(faults.iter().any(|f| f.starts_with("rod.bdf:6: ") && f.contains("PROD 7")), "{faults:?}");
+/// assert!(faults.iter().any(|f| f.starts_with("rod.bdf:7: ") && f.contains("grid 3")), "{faults:?}");
+/// assert!(found.next_step().is_none());
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn check(files: &[PathBuf], cx: &Context) -> Result<Outcome<Checked>, Faults> {
     let mut work = Work::new(cx);
     let mut found = Checked::default();

@@ -76,12 +76,32 @@ pub struct FleetSpec {
     pub digests: BTreeMap<String, String>,
 }
 
-/// Recovers the loads of many records and sums cycles, damage and channel faults by vehicle.
-///
-/// A record that can't be read is a failed file with an error finding. All other records are processed.
+/// Recovers the loads of many records and sums cycles, damage and channel faults by vehicle. A record that can't be read is a failed file
+/// with an error finding, and all other records are processed.
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names, or an output folder that can't be written.
+///
+/// # Example
+/// Carrier B swings a fifth more than carrier A, so with the slope 5 its damage is `1.2^5` times as large:
+/// ```
+/// use strainbridge::workflow::fleet::FleetSpec;
+/// use strainbridge::{Context, Disk, Job, fleet};
+///
+/// # let out = std::env::temp_dir().join(format!("strainbridge-fleet-{}", std::process::id()));
+/// let folder = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/fleet"));
+/// let job = Job::read(folder.join("fleet.toml"), &Disk)?;
+/// let spec = FleetSpec {
+///     files: ["A_2026-05-01.csv", "B_2026-05-01.csv"].map(|f| folder.join(f)).to_vec(),
+///     folder: out.clone(),
+///     ..FleetSpec::default()
+/// };
+/// let found = fleet(&job, &spec, &Context::new(&Disk))?;
+/// let damage: Vec<f64> = found.vehicles.iter().map(|v| v.loads[0].damage).collect();
+/// assert!((damage[1] / damage[0] / 1.2_f64.powi(5) - 1.0).abs() < 0.05);
+/// # std::fs::remove_dir_all(&out)?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>, Faults> {
     let mut work = Work::of_job(cx, job);
     let Some(section) = &job.fleet else {

@@ -93,8 +93,30 @@ impl Answer for Proposal {
 
 /// Proposes a commented job in `folder` from a deck and its results. It tries whether `place` finds gauges for the proposed loads.
 ///
+/// The job is a text in the answer; the caller writes it.
+///
 /// # Errors
 /// Returns files that can't be read, an existing job, or a deck without grids.
+///
+/// # Example
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, init};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nSPC = 1\nSUBCASE 1\n LABEL = left\n LOAD = 2\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,100.,0.,0.
+/// # GRID,3,,100.,20.,0.\nGRID,4,,0.,20.,0.\nGRID,5,,200.,0.,0.\nGRID,6,,200.,20.,0.\nCQUAD4,1,1,1,2,3,4\nCQUAD4,2,1,2,5,6,3
+/// # PSHELL,1,1,2.,1,,1\nMAT1,1,210000.,,.3,7.85-9\nSPC1,1,123456,1,4\nFORCE,2,5,,10.,0.,0.,1.\nENDDATA\n";
+/// let files = InMemory::default().with("strip.bdf", DECK);
+/// let proposed = init(Path::new("strip.bdf"), &[], Path::new(""), &Context::new(&files))?;
+/// assert_eq!(proposed.loads.len(), 1);
+///
+/// // The text is a job that reads without faults.
+/// let files = files.with(&proposed.path, proposed.text.as_str());
+/// let job = Job::read(&proposed.path, &files)?;
+/// assert_eq!(job.loads[0].name, proposed.loads[0]);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn init(
     deck_path: &Path,
     results: &[PathBuf],

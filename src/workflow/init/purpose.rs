@@ -169,10 +169,28 @@ fn zones_text(zones: &BTreeMap<String, BTreeSet<u32>>) -> String {
     }
 }
 
-/// A commented job for a purpose, from a deck where one is given, to stand in `folder`.
+/// Proposes a commented job in `folder` for one purpose, from a deck if the purpose needs one. `identify` and `calibrate` need no deck.
 ///
 /// # Errors
-/// Those of [`super::init`]; no deck for a purpose that needs one.
+/// Returns the faults of [`super::init`], or a fault if a purpose that needs a deck has none.
+///
+/// # Example
+/// ```
+/// use std::path::Path;
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::workflow::init::Purpose;
+/// use strainbridge::{Context, init_for};
+///
+/// let files = InMemory::default();
+/// let cx = Context::new(&files);
+/// let proposed = init_for(Purpose::Identify, None, &[], Path::new("bench"), &cx)?;
+/// assert_eq!(proposed.path, Path::new("bench").join(proposed.job));
+/// assert!(proposed.text.contains("\n[vehicle]\n"));
+///
+/// let no_deck = init_for(Purpose::Payload, None, &[], Path::new("bench"), &cx);
+/// assert!(no_deck.is_err_and(|faults| faults[0].wrong == "no deck is given"));
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn init_for(
     purpose: Purpose,
     deck: Option<&Path>,

@@ -30,6 +30,38 @@ use task::Task;
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names, or a job with neither strain nor wheel forces.
+///
+/// # Example
+/// A table on three wheels: the weight is the sum of the wheel forces, and the lever rule gives its position.
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, payload};
+///
+/// # const DECK: &str = "SOL 101\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.\nGRID,2,,2.,-1.,0.\nGRID,3,,2.,1.,0.\nGRID,9,,1.,0.,0.
+/// # CBAR,1,1,9,1,0.,0.,1.\nCBAR,2,1,9,2,0.,0.,1.\nCBAR,3,1,9,3,0.,0.,1.\nPBAR,1,1,1.-3,1.-6,1.-6,1.-6
+/// # MAT1,1,2.1+11,,.3,7850.\nENDDATA\n";
+/// const JOB: &str = r#"
+/// units = "m-kg-s"
+/// model = { deck = "table.bdf", support = "free" }
+/// load = [
+///     { name = "front", grid = 1, component = "FZ" },
+///     { name = "left", grid = 2, component = "FZ" },
+///     { name = "right", grid = 3, component = "FZ" },
+/// ]
+/// runs = { file = "runs.csv", noise = { force = 1.0 }, wheel_forces = "measured" }
+/// payload = { grid = 9, position = "free", use = ["reactions"] }
+/// "#;
+/// let files = InMemory::default()
+///     .with("table.bdf", DECK)
+///     .with("job.toml", JOB)
+///     .with("runs.csv", "run,front,left,right\nR1,500.0,200.0,300.0\n");
+/// let found = payload(&Job::read("job.toml", &files)?, &Context::new(&files))?;
+/// let p = &found.payload[0];
+/// assert!((p.mass.unwrap() - 1000.0 / 9.80665).abs() < 1e-6);
+/// assert!((p.position[0].unwrap() - 2.0 * 500.0 / 1000.0).abs() < 1e-5); // m
+/// assert!((p.position[1].unwrap() - (300.0 - 200.0) / 1000.0).abs() < 1e-5);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;

@@ -37,6 +37,21 @@ use crate::workflow::recover::listed;
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names, or candidates that allow no layout.
+///
+/// # Example
+/// ```
+/// use strainbridge::{Context, Disk, Job, place};
+///
+/// let job = Job::read(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/place.toml"), &Disk)?;
+/// let plan = place(&job, &Context::new(&Disk))?;
+/// assert_eq!(plan.gauges.len(), 12);
+/// // The certificate: no layout of these candidates is better than the bound.
+/// assert!(plan.log_det <= plan.upper_bound && plan.efficiency_bound <= 1.0);
+/// assert!(plan.efficiency_bound > 0.8);
+/// // Twelve gauges determine all six loads.
+/// assert_eq!(plan.conditioning.rank, job.loads.len());
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn place(job: &Job, cx: &Context) -> Result<Outcome<Placed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;

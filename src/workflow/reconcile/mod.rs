@@ -55,10 +55,23 @@ use crate::host::work::Work;
 use crate::job::{GivenSensitivity, Job, ReconcilePath};
 use crate::strain_chain::named_results::check_tables;
 
-/// The gap between the job's model and its measurement, the effect that is missing, and the job with that effect in it.
+/// Compares the model of a job with its measurement and identifies missing effects. The answer contains the difference before and after, and
+/// the job with the identified effects.
 ///
 /// # Errors
-/// Faults of the job and of the files it names.
+/// Returns every fault of the job and of the files that it names.
+///
+/// # Example
+/// Gauge P05 of `examples/frame` was wired with the wrong sign:
+/// ```
+/// use strainbridge::{Context, Disk, Job, reconcile};
+///
+/// let job = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/reconcile_matrix.toml");
+/// let found = reconcile(&Job::read(job, &Disk)?, &Context::new(&Disk))?;
+/// assert_eq!(found.named, ["sign_flip:P05"]);
+/// assert!(found.gap.after < 0.1 * found.gap.before);
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn reconcile(job: &Job, cx: &Context) -> Result<Outcome<Reconciled>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;

@@ -70,6 +70,31 @@ use crate::strain_chain::{Conditioning, Prepared};
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names.
+///
+/// # Example
+/// Gauges of known S read the strain of 2000 N and 1000 N, each with an error of one microstrain:
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, recover};
+///
+/// const JOB: &str = r#"
+/// units = "m-kg-s"
+/// load = [{ name = "left" }, { name = "right" }]
+/// sensitivity = { file = "s.csv" } # microstrain per newton
+/// measured = { strain = "strain.csv", noise_microstrain = 1.0 }
+/// "#;
+/// let files = InMemory::default()
+///     .with("job.toml", JOB)
+///     .with("s.csv", "gauge,left,right\nG1,0.10,0.02\nG2,0.02,0.10\nG3,0.05,0.05\n")
+///     .with("strain.csv", "run,G1,G2,G3\nR1,221,139,151\n");
+/// let found = recover(&Job::read("job.toml", &files)?, &Context::new(&files))?;
+/// let runs = found.runs().unwrap();
+/// for (load, truth) in runs.loads.iter().zip([2000.0, 1000.0]) {
+///     assert!(load.low <= truth && truth <= load.high);
+///     assert_eq!(load.unit, "N");
+/// }
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn recover(job: &Job, cx: &Context) -> Result<Outcome<Recovered>, Faults> {
     let mut history = History::default();
     let mut outcome = recover_into(job, cx, &mut history)?;

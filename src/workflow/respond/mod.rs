@@ -29,6 +29,20 @@ use std::collections::BTreeSet;
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names, or a given S, which has no fields.
+///
+/// # Example
+/// The recovered loads predict the strain at the gauges to the noise of the readings, 0.5 microstrain:
+/// ```
+/// use strainbridge::{Context, Disk, Job, respond};
+///
+/// let job = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/frame/respond.toml");
+/// let found = respond(&Job::read(job, &Disk)?, &Context::new(&Disk))?;
+/// assert_eq!(found.states, 9);
+/// let stresses = found.elements.iter().map(|e| e.max_von_mises);
+/// assert!(stresses.is_sorted_by(|a, b| a >= b));
+/// assert!(found.gauges.iter().all(|g| g.residual_rms < 1.5));
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn respond(job: &Job, cx: &Context) -> Result<Outcome<Responded>, Faults> {
     let mut work = Work::of_job(cx, job);
     let answer = responded(&mut work, &job.estimating()?)?;

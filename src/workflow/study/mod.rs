@@ -108,10 +108,35 @@ pub struct StudiedLoad {
     pub wanted: bool,
 }
 
-/// Repeats the recovery of loads under stated errors, for several gauge counts and layouts.
+/// Repeats the recovery of loads under stated errors, for several gauge counts and layouts. The seed of the job fixes all random numbers.
 ///
 /// # Errors
 /// Returns every fault of the job and of the files that it names, or loads of unknown size.
+///
+/// # Example
+/// A gauge for each load: noise of 1 microstrain at 0.1 microstrain per newton scatters a load by 10 N.
+/// ```
+/// use strainbridge::host::context::InMemory;
+/// use strainbridge::{Context, Job, study};
+///
+/// const JOB: &str = r#"
+/// units = "m-kg-s"
+/// load = [{ name = "left", expected = 100.0 }, { name = "right", expected = 100.0 }]
+/// sensitivity = { file = "s.csv" }
+/// measured = { strain = "strain.csv", noise_microstrain = 1.0 }
+/// study = { layouts = ["given"], trials = 400, errors = [{ kind = "absolute-normal", size = 1.0 }] }
+/// "#;
+/// let files = InMemory::default()
+///     .with("job.toml", JOB)
+///     .with("s.csv", "gauge,left,right\nG1,0.1,0.0\nG2,0.0,0.1\n")
+///     .with("strain.csv", "run,G1,G2\nR1,10,10\n");
+/// let found = study(&Job::read("job.toml", &files)?, &Context::new(&files))?;
+/// for load in &found.study[0].loads {
+///     // The standard deviation of 400 trials errs by 3.5 %, one standard deviation.
+///     assert!((load.sigma.unwrap() / 10.0 - 1.0).abs() < 0.14);
+/// }
+/// # Ok::<(), strainbridge::Faults>(())
+/// ```
 pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
     let mut work = Work::of_job(cx, job);
     let job = &job.estimating()?;

@@ -200,7 +200,21 @@ impl CaseControl {
         self.global.mpc.or(below)
     }
 
-    /// All subcases with what they inherit; a deck without SUBCASE has one, number 1.
+    /// Returns all subcases with what they inherit; a deck without SUBCASE has one, number 1.
+    ///
+    /// # Example
+    /// ```
+    /// use nastran::bdf::{MemoryLoader, read_deck};
+    ///
+    /// let text = "CEND\nSPC = 1\nLOAD = 10\nSUBCASE 1\n LABEL = front\nSUBCASE 2\n LOAD = 20\nBEGIN BULK\nENDDATA\n";
+    /// let deck = read_deck("cases.bdf", text.into(), &mut MemoryLoader::default());
+    /// let subcases = deck.case_control.effective_subcases();
+    /// let loads: Vec<_> = subcases.iter().map(|s| (s.id, s.load)).collect();
+    /// assert_eq!(loads, [(1, Some(10)), (2, Some(20))]);
+    /// assert!(subcases.iter().all(|s| s.spc == Some(1)));
+    /// // As written, the first subcase states no load.
+    /// assert_eq!(deck.case_control.subcases[0].load, None);
+    /// ```
     pub fn effective_subcases(&self) -> Vec<Subcase> {
         if self.subcases.is_empty() {
             let mut only = self.global.clone();

@@ -1,6 +1,17 @@
 //! SET n = 1, 2 THRU 9 EXCEPT 5, ALL, QUAD4 EXCEPT 21.
 
-/// The items of a SET.
+/// Ids of grids or elements that a SET statement of case control lists. [`Set::has`] tests an id.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::{MemoryLoader, read_deck};
+///
+/// let text = "CEND\nSET 5 = 1 THRU 10 EXCEPT 4, 20\nBEGIN BULK\nENDDATA\n";
+/// let deck = read_deck("sets.bdf", text.into(), &mut MemoryLoader::default());
+/// let set = &deck.case_control.global.sets[&5];
+/// assert!(set.has(1) && set.has(3) && set.has(10) && set.has(20));
+/// assert!(!set.has(4) && !set.has(11));
+/// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Set {
     /// Items in the order of the statement.

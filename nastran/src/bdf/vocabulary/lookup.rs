@@ -59,7 +59,16 @@ pub fn request_of(word: &str) -> Option<&'static str> {
     (word.effect == Effect::Request).then_some(word.name)
 }
 
-/// Returns the bulk data name that one letter makes of a misspelt one.
+/// Returns the bulk data name that differs from a misspelt name by one letter; `None` if there is no such name.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::vocabulary::{Effect, effect_of_card, nearest_card};
+///
+/// assert_eq!(nearest_card("PSHEL"), Some("PSHELL"));
+/// assert_eq!(effect_of_card("PSHELL"), Some(Effect::Carried));
+/// assert_eq!(effect_of_card("PSHEL"), None);
+/// ```
 pub fn nearest_card(name: &str) -> Option<&'static str> {
     spelling::nearest(name, all_cards().map(|c| c.0))
 }

@@ -44,7 +44,22 @@ pub fn write_deck(deck: &Deck) -> Vec<(String, Vec<u8>)> {
     write_edited(deck, &Edits::default())
 }
 
-/// The files of the deck with the edits made; lines that no edit touches keep every byte.
+/// Returns the files of the deck with the edits made. Lines that no edit touches keep every byte.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::{Edits, MemoryLoader, read_deck, write_deck, write_edited};
+///
+/// let text = "$ rails\nCEND\nBEGIN BULK\nGRID,1,,0.,0.,0.  $ front\nPSHELL,1,1,6.,1\nENDDATA\n";
+/// let deck = read_deck("frame.bdf", text.into(), &mut MemoryLoader::default());
+/// assert_eq!(write_deck(&deck), [("frame.bdf".to_owned(), text.as_bytes().to_vec())]);
+///
+/// let mut edits = Edits::default();
+/// edits.replace_card(&deck, deck.cards.pshells[0].at, "PSHELL,1,1,8.,1")?;
+/// let (_, edited) = &write_edited(&deck, &edits)[0];
+/// assert_eq!(String::from_utf8_lossy(edited), text.replace("6.", "8."));
+/// # Ok::<(), nastran::bdf::EditError>(())
+/// ```
 pub fn write_edited(deck: &Deck, edits: &Edits) -> Vec<(String, Vec<u8>)> {
     let mut files = Vec::with_capacity(deck.sources.len());
     for (ix, source) in deck.sources.iter().enumerate() {

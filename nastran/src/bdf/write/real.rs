@@ -8,9 +8,24 @@ pub fn shortest_real(x: f64) -> String {
     shortest(negative, &digits, exponent)
 }
 
-/// The Nastran form of `x` in at most `width` columns (at least 8) with as many digits as fit.
+/// Returns the Nastran form of `x` in at most `width` columns (at least 8) with as many digits as fit.
 ///
 /// In 16 columns the relative error is 5e-12 at worst (negative numbers with an exponent), mostly 0.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::{Number, format_real, read_number, shortest_real};
+///
+/// assert_eq!(shortest_real(0.0015), ".0015");
+/// for x in [7.85e-9, -210_000.0, 2.0 / 3.0, 6.674_3e-11] {
+///     let text = format_real(x, 8);
+///     assert!(text.len() <= 8);
+///     let Some(Number::Real(read)) = read_number(text.as_bytes()) else { panic!("{text}") };
+///     assert!((read / x - 1.0).abs() < 1e-4);
+///     // The shortest form loses nothing.
+///     assert_eq!(read_number(shortest_real(x).as_bytes()), Some(Number::Real(x)));
+/// }
+/// ```
 pub fn format_real(x: f64, width: usize) -> String {
     let exact = shortest_real(x);
     if exact.len() <= width {

@@ -9,7 +9,21 @@ mod rigid;
 
 use super::card::{Field, format_card};
 
-/// A card that can be written.
+/// A card that can be written. [`ToFields::to_card`] gives lines that read back as the same card.
+///
+/// # Example
+/// ```
+/// use nastran::bdf::{MemoryLoader, ToFields, read_deck};
+/// use nastran::cards::Grid;
+///
+/// let grid = Grid { id: 12, cp: None, x: [1.0 / 3.0, -2.5e-7, 1000.0], cd: Some(4), ps: None, seid: None };
+/// let text = format!("BEGIN BULK\n{}ENDDATA\n", grid.to_card());
+/// let deck = read_deck("grid.bdf", text.into(), &mut MemoryLoader::default());
+/// let read = &deck.cards.grids[0];
+/// assert_eq!((read.id, read.cd, read.x[1], read.x[2]), (12, Some(4), -2.5e-7, 1000.0));
+/// // A third needs the 16 columns of the large field.
+/// assert!((3.0 * read.x[0] - 1.0).abs() < 1e-11);
+/// ```
 pub trait ToFields {
     /// Card name.
     fn card_name(&self) -> &'static str;
