@@ -110,7 +110,7 @@ pub(super) fn wide_directions(loads: &KnownLoads, scales: &[f64]) -> Vec<Vec<f64
         .collect()
 }
 
-/// Returns the known value of a sum of loads (their numbers and factors) in a run of the task; `None` if its sd exceeds [`UNKNOWN`] times the largest
+/// Returns the known value of a sum of loads (their numbers and factors) in a run of the task; `None` if its sd exceeds `UNKNOWN` times the largest
 /// value of the sum in any run.
 pub fn known_of(task: &Task, run: usize, terms: &[(usize, f64)]) -> Option<f64> {
     let k = task.loads.len();

@@ -167,7 +167,7 @@ pub enum Command {
 /// A job, records, which of them.
 #[derive(clap::Args, Debug)]
 pub struct FleetArguments {
-    /// The job, with [fleet] file_name
+    /// The job, with fleet file_name
     #[arg(value_name = "JOB")]
     pub job: PathBuf,
     /// Records, folders of records, or patterns such as data/**/*.parquet; without any, the results in the output folder are merged
@@ -279,7 +279,7 @@ pub struct CleanArguments {
 /// Options of every command.
 #[derive(clap::Args, Debug, Clone, Default)]
 pub struct CommonArguments {
-    /// Folder for result.json, tables and report (default: <job name>.out; `check` writes only with it)
+    /// Folder for result.json, tables and report (default: job.out for job.toml; `check` writes only with it)
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Print result.json, and nothing else, on standard output

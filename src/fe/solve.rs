@@ -374,7 +374,7 @@ pub(super) fn acting(
     })
 }
 
-/// Work of the factor of the free structure, longest chain in it, and what the busiest of 1, 2, 4, .. 64 threads does: [`Symbolic::tree_work`].
+/// Work of the factor of the free structure, longest chain in it, and what the busiest of 1, 2, 4, .. 64 threads does: `Symbolic::tree_work`.
 ///
 /// # Errors
 /// Returns every error of [`FeError`].

@@ -1,6 +1,6 @@
 //! The gauge file: a row a gauge, columns as the keys of `[[gauge]]`.
 //!
-//! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. [`super::gauge_table`]
+//! `direction` is `dir_x`, `dir_y`, `dir_z`; `position` is `x`, `y`, `z` in job units, or `x_m`, `y_m`, `z_m` in metres. `super::gauge_table`
 //! finds the columns: a finding names those that nothing reads, and one that looks like a column that the table lacks is a fault.
 
 use super::gauge_table::{GaugeColumn, GaugeColumns};

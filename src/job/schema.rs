@@ -1,4 +1,4 @@
-//! The JSON schema of a job: keys and types from [`super::raw`], words and meanings from here.
+//! The JSON schema of a job: keys and types from `super::raw`, words and meanings from here.
 
 use super::raw::RawJob;
 use schemars::generate::SchemaSettings;

@@ -39,7 +39,7 @@ const WEAK_SHARE: f64 = 1.0 / 3.0;
 
 /// Weighs the payload of every run.
 ///
-/// With a known place and strain alone the posterior of [`robust_payload`]; else [`locate`]. Interval: 95 %, of a payload that can't be negative
+/// With a known place and strain alone the posterior of [`robust_payload`]; else `locate`. Interval: 95 %, of a payload that can't be negative
 /// (value `max(0, v)`, ends `max(0, low)` and `max(0, v) + high - v`, see `cut_at_zero`). An answer that violates sign, region or equilibrium keeps
 /// its numbers and states why it is refused. Runs are tested separately: a run without an answer does not affect the answers of other runs.
 pub fn weigh(model: &PayloadModel, runs: &[PayloadRun], spec: &WeighSpec) -> Weighing {

@@ -1,6 +1,6 @@
 //! The relaxation: weights in place of gauges, `max criterion(P + sum w_i a_i a_i')` with `sum w = s`, `w >= 0` and at most 1 in each group.
 //!
-//! For D, Newton steps ([`super::newton`]); where one does not close the gap, and for the other criteria,
+//! For D, Newton steps (`super::newton`); where one does not close the gap, and for the other criteria,
 //! weight moves between pairs of rows by exact line search (vertex exchange, visited in the order of the randomised exchange of
 //! Harman, Filova and Richtarik, J. Am. Stat. Assoc. 115 (2020), without the chance). Rows of a group share a weight of at most 1: one
 //! row for each distinct gauge, or all the angles of a place, or all the places within a spacing. Every exchange direction of that set is

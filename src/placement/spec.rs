@@ -20,7 +20,7 @@ pub struct Spec {
     /// Effort of the search.
     pub effort: Effort,
     /// Approximate number of floating-point operations for a proof by branch and bound; 0: no proof. It is tried if few candidates
-    /// remain that could be in a better layout ([`branch_and_bound::MOST_ROWS`]).
+    /// remain that could be in a better layout (`branch_and_bound::MOST_ROWS`).
     pub proof: f64,
     /// Effect of the loss of a gauge on the choice.
     pub loss: Loss,

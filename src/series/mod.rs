@@ -6,7 +6,7 @@
 //! - [`cell`]: names that a spreadsheet would take for formulas
 //! - [`csv`]: bytes of a CSV file to a record in memory
 //! - [`rpc`]: RPC III files, read and written
-//! - [`foreign`]: Parquet and MDF4 in memory
+//! - `foreign`: Parquet and MDF4 in memory
 //! - [`number`]: numbers read and written fast
 //! - [`quality`]: dead, clipped, spiky, drifting channels as findings
 //! - [`detrend`]: mean, line and zero-run removal

@@ -79,7 +79,7 @@ pub enum WantedAt {
     Anywhere,
 }
 
-/// The model on a mesh half as wide: everywhere up to [`MOST_SHELLS`], beyond it in [`ROWS`] of elements round `gauges`, where these are
+/// The model on a mesh half as wide: everywhere up to `MOST_SHELLS`, beyond it in `ROWS` of elements round `gauges`, where these are
 /// known.
 ///
 /// # Errors

@@ -6,7 +6,7 @@ use super::motion::Motion;
 use crate::estimate::LoadEstimate;
 use crate::linalg::tall::{left_inverse, solve, triangle};
 
-/// Shares of the signals that are added to the spring path of each wheel force: `share[wheel][signal]` over [`signals`], missing shares being 0.
+/// Shares of the signals that are added to the spring path of each wheel force: `share[wheel][signal]` over `signals`, missing shares being 0.
 pub type Blend = Vec<Vec<f64>>;
 
 /// A history of recovered loads, each with one standard deviation for all samples.

@@ -3,10 +3,10 @@
 //! [`Op2::read`] makes one cheap pass over the records and decodes nothing; [`Op2::rows`] decodes one block at a time, so a
 //! caller with many blocks may do them in parallel.
 //!
-//! - [`words`] 4 or 8 bytes a word, either byte order; text in both 64-bit spellings;
-//! - [`fortran`] the record marks around everything; [`container`] tables, trailers, records;
-//! - [`ident`] identification records; [`index`] result blocks; [`rows`] layouts of the rows and their decoding;
-//! - [`weight`] grid point weight; [`geom`] cards out of the geometry blocks.
+//! - `words` 4 or 8 bytes a word, either byte order; text in both 64-bit spellings;
+//! - `fortran` the record marks around everything; `container` tables, trailers, records;
+//! - `ident` identification records; `index` result blocks; `rows` layouts of the rows and their decoding;
+//! - `weight` grid point weight; `geom` cards out of the geometry blocks.
 //!
 //! [`Op2Writer`] writes result tables, a block at a time.
 //!

@@ -158,7 +158,7 @@ pub struct Solid {
     pub shape: SolidShape,
     /// Corners first; `None`: no mid-side grid.
     pub grids: [Option<GridIx>; 20],
-    /// Index into [`Model::solid_properties`].
+    /// Index into `Model::solid_properties`.
     pub property: u32,
     pub at: Place,
 }

@@ -3,7 +3,7 @@
 //! - [`frame`]: what is given; [`design`]: the equations as transforms within the band
 //! - [`response`], [`noise`]: how sensor noise enters the equations
 //! - [`change`], [`candidate`], [`effect`]: the library; [`fit`]: a set of effects fitted; [`scorer`]: its evidence
-//! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; [`examine`]: the verdict
+//! - [`unexplained_background`]: what nothing explains; [`gap`]: how much is left on other data; `examine`: the verdict
 //! - [`sits`]: where, when and at which size a gap is largest; `next`: what to measure next
 //! - [`simulated`]: what was named, by simulation
 

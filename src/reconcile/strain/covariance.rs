@@ -66,7 +66,7 @@ pub(super) fn patterns_read(
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
 /// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and their part in doubt), with S, m, b as read
-/// with `members` on, + what a calibrated S leaves in doubt ([`learnt`]). Between runs of a gauge, and of any two gauges, stays what repeats of V.
+/// with `members` on, + what a calibrated S leaves in doubt (`learnt`). Between runs of a gauge, and of any two gauges, stays what repeats of V.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],

@@ -71,7 +71,7 @@ pub(super) struct ShownNoise {
 
 /// Returns the noise that samples without load show by S, a row a sample, strain by gauge of S, and a finding; `None` where it is as stated.
 ///
-/// With [`Rules::runs_per_gauge`] effective samples it is their covariance itself. In the mean over the gauges it is never taken for smaller than
+/// With `Rules::runs_per_gauge` effective samples it is their covariance itself. In the mean over the gauges it is never taken for smaller than
 /// stated: readings under load can have more noise than at rest.
 pub fn noise_without_load(
     s: &Sensitivity,

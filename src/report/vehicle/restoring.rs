@@ -34,7 +34,7 @@ pub(super) fn links_told(found: &Identification) -> impl Iterator<Item = usize> 
     (0..v.links.len()).filter(all_told)
 }
 
-/// Returns the mean force of every link that the record determines, by bins of its stretch: from the model, and from [`asked_force`] if it is known.
+/// Returns the mean force of every link that the record determines, by bins of its stretch: from the model, and from `asked_force` if it is known.
 pub fn restoring_curves(found: &Identification, motion: &Motion) -> Vec<Curve> {
     const BINS: usize = 41;
     let forces = link_forces(&found.vehicle, &found.values, motion);

@@ -85,8 +85,8 @@ impl DamageParts {
     /// Computes the parts of a tally. `scale` is the covariance of the errors of this load's row of the gain, `f = (1 + C) f_true`. It is row-major,
     /// `n_loads x n_loads`. `noise` is the standard deviation of a sample.
     ///
-    /// Counts with more noise give the bias ([`Bias`]). Its error is at most the distance to the straight line through the first two counts, and
-    /// at least [`OFF`] of the bias. The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on
+    /// Counts with more noise give the bias (`Bias`). Its error is at most the distance to the straight line through the first two counts, and
+    /// at least `OFF` of the bias. The subtracted bias was compared with counts without noise, on sines of 16 to 200 samples a period and on
     /// Gaussian loads, slopes 3 to 9. Both agree within a fifth (a third at slope 3) up to a noise of 2 % of the range. At 5 %, where noise makes up
     /// to four times the damage, they agree within two fifths.
     pub fn of(tally: &Tally, scale: &[f64], noise: f64) -> Self {

@@ -8,7 +8,7 @@
 //! - [`law`]: the harm of a cycle, by the slope and knee of an S-N line
 //! - [`tally`]: cycles by class, levels, extremes and sums of a load over a time; tallies of days join to that of the year
 //! - [`interval`]: damage with what is known of its errors
-//! - [`damage`]: damage of one record, range by range
+//! - `damage`: damage of one record, range by range
 
 pub mod absent;
 mod bias;

@@ -1,7 +1,7 @@
 //! `init`: a commented job from the analyst's own files, tried before it is recommended.
 //!
-//! [`propose`] loads (of the results' subcases, of the deck's, at [`points`]), lengths by the [`mesh`], [`text`] of the job, and
-//! [`trial`]: `place` on it. The first proposal that `place` answers is written.
+//! `propose` loads (of the results' subcases, of the deck's, at `points`), lengths by the `mesh`, `text` of the job, and
+//! `trial`: `place` on it. The first proposal that `place` answers is written.
 
 mod mesh;
 mod plain_name;

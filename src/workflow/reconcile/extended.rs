@@ -23,7 +23,7 @@ pub const RUNS: &str = "runs_extended.csv";
 pub struct ExtendedModel {
     /// File name of the job.
     pub name: &'static str,
-    /// Path of the job: its name, until [`ExtendedModel::put_into`].
+    /// Path of the job: its name, until `ExtendedModel::put_into`.
     pub path: String,
     /// Text of the job as it was read.
     pub job_text: String,

@@ -1,6 +1,6 @@
 //! `recover`: loads from measured strain.
 //!
-//! [`runs`] static states, a row each; [`record`] records of any length and format ([`crate::series::record`]), at constant memory: their
+//! `runs` static states, a row each; `record` records of any length and format ([`crate::series::record`]), at constant memory: their
 //! loads go to a [`RecordSink`] as they come.
 
 mod answer;

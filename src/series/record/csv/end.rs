@@ -36,7 +36,7 @@ pub fn unsure_end(bytes: &[u8]) -> Option<usize> {
 }
 
 /// Whether the last line is cut beyond doubt: [`unsure_end`] doubts it, and its last number lacks what those of its column have as programs write
-/// numbers: their digits after the point ([`has_fewer_digits`]), their point or their exponent ([`lacks_a_part`]).
+/// numbers: their digits after the point (`has_fewer_digits`), their point or their exponent (`lacks_a_part`).
 pub fn is_cut(bytes: &[u8]) -> bool {
     if unsure_end(bytes).is_none() {
         return false;
