@@ -74,3 +74,60 @@ fn doc_comments_stand_alone_and_use_the_words_of_the_field() {
     assert!(read > 10_000, "only {read} lines of doc comments were read");
     assert!(wrong.is_empty(), "{wrong}");
 }
+
+/// Names that `lib.rs` re-exports, each with the path of its module: `pub use workflow::init::{init, init_for};`.
+fn reexported(lib: &str) -> Vec<(String, String)> {
+    let lines = lib.lines().filter_map(|l| l.strip_prefix("pub use "));
+    let names = lines.flat_map(|line| {
+        let path = line.trim_end_matches(';');
+        let (module, names) = path.rsplit_once("::").unwrap_or(("", path));
+        let (module, names) = match path.split_once("::{") {
+            Some((module, names)) => (module, names.trim_end_matches('}')),
+            None => (module, names),
+        };
+        let module = format!("src/{}", module.replace("::", "/"));
+        let list: Vec<_> = names.split(", ").map(str::to_owned).collect();
+        list.into_iter().map(move |n| (module.clone(), n))
+    });
+    names.collect()
+}
+
+/// Doc comment of a public item, without the marks of its lines; `None` if the file does not define the item.
+fn doc_of(text: &str, name: &str) -> Option<String> {
+    let lines: Vec<&str> = text.lines().collect();
+    let defines = |l: &&str| {
+        let kinds = ["fn", "struct", "enum"].iter();
+        let mut rest = kinds.filter_map(|k| l.strip_prefix(&format!("pub {k} {name}")));
+        rest.any(|r| !r.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+    };
+    let at = lines.iter().position(defines)?;
+    let above = lines[..at].iter().rev();
+    let doc = above
+        .skip_while(|l| !l.starts_with("///"))
+        .map_while(|l| l.strip_prefix("///"));
+    let mut doc: Vec<&str> = doc.collect();
+    doc.reverse();
+    Some(doc.join("\n"))
+}
+
+#[test]
+fn what_the_library_reexports_has_an_example_that_asserts() {
+    let lib = std::fs::read_to_string(root().join("src/lib.rs")).unwrap();
+    let names = reexported(&lib);
+    assert!(names.len() > 30, "{names:?}");
+    let mut files = Vec::new();
+    rust_files(&root().join("src"), &mut files);
+    for (module, name) in names {
+        let inside = files.iter().filter(|f| f.starts_with(root().join(&module)));
+        let alone = [root().join(format!("{module}.rs"))];
+        let mut docs = inside.chain(&alone).filter_map(|f| {
+            let text = std::fs::read_to_string(f).ok()?;
+            doc_of(&text, &name)
+        });
+        let has_example = |doc: &String| doc.contains("```") && doc.contains("assert");
+        assert!(
+            docs.any(|d| has_example(&d)),
+            "{module}: `{name}` has no example"
+        );
+    }
+}
