@@ -179,6 +179,40 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
 
 const SCENE: &str = "the model in three dimensions";
 
+/// A finding that names a gauge shows it in every picture while its name has the focus.
+#[test]
+fn a_finding_shows_the_gauge_that_it_names() {
+    let dir = plate("shown");
+    let runs = std::fs::read_to_string(dir.join("runs.csv")).unwrap();
+    let (head, rows) = runs.split_once('\n').unwrap();
+    let gauge = head.split(',').nth(1).unwrap();
+    let reversed = rows.lines().map(|row| {
+        let mut fields: Vec<String> = row.split(',').map(str::to_owned).collect();
+        fields[1] = format!("{}", -fields[1].parse::<f64>().unwrap());
+        fields.join(",")
+    });
+    let text = format!("{head}\n{}\n", reversed.collect::<Vec<_>>().join("\n"));
+    std::fs::write(dir.join("reversed.csv"), text).unwrap();
+    let found = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .args(["recover", &job(&dir, "reversed.toml", "reversed.csv")])
+        .output()
+        .unwrap();
+    assert_eq!(found.status.code(), Some(1), "an error is found");
+    let Some(pages) = opened(&[&dir.join("reversed.out/report.html")]) else {
+        return;
+    };
+    for page in &pages {
+        let shown = page["shown"].as_array().unwrap();
+        let of_gauge = shown.iter().find(|s| s["name"] == gauge);
+        let of_gauge = of_gauge.unwrap_or_else(|| panic!("{gauge}: {shown:?}"));
+        let said = of_gauge["said"].as_str().unwrap();
+        assert!(said.starts_with(&format!("{gauge}: ")), "{said}");
+        // A label of the first screen and a label of the model.
+        assert_eq!(of_gauge["lit"], serde_json::json!([gauge, gauge]));
+        assert_eq!(of_gauge["after"], serde_json::json!([]));
+    }
+}
+
 #[test]
 fn reports_open_without_errors_or_requests_show_their_figures_and_name_the_gauge_that_is_picked() {
     let dir = plate("pages");

@@ -146,6 +146,7 @@ def look(browser, path, width):
             seen["picked"].append([gauge["name"], page.locator(".scene .pick").inner_text()])
             if seen["picked"][-1][1].startswith(gauge["name"] + ":"):
                 break
+        seen["shown"] = subjects(page)
         if not phone:
             seen["wheel"] = wheel(page, view)
         # Every view, so that no names lie over each other in any.
@@ -165,6 +166,22 @@ def look(browser, path, width):
     seen["errors"], seen["requests"] = errors, requests
     context.close()
     return seen
+
+
+def subjects(page):
+    """By gauge in the subject of a visible finding: words under the model and bold labels of the pictures while it has the focus, and after."""
+    out = []
+    page.evaluate("document.querySelectorAll('.f details, .folded').forEach((d) => { d.open = true; })")
+    for subject in page.locator(".subject").all()[:4]:
+        subject.focus()
+        page.wait_for_timeout(150)
+        lit = "[...document.querySelectorAll('.lit')].filter((e) => !e.hidden).map((e) => e.textContent.trim())"
+        row = {"name": subject.inner_text(), "said": page.locator(".scene .pick").inner_text(), "lit": page.evaluate(lit)}
+        page.evaluate("document.activeElement.blur()")
+        page.wait_for_timeout(150)
+        out.append({**row, "after": page.evaluate(lit)})
+    page.evaluate("document.querySelectorAll('.f details, .folded').forEach((d) => { d.open = false; })")
+    return out
 
 
 def wheel(page, view):

@@ -75,9 +75,19 @@ fn finding(f: &Finding) -> Markup {
     };
     html! {
         div class=(class) {
-            b { (f.severity.word()) } " · " (f.subject) ": " (f.message.trim_end_matches('.')) "."
+            b { (f.severity.word()) } " · " (subjects(&f.subject)) ": " (f.message.trim_end_matches('.')) "."
             @if let Some(words) = numbers_in_words(f) { small { " " (capital(&words)) "." } }
             @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy.trim_end_matches('.')) "." } } }
+        }
+    }
+}
+
+/// Names in the subject of a finding; `start.js` shows those of gauges in the pictures of the page.
+fn subjects(subject: &str) -> Markup {
+    html! {
+        @for (i, name) in subject.split(", ").enumerate() {
+            @if i > 0 { ", " }
+            span data-subject { (name) }
         }
     }
 }

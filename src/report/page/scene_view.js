@@ -185,6 +185,13 @@ async function scene(figure, data) {
 
   // Names beside what they name, the nearest first; one that would lie over another is left out.
   const made = new Map();
+  let lit = "";
+  const light = (name) => {
+    lit = name;
+    const mark = marks.find((m) => m.name === name);
+    if (mark) said.textContent = mark.name + ": " + mark.note;
+    request();
+  };
   function letters() {
     const wanted = [], names = on("names");
     const length = 34, corner = [length + 14, camera.height - length - 14], { right, up } = camera.frame();
@@ -193,9 +200,9 @@ async function scene(figure, data) {
       axes[k].setAttribute("d", `M${corner[0]} ${corner[1]}L${tip[0]} ${tip[1]}`);
       wanted.push({ key: "axis" + k, text, ink: "#5b6b7c", x: corner[0] + (length + 9) * right[k], y: corner[1] - (length + 9) * up[k], first: Math.hypot(right[k], up[k]) < 0.3 ? null : -2 });
     });
-    if (names && on("gauges")) marks.forEach((m, k) => {
-      const [x, y, away] = camera.project(lifted(m));
-      wanted.push({ key: "gauge" + k, text: m.name, ink: marks.some((o) => o.gap) ? "#34495e" : SIDES[m.side], x, y: y - 14, first: away });
+    if (on("gauges")) marks.forEach((m, k) => {
+      const [x, y, away] = camera.project(lifted(m)), bold = m.name === lit;
+      if (names || bold) wanted.push({ key: "gauge" + k, text: m.name, bold, ink: marks.some((o) => o.gap) ? "#34495e" : SIDES[m.side], x, y: y - 14, first: bold ? -3 : away });
     });
     const set = arrows[chosen("arrows", -1)] || [];
     if (names && set.length <= 24) set.forEach((a, k) => {
@@ -204,14 +211,15 @@ async function scene(figure, data) {
     });
     const taken = [], seen = new Set();
     for (const w of wanted.filter((w) => w.first !== null).sort((a, b) => a.first - b.first)) {
-      const wide = widthOf(w.text, "12px system-ui, sans-serif") + 4, x0 = w.x - wide / 2, y0 = w.y - 8;
+      const wide = widthOf(w.text, (w.bold ? "700 14px" : "12px") + " system-ui, sans-serif") + 4, x0 = w.x - wide / 2, y0 = w.y - 8;
       if (!(x0 >= 0 && x0 + wide <= camera.width && y0 >= 0 && y0 + 16 <= camera.height)) continue;
       if (taken.some((t) => x0 < t[0] + t[2] + 2 && t[0] < x0 + wide + 2 && y0 < t[1] + 17 && t[1] < y0 + 17)) continue;
       taken.push([x0, y0, wide]);
       let span = made.get(w.key);
       if (!span) { made.set(w.key, span = document.createElement("span")); words.append(span); }
       if (span.textContent !== w.text) span.textContent = w.text;
-      span.style.cssText = `left:${x0}px;top:${y0}px;width:${wide}px;color:${w.ink}`;
+      span.style.cssText = `left:${x0}px;top:${y0}px;width:${wide}px;color:${w.ink}${w.bold ? ";font:700 14px/16px system-ui,sans-serif;background:#fff;outline:2px solid #c0392b" : ""}`;
+      span.classList.toggle("lit", !!w.bold);
       seen.add(w.key);
     }
     for (const [key, span] of made) span.hidden = !seen.has(key);
@@ -285,7 +293,7 @@ async function scene(figure, data) {
   arrows.forEach((set) => set.forEach((a) => samples.push(a.tail)));
   if (!samples.length) samples.push([0, 0, 0]);
 
-  const api = { figure, box, mesh, marks, camera, data, paint, faces, tint, request, numbers, faceAt, markAt, lifted, place, shownPart, local, world, regauge: () => { gauges(); request(); }, tool: null, said };
+  const api = { figure, box, mesh, marks, camera, data, paint, faces, tint, request, light, numbers, faceAt, markAt, lifted, place, shownPart, local, world, regauge: () => { gauges(); request(); }, tool: null, said };
   listen(api, tell);
   figure.addEventListener("change", (event) => {
     const part = event.target.dataset.role;
