@@ -11,8 +11,8 @@ use crate::reconcile::search::Scored;
 
 /// Returns a text on the fit-run reading without which `scored` reaches the noise floor, as `at_floor` tests it; `None` without such a reading.
 ///
-/// One spike in a few hundred readings is not an effect, nor evidence against one. The reading is the one furthest off given all others, by
-/// `(P r)_i / sqrt(P_ii)` standard deviations, P the precision of the residual r, and further off than a healthy gauge.
+/// One spike in a few hundred readings is not an effect, nor evidence against one. The reading is `(P r)_i / sqrt(P_ii)` standard deviations off
+/// given all others, P the precision of the residual r. It is the one furthest off, and further off than a healthy gauge.
 pub(super) fn but_for_one(
     frame: &StrainFrame,
     candidates: &[Candidate],
