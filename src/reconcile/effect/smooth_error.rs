@@ -138,7 +138,8 @@ fn usual_spacing(places: &[[f64; 3]], same: f64) -> Option<f64> {
     all.get(all.len() / 2).copied()
 }
 
-/// Leading vectors of the covariance of unit amplitude, times the roots of their values; `None` where `most` don't hold enough of it.
+/// Returns the leading vectors of the covariance of unit amplitude, times the roots of their values; `None` if `most` vectors contain too little of
+/// it.
 fn modes(places: &[[f64; 3]], length: f64, most: usize) -> Option<Vec<Vec<f64>>> {
     let n = places.len();
     let kernel = Matrix::from_fn(n, n, |i, j| {

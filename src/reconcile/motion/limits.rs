@@ -180,8 +180,7 @@ pub fn plausible(rules: &MotionRules, candidates: &[Candidate], fit: &MotionFit)
     })
 }
 
-/// Returns whether no mass and no spring of the analyst's is negative: a channel with reversed sign makes the mirror image of a vehicle, not a
-/// vehicle.
+/// Returns whether no mass and no spring of the analyst's is negative: a reversed channel gives the mirror image of a vehicle, not a vehicle.
 fn is_upright(fit: &MotionFit) -> bool {
     let v = &fit.assembled.vehicle;
     let bodies: Vec<usize> = (0..v.bodies.len()).collect();

@@ -1,5 +1,5 @@
-//! Readings with their covariance, and what a set of effects predicts of them: parameters are optimised in `optimum`,
-//! amplitudes integrated out; what is gained stands in `evidence`, candidates are tried in `screen`.
+//! Readings with their covariance, and their prediction by a set of effects. `optimum` optimises the parameters, with amplitudes integrated out;
+//! `evidence` contains the gain, and `screen` tries candidates.
 
 use super::covariance::{Selection, covariance, patterns_read};
 use super::frame::StrainFrame;

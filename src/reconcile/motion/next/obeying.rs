@@ -8,8 +8,8 @@ use rustfft::num_complex::Complex64;
 /// one less the smallest errors of its channels, over their noise, that explain the residual of `truth`. Noise that both miss alike is in neither.
 ///
 /// Symbols in a bin: r the residual of the truth, H and G the responses of both, N the power of the channels' noise, C and D the factors by which
-/// both multiply readings. Then e = N H' (H N H')^-1 r, and the residual is other - G (D / C) e. For the reading of a new channel, the truth's r - H
-/// e is subtracted from it. `None` if both have different equations.
+/// both multiply readings. Then e = N H' (H N H')^-1 r, and the residual is other - G (D / C) e. For the reading of a new channel, `r - H e` of the
+/// truth is subtracted from it. `None` if both have different equations.
 pub(super) fn missed(other: &Recorded, truth: &Recorded) -> Option<Vec<Bins>> {
     if other.is_new != truth.is_new || other.left.len() != truth.left.len() {
         return None;
