@@ -1,5 +1,5 @@
-//! Causes that were measured beside the readings (a settlement, a temperature) and whose strain no model gives: which of them drive the
-//! readings, and which can't be told apart by these runs.
+//! Causes measured in every run (a settlement, a temperature) whose strain no model gives. The runs determine which of them drive the readings, and
+//! which are indistinguishable.
 //!
 //! For every channel y_r = m + sum over causes of b x_r + noise, with x scaled to a range of 1, the mean m unknown and each slope b of the
 //! size of all change that was seen. The evidence of a set of causes is the Gaussian density of the readings with m and b integrated out.
@@ -10,19 +10,19 @@ use super::rules::DECISIVE;
 use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 
-/// Something measured in every run.
+/// Quantity measured in every run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cause {
-    /// Its name.
+    /// Name of the cause.
     pub name: String,
-    /// By run.
+    /// Value by run.
     pub values: Vec<f64>,
 }
 
-/// A set of causes, judged.
+/// Set of causes with its evidence, gap and slopes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauseSet {
-    /// Names.
+    /// Names of the causes.
     pub names: Vec<String>,
     /// Log evidence over the fit runs.
     pub log_evidence: f64,
@@ -33,26 +33,26 @@ pub struct CauseSet {
     pub slopes: Vec<Vec<(f64, f64)>>,
 }
 
-/// What the runs say of the causes.
+/// Result of comparing all sets of causes over the runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CauseOutcome {
-    /// `named` where one set is ahead of all others, `unknown` where several explain the runs alike, `none` where no cause pays.
+    /// `named` if one set leads all others, `unknown` if several sets explain the runs alike, `none` if no cause raises the evidence enough.
     pub verdict: Verdict,
     /// Every set, best first.
     pub sets: Vec<CauseSet>,
-    /// Sets that these runs can't tell from the best one, itself first; empty unless there are some.
+    /// Sets that these runs can't distinguish from the best one, the best one first; empty unless the verdict is `unknown`.
     pub rivals: Vec<CauseSet>,
-    /// What would separate them.
+    /// Instruction for runs that separate `rivals`; `none needed` if there are none.
     pub next_measurement: String,
 }
 
-/// Sets within this log evidence can't be told apart.
+/// Difference of log evidence below which two sets are indistinguishable.
 const ALIKE: f64 = 3.0;
-/// More causes than these are not weighed together: their sets double with each.
+/// Largest number of causes tested together; every further cause doubles the number of sets.
 const MOST: usize = 6;
 
-/// Weighs all sets of `causes` (the first six) by the fit runs. `noise` is one standard deviation of a reading, by channel; readings that
-/// are NaN are left out.
+/// Computes the evidence of all sets of `causes` (the first six) over the fit runs. `noise` is one standard deviation of a reading, by channel. NaN
+/// readings are left out.
 pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]) -> CauseOutcome {
     let causes = &causes[..causes.len().min(MOST)];
     let mut sets: Vec<CauseSet> = (0..1usize << causes.len())
@@ -101,7 +101,7 @@ pub fn weigh_causes(observations: &Observations, noise: &[f64], causes: &[Cause]
     }
 }
 
-/// What separates rivals: a run in which one changes and the other does not.
+/// Returns the instruction that separates `rivals`: runs in which one cause changes and the other does not.
 fn next(observations: &Observations, causes: &[Cause], rivals: &[CauseSet]) -> String {
     if rivals.is_empty() {
         return "none needed".into();

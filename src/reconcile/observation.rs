@@ -1,4 +1,4 @@
-//! What was measured: readings by run and channel, and which runs are kept for the proof.
+//! Measured readings by run and channel, and the runs held out for the proof.
 
 /// Readings of channels (gauges, accelerometers) in runs (static states, records), by rows of runs; NaN where one is missing.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,7 +9,7 @@ pub struct Observations {
     pub runs: Vec<String>,
     /// `n_runs x n_channels` by rows.
     pub values: Vec<f64>,
-    /// By run: kept for the proof, never used for fitting.
+    /// Whether a run is held out for the proof and never used for fitting, by run.
     pub held_out: Vec<bool>,
 }
 
@@ -19,7 +19,7 @@ impl Observations {
         self.channels.len()
     }
 
-    /// The reading of `channel` in `run`, NaN where there is none.
+    /// Returns the reading of `channel` in `run`; NaN if it is missing.
     pub fn value(&self, run: usize, channel: usize) -> f64 {
         self.values
             .get(run * self.channels.len() + channel)
@@ -32,7 +32,7 @@ impl Observations {
         self.runs_where(false)
     }
 
-    /// Runs kept for the proof, in file order; those used for fitting where none was kept.
+    /// Returns the runs held out for the proof, in file order; the fit runs if no run is held out.
     pub fn proof_runs(&self) -> Vec<usize> {
         let kept = self.runs_where(true);
         if kept.is_empty() {

@@ -20,15 +20,15 @@ pub struct Addition {
     pub candidate: usize,
     /// Approximate gain of log evidence, prior weight included.
     pub gain: f64,
-    /// Where its parameters would start.
+    /// Start values of its parameters.
     pub parameters: Vec<f64>,
     /// Sizes of its amplitudes.
     pub sizes: Vec<f64>,
 }
 
-/// A way to judge sets of effects.
+/// Scorer of sets of effects.
 pub trait Scorer {
-    /// What a fit leaves behind.
+    /// Result of a fit.
     type Fit: Clone;
     /// Fits `set` exactly, from scratch or from a fit of its neighbour.
     fn score(
@@ -38,15 +38,15 @@ pub trait Scorer {
     ) -> Option<Scored<Self::Fit>>;
     /// Candidates to add to `base`, best first.
     fn screen(&mut self, base: &Scored<Self::Fit>) -> Vec<Addition>;
-    /// Can the two be in one set?
+    /// Returns whether both candidates can be in one set.
     fn compatible(&self, a: usize, b: usize) -> bool;
-    /// Candidates that differ in nothing that matters share a number: the screen keeps few of each.
+    /// Returns a number that is common to candidates without a relevant difference. The screen keeps few candidates of each number.
     fn kin(&self, candidate: usize) -> usize;
-    /// Whether the search is to stop: what it found is then of no use.
+    /// Returns whether the search is to stop; its result is then of no use.
     fn is_stopped(&self) -> bool {
         false
     }
-    /// Other forms of the same effect at the same place.
+    /// Returns the other forms of the same effect at the same place.
     fn variants(&self, _candidate: usize) -> Vec<usize> {
         Vec::new()
     }
@@ -98,7 +98,7 @@ pub fn search<S: Scorer>(scorer: &mut S, breadth: Breadth) -> Vec<Scored<S::Fit>
     best_first(seen)
 }
 
-/// The same from sets known to be good: they, the best one extended, its members exchanged.
+/// Searches from known good sets: scores them, extends the best one and exchanges its members.
 pub fn search_near<S: Scorer>(
     scorer: &mut S,
     breadth: Breadth,
@@ -145,7 +145,7 @@ fn extend<S: Scorer>(
     breadth: Breadth,
     seen: &mut Seen<S::Fit>,
 ) -> Vec<Scored<S::Fit>> {
-    /// Of candidates that touch the same gauges, this many are tried.
+    /// Largest number of candidates tried with one kin number, such as candidates at the same gauge.
     const PER_KIN: usize = 3;
     /// Approximate gains below this have not been seen to turn into decisive ones.
     const HOPELESS: f64 = -3.0;

@@ -1,4 +1,4 @@
-//! The base of all faults of channels: which gauges they sit on, their place in words; a fault says only what it does to a reading.
+//! Common base of all channel faults: their gauges and the name of their place. A fault itself defines only its change of a reading.
 
 use super::{Amplitudes, Extension, FaultKind, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
@@ -12,15 +12,15 @@ pub struct At<'a> {
     pub run: usize,
     /// Gauges of the fault.
     pub gauges: &'a [usize],
-    /// Offsets and limits too, or the linear part alone.
+    /// Part of the fault that applies: all of it with offsets and limits, or the linear part alone.
     pub part: Part,
 }
 
-/// What a fault does to the channels it sits on.
+/// Effect of a fault on the channels of its gauges.
 pub trait ChannelFault: Send + Sync {
     /// Effect id without the place.
     fn id(&self) -> &'static str;
-    /// Readings, unless the fault is one of the gauge itself (angle, place): then the influence.
+    /// Returns the stage that the fault changes: the reading by default, the structure for a fault of the gauge itself (angle, place).
     fn stage(&self) -> Stage {
         Stage::Reading
     }
@@ -43,17 +43,17 @@ pub trait ChannelFault: Send + Sync {
     fn amplitudes(&self, _frame: &StrainFrame, _gauges: &[usize]) -> Option<Amplitudes> {
         None
     }
-    /// The runs it touches, where it touches only some.
+    /// Returns the runs that the fault changes; empty unless it is limited to some runs.
     fn runs(&self) -> Vec<usize> {
         Vec::new()
     }
-    /// Whether another fault may sit on the same gauge.
+    /// Returns the kind of fault, which determines whether another fault may be at the same gauge.
     fn kind(&self) -> FaultKind {
         FaultKind::Whole
     }
-    /// What undoes it on new data; `names` are the channels of the gauges.
+    /// Returns the extension that corrects the fault in new data; `names` are the channels of the gauges.
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension;
-    /// What separates it from another explanation; `place` names the gauges.
+    /// Returns an instruction that separates the fault from another explanation; `place` names the gauges.
     fn separate_by(&self, place: &str) -> String;
 }
 
@@ -62,16 +62,16 @@ pub trait ChannelFault: Send + Sync {
 pub struct OnGauges<F> {
     /// Gauges, ascending.
     pub gauges: Vec<usize>,
-    /// Their channels.
+    /// Channels of the gauges.
     pub names: Vec<String>,
     /// `G04`, `G04+G07`, `G04-G07`.
     pub place: String,
-    /// What is wrong with them.
+    /// Fault of the gauges.
     pub fault: F,
 }
 
 impl<F> OnGauges<F> {
-    /// `fault` on `gauges`, placed in the words that `place` makes of their names.
+    /// Returns `fault` on `gauges`; `place` makes the name of the place from their channel names.
     pub fn new(
         frame: &StrainFrame,
         gauges: Vec<usize>,
@@ -94,7 +94,7 @@ impl<F> OnGauges<F> {
         }
     }
 
-    /// `fault` on one gauge.
+    /// Returns `fault` on one gauge.
     pub fn one(frame: &StrainFrame, gauge: usize, fault: F) -> Self {
         Self::new(frame, vec![gauge], fault, |names| names.join("+"))
     }
@@ -158,7 +158,7 @@ impl<F: ChannelFault> StrainEffect for OnGauges<F> {
     }
 }
 
-/// `fault` on every gauge by itself.
+/// Returns `fault` on each gauge separately.
 pub fn on_every_gauge<F: Clone>(frame: &StrainFrame, fault: &F) -> Vec<OnGauges<F>> {
     (0..frame.n_gauges())
         .map(|g| OnGauges::one(frame, g, fault.clone()))

@@ -1,25 +1,25 @@
-//! What has to be added to the model for a named effect to be in it.
+//! Extensions of the model that include an identified effect.
 
-/// What undoes a fault of one channel, on the readings at hand and on all to come.
+/// Correction for a fault of one channel, for the present readings and all later ones.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Correction {
-    /// The channel reads with its sign turned.
+    /// The channel reads with reversed sign.
     Sign,
-    /// It reads this factor of the strain.
+    /// The channel reads the strain times this factor.
     Gain(f64),
-    /// It reads this much too much, microstrain.
+    /// The channel reads too high by this offset, microstrain.
     Offset(f64),
-    /// It carries the other channel's name, and the other one its own.
+    /// The channel and the channel of this name are exchanged.
     ExchangedWith(String),
-    /// The gauge is turned by this much, degrees.
+    /// The gauge is rotated from its nominal angle by this much, degrees.
     AngleDeg(f64),
-    /// The gauge sits this far along its axis, millimetres.
+    /// The gauge is offset from its nominal position by this much along its axis, millimetres.
     PositionMm(f64),
-    /// Nothing can be made of it: it is left out.
+    /// The channel can't be corrected: it is left out.
     Ignore,
 }
 
-/// What was noted wrong of a run.
+/// Recorded quantity of a run that is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Noted {
     /// One load, kN.
@@ -43,7 +43,7 @@ pub enum Nuisance {
     Ground,
 }
 
-/// The addition, in words that a job or a deck can hold.
+/// Extension in terms that a job or a deck can contain.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Extension {
     /// Corrections of channels, one after the other.
@@ -94,25 +94,25 @@ pub enum Extension {
     PayloadWeight,
     /// All strain of the model times a factor.
     Scale(f64),
-    /// The noted value of a load divided by a factor, in every run.
+    /// Recorded value of a load divided by a factor, in every run.
     LoadScale {
         /// Load.
         load: String,
-        /// What the scale reads of the true load.
+        /// Scale reading over true load.
         factor: f64,
     },
-    /// Two runs exchange what was noted of them.
+    /// Exchange of the recorded loads and payload between two runs.
     RunExchange {
         /// The runs.
         runs: [String; 2],
     },
-    /// What was noted of one run is wrong.
+    /// Error in one recorded quantity of a run.
     RunRecord {
         /// Run.
         run: String,
-        /// What of it.
+        /// Recorded quantity that is wrong.
         noted: Noted,
-        /// By how much the truth is above what was noted.
+        /// Amount by which the true value exceeds the recorded one.
         size: f64,
     },
     /// Nuisance loads to be found in every run.
@@ -129,7 +129,7 @@ pub enum Extension {
 }
 
 impl Extension {
-    /// The same correction of every channel of `names`.
+    /// Returns the extension that applies `correction` to every channel of `names`.
     pub fn channel(names: &[String], correction: Correction) -> Self {
         Self::Channels(
             names

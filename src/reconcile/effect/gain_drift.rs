@@ -4,12 +4,12 @@ use super::channel_fault::{At, ChannelFault, OnGauges};
 use super::{Correction, Extension, Parameter};
 use crate::reconcile::strain::StrainFrame;
 
-/// Reading = strain times 1 + size times the number of the run over the number of runs.
+/// Reading = strain times (1 + size k / (n - 1)), with k the number of the run from 0 and n the number of runs.
 #[derive(Clone, Debug)]
 pub struct GainDrift;
 
 impl GainDrift {
-    /// All channels together first, then every gauge by itself.
+    /// Returns one drift of all channels together, then one drift of each gauge separately.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let n = frame.n_gauges();
         let all = OnGauges::new(frame, (0..n).collect(), Self, |_| "all".into());

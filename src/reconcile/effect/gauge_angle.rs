@@ -1,4 +1,4 @@
-//! `gauge_angle`: a gauge glued at another angle than drawn.
+//! `gauge_angle`: a gauge whose installed angle differs from its nominal angle.
 
 use super::channel_fault::{ChannelFault, OnGauges};
 use super::{Correction, Extension, Parameter, Stage};
@@ -9,7 +9,7 @@ use crate::reconcile::strain::{StrainFrame, Wiring};
 pub struct GaugeAngle;
 
 impl GaugeAngle {
-    /// One on every gauge whose in-plane strain is known.
+    /// Returns one effect for every gauge whose in-plane strain is known.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let known = |g: &usize| frame.tensors.get(*g).is_some_and(|t| !t.is_empty());
         (0..frame.n_gauges())
@@ -19,7 +19,7 @@ impl GaugeAngle {
     }
 }
 
-/// What a gauge reads of an in-plane strain at `angle_rad` from its x axis.
+/// Returns the reading of a gauge at `angle_rad` from the x axis of the in-plane strain.
 fn reading([exx, eyy, gxy]: [f64; 3], angle_rad: f64, wiring: Wiring) -> f64 {
     let (s, c) = angle_rad.sin_cos();
     match wiring {
@@ -29,7 +29,7 @@ fn reading([exx, eyy, gxy]: [f64; 3], angle_rad: f64, wiring: Wiring) -> f64 {
     }
 }
 
-/// Change of influence of one gauge when its angle differs by `degrees`, by column.
+/// Returns the change of one gauge's influence, by column, if its angle exceeds the nominal angle by `degrees`.
 pub fn angle_change(frame: &StrainFrame, gauge: usize, degrees: f64) -> Vec<f64> {
     let (Some(facts), Some(tensors)) = (frame.gauges.get(gauge), frame.tensors.get(gauge)) else {
         return Vec::new();

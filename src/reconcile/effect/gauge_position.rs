@@ -1,4 +1,4 @@
-//! `gauge_position`: a gauge glued some way off along its axis.
+//! `gauge_position`: a gauge installed some way off its nominal position, along its axis.
 
 use super::channel_fault::{ChannelFault, OnGauges};
 use super::{Correction, Extension, Parameter, Stage};
@@ -9,7 +9,7 @@ use crate::reconcile::strain::StrainFrame;
 pub struct GaugePosition;
 
 impl GaugePosition {
-    /// One on every gauge whose gradient is known.
+    /// Returns one effect for every gauge whose gradient is known.
     pub fn all(frame: &StrainFrame) -> Vec<OnGauges<Self>> {
         let known = |g: &usize| gradient(frame, *g).iter().any(|v| *v != 0.0);
         (0..frame.n_gauges())

@@ -30,7 +30,7 @@ use super::zero_drift::ZeroDrift;
 use crate::reconcile::strain::StrainFrame;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-/// An effect at a place, with what it costs to name it: the log of how many others could have been named.
+/// Effect at a place, with the cost of naming it: the log of the number of others that could have been named.
 pub struct Candidate {
     /// The effect.
     pub effect: Box<dyn StrainEffect>,
@@ -78,10 +78,10 @@ const LIBRARY: [Everywhere; 27] = [
     |_| boxed(ModelDiscrepancy::all()),
 ];
 
-/// The candidates of `frame`; with `only` not empty, those whose id (or id with place) it lists, and the general forms of discrepancy,
-/// which are no names.
+/// Returns the candidates of `frame`. If `only` is not empty, these are the effects whose id (or id with place) it lists, and the general forms of
+/// discrepancy, which are not named effects.
 ///
-/// Prior weights sum to one: alike for all effects that could be, shared within an effect by its places.
+/// Prior weights sum to one: equal for all possible effects, and shared within an effect by its places.
 pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     let wanted = |e: &dyn StrainEffect| {
         let full = super::full_id(e);
@@ -123,9 +123,9 @@ pub fn library(frame: &StrainFrame, only: &[String]) -> Vec<Candidate> {
     out
 }
 
-/// What naming one of `n` effects costs besides where the covariance was estimated with `dof` degrees of freedom, natural log of odds: a
-/// deviation in any one direction then follows Student's t, and half the square of the deviation that one search of a hundred reaches by
-/// chance is larger than with a covariance that is known.
+/// Returns the extra cost of naming one of `n` effects under a covariance estimated with `dof` degrees of freedom, natural log of odds. A deviation
+/// in any one direction then follows Student's t. One search of a hundred reaches a larger deviation by chance than under a known covariance, and
+/// half the difference of both squares is the cost.
 fn cost_of_estimate(dof: f64, n: usize) -> f64 {
     /// Chance of a false name in one search.
     const FALSE: f64 = 0.01;

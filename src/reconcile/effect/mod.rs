@@ -1,8 +1,8 @@
-//! Effects that can part simulation and measurement of static strain.
+//! Effects that explain a difference between simulated and measured static strain.
 //!
-//! Each effect is a file of its own: physics, parameters with plausible sizes, what it does to the prediction, what it adds to the model.
-//! The search never asks which one it is. To add one: write its file, name it in [`library`]. A fault of channels says what it does to a
-//! reading as a [`channel_fault::ChannelFault`]; everything else implements [`StrainEffect`].
+//! Each effect has its own file: physics, parameters with plausible sizes, change of the prediction, extension of the model. The search treats all
+//! effects alike. To add an effect, write its file and name it in [`library`]. A channel fault defines its change of a reading as a
+//! [`channel_fault::ChannelFault`]; every other effect implements [`StrainEffect`].
 
 mod amplitude;
 mod card_gain;
@@ -43,30 +43,30 @@ pub use smooth_error::SmoothError;
 
 use crate::reconcile::strain::{Part, StrainFrame, StrainState};
 
-/// Where in the chain from structure to number an effect sits.
+/// Stage between structure and reading at which an effect acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Stage {
-    /// It changes the influence matrix.
+    /// Change of the influence matrix.
     Structure,
-    /// It changes what acts.
+    /// Change of the loads that act.
     Loads,
-    /// It changes what a channel says of the strain.
+    /// Change of the reading that a channel gives for a strain.
     Reading,
 }
 
-/// Whether two effects may sit on one gauge: two faults there are told as one, but a zero may drift besides.
+/// Kind of fault, which determines whether two faults may be at one gauge: only a zero drift can be distinguished from another fault there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FaultKind {
-    /// It changes how the channel reads strain.
+    /// Change of how the channel reads strain.
     Whole,
-    /// It adds to what the channel reads.
+    /// Addition to the reading of the channel.
     Zero,
-    /// Nothing else shows through it.
+    /// Fault that hides every other fault of the channel.
     Silent,
 }
 
 impl FaultKind {
-    /// Can the two be told apart on one gauge?
+    /// Returns whether faults of the two kinds can be distinguished at one gauge.
     pub fn besides(self, other: Self) -> bool {
         matches!(
             (self, other),
@@ -75,19 +75,19 @@ impl FaultKind {
     }
 }
 
-/// What a general form of discrepancy says of the gap.
+/// General form of discrepancy, with the text that describes the gap.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Discrepancy {
     /// Noise alike at all gauges: the stated noise is too small.
     Noise(&'static str),
     /// A form that is in no model and no channel of the library.
     Form(&'static str),
-    /// A smooth error of the model: it joins no set while names are searched, and competes with the best of them.
+    /// A smooth error of the model: it is in no set while the search runs, and competes with the best set afterwards.
     Smooth(&'static str),
 }
 
 impl Discrepancy {
-    /// Its words.
+    /// Returns the text that describes the gap.
     pub fn words(self) -> &'static str {
         match self {
             Self::Noise(words) | Self::Form(words) | Self::Smooth(words) => words,
@@ -106,9 +106,9 @@ pub struct Parameter {
     pub prior_sd: f64,
     /// A step for numerical derivatives, small against the prior.
     pub step: f64,
-    /// Values to start from: where the prediction is far from linear, several.
+    /// Start values; several if the prediction is far from linear.
     pub starts: Vec<f64>,
-    /// Beyond this distance from neutral a value is not plausible.
+    /// Largest plausible distance from the neutral value.
     pub plausible: f64,
 }
 
@@ -120,15 +120,15 @@ pub trait StrainEffect: Send + Sync {
     fn place(&self) -> Option<String> {
         None
     }
-    /// For a general form of discrepancy that is no effect of the library: what it says of the gap.
+    /// Returns the general form of discrepancy; `None` for an effect of the library.
     fn discrepancy(&self) -> Option<Discrepancy> {
         None
     }
-    /// The effect where it is a smooth error of the model.
+    /// Returns the effect if it is a smooth error of the model.
     fn smooth(&self) -> Option<&SmoothError> {
         None
     }
-    /// Where it acts.
+    /// Returns the stage at which the effect acts.
     fn stage(&self) -> Stage;
     /// Parameters common to all runs.
     fn parameters(&self) -> Vec<Parameter> {
@@ -150,19 +150,19 @@ pub trait StrainEffect: Send + Sync {
     fn amplitudes(&self, _frame: &StrainFrame) -> Option<Amplitudes> {
         None
     }
-    /// What the model must be given for the effect to be in it.
+    /// Returns the extension of the model that includes the effect.
     fn extension(&self, frame: &StrainFrame, parameters: &[f64]) -> Extension;
-    /// What separates it from another explanation, as an instruction.
+    /// Returns an instruction that separates the effect from another explanation.
     fn separate_by(&self, frame: &StrainFrame) -> String;
-    /// The gauges it touches, where it touches only some.
+    /// Returns the gauges that the effect changes; empty unless it is limited to some gauges.
     fn gauges(&self) -> Vec<usize> {
         Vec::new()
     }
-    /// The runs it touches, where it touches only some.
+    /// Returns the runs that the effect changes; empty unless it is limited to some runs.
     fn runs(&self) -> Vec<usize> {
         Vec::new()
     }
-    /// Whether another fault may sit on the same gauge.
+    /// Returns the kind of fault, which determines whether another fault may be at the same gauge.
     fn kind(&self) -> FaultKind {
         FaultKind::Whole
     }
@@ -173,7 +173,7 @@ pub trait StrainEffect: Send + Sync {
 pub struct Member<'a> {
     /// The effect.
     pub effect: &'a dyn StrainEffect,
-    /// Its parameters.
+    /// Parameters of the effect.
     pub parameters: &'a [f64],
 }
 

@@ -1,9 +1,9 @@
-//! `payload_offset`: the payload lies elsewhere than written down.
+//! `payload_offset`: the place of the payload differs from the recorded place.
 
 use super::{Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{PayloadWeight, StrainFrame, StrainState};
 
-/// Which way it may be off.
+/// Direction in which the payload may be off.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// Forward or back.
@@ -17,12 +17,12 @@ pub enum Axis {
 /// The payload acts at (x + dx, dy) in all runs.
 #[derive(Clone, Debug)]
 pub struct PayloadOffset {
-    /// Which way.
+    /// Direction of the offset.
     pub axis: Axis,
 }
 
 impl PayloadOffset {
-    /// Every way, where the model holds a payload.
+    /// Returns one effect for each direction; none if the model lacks the payload or no run carries one.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let carries = frame.payload.iter().any(|p| p[0] > 0.0);
         if frame.payload_weight == PayloadWeight::Missing || !carries {

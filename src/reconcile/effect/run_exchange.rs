@@ -1,4 +1,4 @@
-//! `run_exchange`: what was noted of two runs (loads, payload) stands under each other's name.
+//! `run_exchange`: the recorded loads and payloads of two runs are exchanged.
 
 use super::{Extension, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState};
@@ -8,12 +8,12 @@ use crate::reconcile::strain::{StrainFrame, StrainState};
 pub struct RunExchange {
     /// The two runs.
     pub pair: [usize; 2],
-    /// Their names.
+    /// Names of the two runs.
     pub names: [String; 2],
 }
 
 impl RunExchange {
-    /// Every pair with a run that is used for fitting.
+    /// Returns one effect for every pair with a run that is used for fitting.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let fit = frame.observations.fit_runs();
         let name = |r: usize| frame.observations.runs.get(r).cloned().unwrap_or_default();

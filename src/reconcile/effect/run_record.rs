@@ -1,23 +1,23 @@
-//! `run_record`: what was noted of one run (a load, its mass) is wrong.
+//! `run_record`: a recorded load or the recorded mass of one run is wrong.
 
 use super::{Extension, Noted, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState};
 
-/// The load or mass of one run is its noted value plus the size.
+/// Load or mass of one run = recorded value + size; for all loads together, recorded value times (1 + size).
 #[derive(Clone, Debug)]
 pub struct RunRecord {
-    /// Run.
+    /// Index of the run.
     pub run: usize,
-    /// Its name.
+    /// Name of the run.
     pub name: String,
-    /// What is wrong.
+    /// Recorded quantity that is wrong.
     pub noted: Noted,
     /// Usual size of an error.
     pub usual: f64,
 }
 
 impl RunRecord {
-    /// Every load and the mass of every run that is used for fitting.
+    /// Returns one effect for each load, for all loads together and for the mass, in every fit run.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         /// A slip is of the order of what is noted: its usual size is a third of the root mean square over all runs.
         const SHARE: f64 = 0.3;

@@ -1,5 +1,5 @@
-//! `smooth`: the model is off by a factor that changes smoothly from place to place, for all loads alike or for each load by itself. No effect
-//! of the library, but a Gaussian process that competes with all of them: what it explains as well is no proof of a name.
+//! `smooth`: the model is off by a factor that changes smoothly from place to place, for all loads alike or for each load separately. This Gaussian
+//! process competes with all effects of the library: an effect that explains no more is not proven.
 
 use super::{Discrepancy, Extension, Parameter, Stage, StrainEffect};
 use crate::linalg::{Matrix, dense};
@@ -26,13 +26,13 @@ pub struct SmoothError {
 const AMPLITUDES: [f64; 2] = [0.04, 0.12];
 /// Lengths, of the greatest distance between gauges.
 const LENGTHS: [f64; 3] = [0.5, 0.25, 0.125];
-/// A process that turns within less than this many usual distances from gauge to gauge is no smooth one.
+/// Shortest length of a smooth process, as a multiple of the usual distance between gauges.
 const SPACINGS: f64 = 1.5;
-/// Fewer gauges show no curve.
+/// Smallest number of gauges that show a curve.
 const FEWEST: usize = 6;
 /// Modes over all factors: those of one factor at the shortest length, and five for each of six loads and the payload.
 const MODES: [usize; 2] = [16, 36];
-/// Share of the variance that modes must hold.
+/// Share of the variance that the modes must contain.
 const HELD: f64 = 0.9;
 /// Modes with less of the first one's variance are left out.
 const LEAST: f64 = 1e-3;
@@ -105,7 +105,7 @@ impl SmoothError {
         )
     }
 
-    /// Whether each load has a factor of its own.
+    /// Returns whether each load has a separate factor.
     pub fn is_by_load(&self) -> bool {
         self.n_factors > 1
     }
@@ -138,7 +138,8 @@ fn usual_spacing(places: &[[f64; 3]], same: f64) -> Option<f64> {
     all.get(all.len() / 2).copied()
 }
 
-/// Leading vectors of the covariance of unit amplitude, times the roots of their values; `None` where `most` don't hold enough of it.
+/// Returns the leading vectors of the covariance of unit amplitude, times the roots of their values; `None` if `most` vectors contain too little of
+/// it.
 fn modes(places: &[[f64; 3]], length: f64, most: usize) -> Option<Vec<Vec<f64>>> {
     let n = places.len();
     let kernel = Matrix::from_fn(n, n, |i, j| {

@@ -9,7 +9,7 @@ use crate::reconcile::strain::{StiffnessOf, StiffnessSignature, StrainFrame, Str
 pub struct Stiffness {
     /// Index into the frame's signatures.
     pub signature: usize,
-    /// What is changed.
+    /// Kind of change: zone, joint, small region, or change that the user described.
     pub of: StiffnessOf,
     /// Zone, joint, element or grid; of a described change its id.
     pub name: String,

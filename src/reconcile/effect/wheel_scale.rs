@@ -3,19 +3,19 @@
 use super::{Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, StrainState, WheelForces};
 
-/// Noted load = (1 + size / 100) times the load that acts.
+/// Recorded load = (1 + size / 100) times the load that acts.
 #[derive(Clone, Debug)]
 pub struct WheelScale {
     /// Indices of the loads: one, or all.
     pub loads: Vec<usize>,
-    /// Their names.
+    /// Names of the loads.
     pub name: String,
-    /// Its place: the name without the component, where that is still unique.
+    /// Place: the name of the load without its component, if that is still unique.
     pub place: String,
 }
 
 impl WheelScale {
-    /// One on every load that was measured, and one on all together: a unit, scales that were calibrated against one weight.
+    /// Returns one effect for every measured load, and one for all loads together (a wrong unit, scales calibrated against one weight).
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         if frame.wheel_forces != WheelForces::Measured {
             return Vec::new();
@@ -37,10 +37,10 @@ impl WheelScale {
 
 /// The place of a scale that is common to all loads.
 const ALL: &str = "all";
-/// What a load reads in pounds-force or in kilograms-force where newtons are meant, and the other way, as percent above the truth.
+/// Readings in pounds-force or kilograms-force where newtons are meant, and the reverse, as percent above the true load.
 const UNITS: [f64; 4] = [-77.52, 344.8, -89.8, 880.7];
 
-/// `LF` of `LF.FZ`, where no other load has that stem.
+/// Returns the stem of a load name, such as `LF` of `LF.FZ`, if no other load has that stem; otherwise the whole name.
 pub(super) fn stem(names: &[String], name: &str) -> String {
     let cut = |n: &str| n.split_once('.').map_or(n.to_owned(), |p| p.0.to_owned());
     let own = cut(name);

@@ -1,5 +1,5 @@
-//! Sets that differ from the best one by which channel is at fault: scored whether or not the search came by them, so that channels
-//! which the record can't tell apart are all on the table.
+//! Sets that differ from the best one by the channel at fault. They are scored even if the search did not reach them, so that all indistinguishable
+//! channels are compared.
 
 use super::change::Change;
 use super::design::BinEquation;
@@ -11,14 +11,14 @@ use super::scorer::MotionScorer;
 use super::unexplained_background::of_fit;
 use crate::reconcile::search::{Scored, Scorer, settle};
 
-/// Joins to `all` the best set with each of its channel faults moved to every other channel of the kind; best first again.
+/// Adds to `all` the best set with each of its channel faults moved to every other channel of the kind, and sorts `all`, best first.
 ///
-/// The background stands in the units of the equations, whose scale the gain of a channel may change; where no force fixes it, models that
-/// differ by that scale alone are alike. So each of these sets is held against the best one with the background that it leaves itself, and
-/// the lead is that of both likelihoods at their largest.
+/// The background is in the units of the equations, whose scale the gain of a channel may change. If no force fixes the scale, models that differ by
+/// that scale alone are alike. Each of these sets is therefore compared with the best one under its own background. The lead is the difference of
+/// both likelihoods at their largest.
 ///
-/// Constants of forms (the velocity below which friction fades) were found before the fault came, or with another channel at fault, and are as
-/// wrong there as the channel is. Each of these sets finds its own, so that none leads by them.
+/// Constants of forms (the velocity below which friction fades) were found before the fault was added, or with another channel at fault. They are
+/// then as wrong as the channel is. Each of these sets finds its own constants, so that none leads by them.
 pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>, decisive: f64) {
     let Some(best) = settle(all, decisive) else {
         return;
@@ -64,11 +64,11 @@ pub fn with_aliases(scorer: &mut MotionScorer, all: &mut Vec<Scored<MotionFit>>,
     all.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
 }
 
-/// A set with the background that it leaves itself, as long as that makes its record likelier.
+/// Fits a set under the background from its own residual, again as long as the log evidence rises.
 fn with_own_background(scorer: &MotionScorer, of: &Scored<MotionFit>) -> Scored<MotionFit> {
-    /// Times that the background is found anew.
+    /// Largest number of updates of the background.
     const ROUNDS: usize = 4;
-    /// A rise of the log evidence that is none.
+    /// Rise of the log evidence that counts as settled.
     const SETTLED: f64 = 0.1;
     let mut best = of.clone();
     if scorer.background.power.is_empty() {
@@ -102,9 +102,8 @@ fn with_own_background(scorer: &MotionScorer, of: &Scored<MotionFit>) -> Scored<
     best
 }
 
-/// Whether the scale of all that was measured is free: two channels, both of motion, and neither a force nor the weight beside them. A gain
-/// of the one and the inverse gain of the other are then one and the same model of the shaken part, whatever a finite record seems to
-/// prefer.
+/// Returns whether the scale of all measured quantities is free: two channels, both of motion, without a force and without the weight. A gain of one
+/// channel and the inverse gain of the other are then the same model of the shaken part, whatever a finite record seems to prefer.
 fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
     /// Channels of which one gain is the inverse of another.
     const PAIR: usize = 2;
@@ -119,8 +118,8 @@ fn has_no_scale(frame: &MotionFrame, fit: &MotionFit) -> bool {
         && !equations.iter().any(driven)
 }
 
-/// Whether the gain that one fit finds by a candidate is the inverse of what the other finds by another, within 3.3 standard deviations of
-/// both (one in a thousand): with something else in the set that has a size of its own it need not be.
+/// Returns whether the gains that two fits find for two candidates are inverse to each other, within 3.3 standard deviations of both (one in a
+/// thousand). Another member of the set with a free size can make them differ.
 fn is_inverse(one: (&MotionFit, usize), other: (&MotionFit, usize)) -> bool {
     const DEVIATIONS: f64 = 3.3;
     let gain = |(fit, candidate): (&MotionFit, usize)| -> Option<[f64; 2]> {

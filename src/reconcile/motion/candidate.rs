@@ -9,25 +9,25 @@ pub struct Candidate {
     pub id: String,
     /// Place alone.
     pub place: Option<String>,
-    /// Forms it may take; the data choose.
+    /// Possible forms; the data determine which one applies.
     pub shapes: Vec<Change>,
     /// Log prior odds against a plain effect.
     pub handicap: f64,
-    /// What its parameters must be.
+    /// Sign that the first parameter must have.
     pub sign: Sign,
 }
 
-/// What nature asks of an effect's parameters.
+/// Physical limit on the sign of an effect's first parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
-    /// Nothing.
+    /// Either sign.
     Any,
-    /// The first is positive.
+    /// Positive.
     Positive,
 }
 
 impl Candidate {
-    /// An effect at a place.
+    /// Returns the candidate for an effect at a place.
     pub fn of(family: &str, place: Option<&str>, shapes: Vec<Change>) -> Self {
         Self {
             id: place.map_or_else(|| family.to_owned(), |p| format!("{family}:{p}")),
@@ -38,30 +38,30 @@ impl Candidate {
         }
     }
 
-    /// The same, its first parameter positive.
+    /// Returns the candidate with its first parameter limited to positive values.
     pub fn positive(mut self) -> Self {
         self.sign = Sign::Positive;
         self
     }
 
-    /// The same, less likely beforehand.
+    /// Returns the candidate with the log prior odds `by` against it.
     pub fn handicapped(mut self, by: f64) -> Self {
         self.handicap = by;
         self
     }
 
-    /// Id without place.
+    /// Returns the id without the place.
     pub fn family(&self) -> &str {
         self.id.split(':').next().unwrap_or("")
     }
 
-    /// Whether a channel is at fault, not the vehicle.
+    /// Returns whether the fault is in a channel and not in the vehicle.
     pub fn is_channel(&self) -> bool {
         let own = |s: &Change| s.channel().is_some() || matches!(s, Change::Swap { .. });
         self.shapes.first().is_some_and(own)
     }
 
-    /// The link whose spring it bends: force over stretch that is no straight line.
+    /// Returns the link whose spring the effect bends: its force over stretch is not a straight line.
     pub fn bends_spring(&self) -> Option<usize> {
         match self.shapes.first()? {
             Change::Terms { link, terms } if terms.iter().all(|t| t.bends_spring()) => Some(*link),
@@ -69,7 +69,7 @@ impl Candidate {
         }
     }
 
-    /// Whether it may be so large that nothing of a record is explained without it, and more may be found beside it.
+    /// Returns whether the effect can be so large that nothing in a record is explained without it. More effects may be found in addition.
     pub fn overturns(&self) -> bool {
         matches!(
             self.shapes.first(),
@@ -77,7 +77,7 @@ impl Candidate {
         )
     }
 
-    /// Whether it changes everything at once, beyond what a linear look ahead can see.
+    /// Returns whether the effect changes everything at once, too much for a linear prediction of its gain.
     pub fn is_upheaval(&self) -> bool {
         matches!(
             self.shapes.first(),

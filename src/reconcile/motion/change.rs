@@ -1,4 +1,4 @@
-//! What an effect changes: terms of a link, coupling links, a mass, a channel.
+//! Changes by an effect: terms of a link, coupling links, a mass, a channel.
 
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::{Link, MassStep, Vehicle};
@@ -51,10 +51,10 @@ pub enum Change {
     Line {
         /// The channel.
         channel: String,
-        /// Its frequency.
+        /// Frequency of the line, Hz.
         hz: f64,
     },
-    /// A channel reads with its sign turned.
+    /// A channel reads with reversed sign.
     Flip {
         /// The channel.
         channel: String,
@@ -159,9 +159,9 @@ pub fn with_adjustment(list: &[Adjustment], more: Adjustment) -> Vec<Adjustment>
 }
 
 impl Change {
-    /// Shapes of the same kind with the constant a little smaller and larger; empty where there is none to find.
+    /// Returns shapes of the same kind with a slightly smaller and larger constant; empty if the shape has no constant to find.
     ///
-    /// `gravity` is what a change of mass may bring with it.
+    /// `gravity` is the acceleration of gravity that a change of mass may bring into the balance.
     pub fn neighbours(&self, step: f64, gravity: f64) -> Vec<Self> {
         /// Either side of the present constant.
         const SIDES: [f64; 4] = [-2.0, -1.0, 1.0, 2.0];
@@ -263,7 +263,7 @@ impl Change {
         }
     }
 
-    /// What a fault's parameter is multiplied by to be stated: a clock's rate in millionths.
+    /// Returns the factor from a fault's parameter to its stated size: 1e6 for the rate of a clock, stated in millionths, and otherwise 1.
     pub fn stated(&self) -> f64 {
         match self {
             Self::Clock { .. } => 1e6,

@@ -1,22 +1,22 @@
-//! Channels that show by themselves that they can't be relied on: dead or saturated.
+//! Channels whose readings show that they are unreliable: dead or saturated.
 
 use super::frame::MotionFrame;
 use crate::finding::Finding;
 use crate::series::channels::Channels;
 use crate::series::quality::{Kind, check_channels};
 
-/// A channel at fault: effect id without place, channel, what was measured of it.
+/// Channel at fault: effect id without place, channel, and measured value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BrokenChannel {
     /// `dead_channel` or `saturated_channel`.
     pub id: &'static str,
     /// Channel.
     pub channel: String,
-    /// Its variation, or how many peaks are cut.
+    /// Variation of a dead channel, or number of cut peaks of a saturated one.
     pub measured: f64,
 }
 
-/// Dead and saturated channels among those compared, in a record.
+/// Returns the dead and saturated channels of a record among the compared channels.
 pub fn broken_channels(frame: &MotionFrame, record: &Channels) -> Vec<BrokenChannel> {
     let own = frame.channels();
     let kind = |name: &str| {

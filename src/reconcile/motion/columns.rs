@@ -10,7 +10,7 @@ use crate::vehicle::adjustment::Lag;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, SQRT_2};
 
-/// What a signal in one channel makes in every equation.
+/// Returns the contribution of a signal in one channel to every equation.
 fn heard(responses: &[Vec<Vec<Complex64>>], channel: usize, signal: &[Complex64]) -> Vec<Bins> {
     let one = |r: &Vec<Vec<Complex64>>| -> Bins {
         r[channel].iter().zip(signal).map(|(h, a)| h * a).collect()
@@ -18,7 +18,7 @@ fn heard(responses: &[Vec<Vec<Complex64>>], channel: usize, signal: &[Complex64]
     responses.iter().map(one).collect()
 }
 
-/// The column of one channel in every equation, times a function of angular frequency.
+/// Returns the column of one channel in every equation, times a function of angular frequency.
 fn channel_column(
     design: &Design,
     responses: &[Vec<Vec<Complex64>>],
@@ -130,7 +130,7 @@ pub fn late_between(
     rate_column(design, responses, c, between)
 }
 
-/// What is declared to be uncertain, as columns with priors (one sd).
+/// Returns the declared uncertainties as columns with priors (one sd).
 pub fn nuisance(
     frame: &MotionFrame,
     design: &Design,

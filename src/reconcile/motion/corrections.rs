@@ -1,11 +1,11 @@
-//! Corrections of channels: those of the job and those of a set of effects.
+//! Corrections of channels from the job and from a set of effects.
 
 use super::change::{Change, with_adjustment};
 use super::frame::MotionFrame;
 use super::part::Part;
 use crate::vehicle::adjustment::{Adjustment, Lag, Slip};
 
-/// Corrections of the job joined by those of a set; its mains lines are columns of the fit, not taken out of the record.
+/// Returns the corrections of the job joined with the corrections of a set. Mains lines of the set are columns of the fit and stay in the record.
 pub fn adjustments(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
     let mut out = frame.corrections.clone();
     for p in parts {
@@ -33,7 +33,7 @@ pub fn adjustments(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
     out
 }
 
-/// The same with mains lines: what a job states of a set.
+/// Returns the corrections of the job and of a set including its mains lines, as a job states them.
 pub fn stated(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
     let mut out = adjustments(frame, parts);
     for p in parts {
@@ -46,7 +46,7 @@ pub fn stated(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
     out
 }
 
-/// Mains lines of a set, Hz.
+/// Returns the mains lines of a set, Hz.
 pub fn lines(parts: &[Part]) -> Vec<f64> {
     let line = |p: &Part| match p.shape {
         Change::Line { hz, .. } => Some(hz),

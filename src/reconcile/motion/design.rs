@@ -34,17 +34,17 @@ pub struct BinEquation {
 pub struct BinChannel {
     /// Name.
     pub name: String,
-    /// Its transform.
+    /// Transform of the corrected channel within the band.
     pub bins: Bins,
-    /// Noise of one sample of the corrected channel, one sd; none where not declared.
+    /// Noise of one sample of the corrected channel, one sd; `None` if not declared.
     pub noise: Option<f64>,
-    /// What its readings were divided by.
+    /// Gain by which the readings were divided.
     pub gain: f64,
-    /// Low-passes that were undone: noise grows as readings do.
+    /// Low-passes that were corrected: the noise grows as the readings do.
     pub lags: Vec<Lag>,
 }
 
-/// Everything a fit needs to know of a record.
+/// Data of a record for a fit: equations, channels, vehicle and motion.
 #[derive(Clone, Debug)]
 pub struct Design {
     /// Frequencies, Hz.
@@ -61,7 +61,7 @@ pub struct Design {
     pub band: Band,
     /// The vehicle.
     pub vehicle: Vehicle,
-    /// Its motion.
+    /// Motion of the vehicle.
     pub motion: Motion,
 }
 
@@ -191,14 +191,14 @@ fn body_of(vehicle: &Vehicle, name: &str) -> Option<(usize, usize)> {
 }
 
 impl Design {
-    /// Whether a parameter is in any equation.
+    /// Returns whether a parameter is in any equation.
     pub fn has(&self, parameter: usize) -> bool {
         self.equations
             .iter()
             .any(|e| e.columns.iter().any(|c| c.0 == parameter))
     }
 
-    /// The same of `n` stretches of equal length, one after the other; empty where they would be too short for the band.
+    /// Returns the designs of `n` consecutive stretches of equal length; empty if they are too short for the band.
     pub fn segments(&self, frame: &MotionFrame, adjust: &[Adjustment], n: usize) -> Vec<Self> {
         let length = self.motion.n_samples() / n.max(1);
         let parts = (0..n).map(|k| {
@@ -211,7 +211,7 @@ impl Design {
         parts.collect::<Option<Vec<_>>>().unwrap_or_default()
     }
 
-    /// The same with everything at some frequencies silent, to two and a half bins on either side: what a window spreads a line over.
+    /// Returns the design with zeros in all bins within two and a half bins of the lines: the width over which a window spreads a line.
     pub fn silenced(&self, lines_hz: &[f64]) -> Self {
         const BINS: f64 = 2.5;
         let mut out = self.clone();
@@ -252,13 +252,13 @@ impl Design {
         [m.start_s, m.start_s + m.n_samples() as f64 / m.rate_hz]
     }
 
-    /// What the readings of a channel were divided by.
+    /// Returns the gain by which the readings of a channel were divided.
     pub fn gain_of(&self, channel: &str) -> f64 {
         let c = self.channels.iter().find(|c| c.name == channel);
         c.map_or(1.0, |c| c.gain)
     }
 
-    /// Sum of parameter times column, less target, of every equation.
+    /// Returns the residual of every equation: sum of parameter times column, less target.
     pub fn residual(&self, values: &[f64]) -> Vec<Bins> {
         self.equations
             .iter()

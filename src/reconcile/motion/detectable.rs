@@ -9,8 +9,8 @@ use super::part::ColumnOf;
 use super::scorer::MotionScorer;
 use crate::estimate::columns::Basis;
 
-/// Sizes by candidate, in the library's order: those that would raise the log evidence to the level of a name, in the form that shows
-/// best, and beyond what the declared tolerances allow of a channel.
+/// Returns sizes by candidate, in the library's order. A candidate of this size raises the log evidence to the level of a name, in the form that
+/// shows best, and exceeds what the declared tolerances allow of a channel.
 ///
 /// An effect of size x whose column's coefficient has the standard deviation s gains (x / s)^2 / 2 less its price.
 pub fn smallest_sizes(scorer: &mut MotionScorer, null: &MotionFit) -> Vec<Smallest> {

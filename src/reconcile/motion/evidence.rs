@@ -6,7 +6,7 @@ use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::zeros::zeros;
 
-/// What an effect costs for its freedom: half the log of the number of rows a parameter (Schwarz), the choice among `n` candidates, and
+/// Returns the cost of an effect's freedom: half the log of the number of rows for each parameter (Schwarz), the log of the number of candidates, and
 /// the candidate's own handicap.
 ///
 /// # Reference
@@ -25,9 +25,8 @@ pub fn cost(candidate: &Candidate, shape: &Change, n_candidates: usize, n_rows: 
     per * (n + constants) as f64 + (n_candidates.max(1) as f64).ln() + candidate.handicap
 }
 
-/// Log evidence of a fit: -1/2 (squared residual over its covariance, balance of weight included, squared nuisance over its tolerance,
-/// means of accelerometers) - log-determinants of the covariances (equations: over that of sensors alone), less prior and price of the
-/// effects.
+/// Returns the log evidence of a fit: -1/2 (squared residual over its covariance, balance of weight included, squared nuisance over its tolerance,
+/// means of accelerometers) - log-determinants of the covariances (equations: relative to sensors alone), less prior and cost of the effects.
 pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) -> f64 {
     let cost: f64 = fit
         .parts
@@ -45,12 +44,12 @@ pub fn evidence(frame: &MotionFrame, candidates: &[Candidate], fit: &MotionFit) 
         - unusual(frame, fit)
 }
 
-/// What speaks for a set beside the shaken part of the record: means of accelerometers, sizes of channel faults.
+/// Returns the log evidence from data other than the shaken part of the record: means of accelerometers, sizes of channel faults.
 pub fn beside_shaking(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     -0.5 * zeros(frame, fit) - unusual(frame, fit)
 }
 
-/// What the sizes of channel faults cost.
+/// Returns the cost of the sizes of channel faults.
 fn unusual(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     fit.parts
         .iter()

@@ -1,4 +1,4 @@
-//! The whole workflow: find, name, judge.
+//! Complete dynamic workflow: find, name and test effects.
 
 use super::alias::with_aliases;
 use super::candidate::Candidate;

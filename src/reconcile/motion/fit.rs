@@ -30,7 +30,7 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// Rounds, and how many of them see slow stretch anew.
+    /// Returns the number of rounds, and the number of them that compute the slow stretch again.
     fn rounds(self) -> (usize, usize) {
         match self {
             Self::Settled => (7, 2),
@@ -39,7 +39,7 @@ impl Effort {
     }
 }
 
-/// Which parameters are held, and at what.
+/// Returns the value of each held parameter; `None` for a free parameter.
 pub fn held(frame: &MotionFrame, vehicle: &Vehicle, design: &Design) -> Vec<Option<f64>> {
     let names = vehicle.parameters();
     let mut out: Vec<Option<f64>> = names
@@ -368,10 +368,10 @@ impl Problem {
     }
 }
 
-/// A time constant below which a low-pass is none.
+/// Smallest time constant of a low-pass, s.
 const LEAST_LAG_S: f64 = 1e-5;
 
-/// Moves the faults of channels by what a round found; the largest step over one that counts as settled.
+/// Moves the channel faults by the result of a round; returns the largest step over the step that counts as settled.
 fn advance(parts: &mut [Part], problem: &Problem, s: &Solved) -> f64 {
     let mut moved = 0.0f64;
     for (of, step) in problem.column_of.iter().zip(&s.x) {

@@ -1,4 +1,4 @@
-//! A set of effects as it was fitted: parameters, sizes, residuals, and what a further column would meet.
+//! Fit of a set of effects: parameters, sizes, residuals, and the whitening for a further column.
 
 use super::at_rest::RestRow;
 use super::change::Assembled;
@@ -9,22 +9,22 @@ use crate::estimate::columns::PriorColumn;
 use rustfft::num_complex::Complex64;
 use std::sync::Arc;
 
-/// A fit.
+/// Fit of a set of effects.
 #[derive(Clone, Debug)]
 pub struct MotionFit {
     /// The effects.
     pub parts: Vec<Part>,
-    /// The vehicle with them.
+    /// Vehicle with the effects.
     pub assembled: Assembled,
-    /// Its parameters; NaN where no compared equation holds them.
+    /// Parameters of the vehicle; NaN if no compared equation contains them.
     pub values: Vec<f64>,
-    /// One sd of each, 0 for fixed ones.
+    /// One sd of each parameter, 0 for fixed ones.
     pub sigmas: Vec<f64>,
     /// Parameters that were estimated, in the order of the first columns.
     pub free: Vec<usize>,
     /// Sizes of each effect's parameters, with one sd.
     pub sizes: Vec<Vec<[f64; 2]>>,
-    /// Joint covariance of all of them in this order, by rows.
+    /// Joint covariance of all sizes in this order, by rows.
     pub covariance: Vec<Vec<f64>>,
     /// Squared residual over its covariance, the balance of weight included.
     pub chi2: f64,
@@ -34,19 +34,19 @@ pub struct MotionFit {
     pub log_det: f64,
     /// Data rows.
     pub n_rows: usize,
-    /// The record as it was last seen.
+    /// Design of the record in the last round.
     pub design: Arc<Design>,
     /// Responses at `values`.
     pub responses: Arc<Vec<Vec<Vec<Complex64>>>>,
     /// Whitening at `values`.
     pub whitener: Arc<Whitener>,
-    /// The balance of weight, where wheel forces tell it.
+    /// Balance of weight, if wheel forces determine it.
     pub rest: Option<RestRow>,
     /// Whitened columns.
     pub columns: Arc<Vec<PriorColumn>>,
-    /// What they stand for.
+    /// Parameter, fault, line or tolerance of each column.
     pub column_of: Vec<ColumnOf>,
-    /// What the last round found for each; for a fault by how much it moved.
+    /// Estimate of each column in the last round; for a fault, the step by which it moved.
     pub estimates: Vec<f64>,
     /// Whitened residual, priors at its end.
     pub residual: Arc<Vec<f64>>,
@@ -55,24 +55,24 @@ pub struct MotionFit {
 }
 
 impl MotionFit {
-    /// Rows of a further column, `[equation][bin]` and its entry in the balance of weight, whitened as the fit's own.
+    /// Returns the rows of a further column, `[equation][bin]` and its entry in the balance of weight, whitened as the fit's own.
     pub fn rows(&self, bins: &[&[Complex64]], at_rest: f64) -> Vec<f64> {
         whitened(&self.whitener, self.rest.as_ref(), bins, at_rest)
     }
 
-    /// What a form is chosen by, -2 log likelihood but for constants: squared residual, squared nuisance, log-determinants.
+    /// Returns the criterion by which a form is chosen, -2 log likelihood except for constants: squared residual, squared nuisance, log-determinants.
     pub fn misfit(&self) -> f64 {
         let at_rest = self.rest.as_ref().map_or(0.0, |r| r.sigma.ln());
         self.chi2 + self.penalty + 2.0 * (self.log_det + at_rest)
     }
 
-    /// Squared residual by degree of freedom.
+    /// Returns the squared residual by degree of freedom.
     pub fn reduced_chi2(&self) -> f64 {
         self.chi2 / self.n_rows.saturating_sub(self.columns.len()).max(1) as f64
     }
 }
 
-/// Whitened rows of a column with its entry in the balance of weight, where there is one, at the end.
+/// Returns the whitened rows of a column; its entry in the balance of weight is at the end, if there is a balance.
 pub fn whitened(
     whitener: &Whitener,
     rest: Option<&RestRow>,

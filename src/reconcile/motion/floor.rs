@@ -1,4 +1,4 @@
-//! What sensor noise and declared tolerances leave of a complete model, and the most they leave in 99 jobs of 100.
+//! Expected residual of a complete model from sensor noise and declared tolerances, and its limit in 99 jobs of 100.
 
 use super::columns::{nuisance, parameter_column, slices};
 use super::design::{Bins, Design, reference, size};
@@ -11,31 +11,31 @@ use crate::reconcile::rules::MotionRules;
 use rustfft::num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Squared floors of one equation, over the squared size of what was measured.
+/// Squared expected residuals of one equation, over the squared size of the measured quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Floor {
-    /// Of sensor noise.
+    /// Contribution of sensor noise.
     pub noise: f64,
-    /// Of declared tolerances, expected.
+    /// Expected contribution of declared tolerances.
     pub tolerance: f64,
-    /// Of declared tolerances, exceeded by one complete model in a hundred.
+    /// Contribution of declared tolerances that one complete model in a hundred exceeds.
     pub tolerance_limit: f64,
 }
 
 impl Floor {
-    /// Expected, as a share of the measured quantity.
+    /// Returns the expected residual, as a share of the measured quantity.
     pub fn expected(&self) -> f64 {
         (self.noise + self.tolerance).sqrt()
     }
 
-    /// The most that a complete model leaves: noise wrong by its factor, tolerances as they are in one job of a hundred, and as much again that
-    /// nobody declared.
+    /// Returns the largest residual of a complete model: noise wrong by its factor, tolerances as in one job of a hundred, and undeclared tolerances
+    /// of the same size.
     pub fn limit(&self, rules: &MotionRules) -> f64 {
         let noise = self.noise * rules.noise_factor * rules.noise_factor;
         (noise + rules.undeclared * self.tolerance_limit).sqrt()
     }
 
-    /// Mean of squares.
+    /// Returns the mean of squares.
     pub fn mean(list: &[Self]) -> Self {
         let n = list.len().max(1) as f64;
         let of = |f: &dyn Fn(&Self) -> f64| list.iter().map(f).sum::<f64>() / n;
@@ -123,7 +123,7 @@ pub fn floors(
         .collect()
 }
 
-/// Quantile of a quadratic form of normal deviates with eigenvalues of that sum and sum of squares.
+/// Returns the quantile of a quadratic form of normal deviates, whose eigenvalues have this sum and sum of squares.
 fn quantile(sum: f64, squares: f64, share: f64) -> f64 {
     if !(sum > 0.0 && squares > 0.0) {
         return 0.0;
@@ -132,7 +132,7 @@ fn quantile(sum: f64, squares: f64, share: f64) -> f64 {
     ChiSquared::new(freedom).map_or(sum, |c| sum / freedom * c.inverse_cdf(share))
 }
 
-/// What one sd of each tolerance leaves in every equation of `judged`.
+/// Returns the residual from one sd of each tolerance in every equation of `judged`, after a fit of the free parameters to `learnt`.
 fn left_by_tolerances(
     frame: &MotionFrame,
     parts: &[Part],

@@ -1,22 +1,22 @@
-//! What a search found.
+//! Result of a search.
 
 use super::channel_check::BrokenChannel;
 use super::fitted::MotionFit;
 use crate::reconcile::search::Scored;
 
-/// What a search found: all sets that were scored, best first, and the best one.
+/// Result of a search: all scored sets, best first, and the best one.
 pub(super) struct Found {
     /// The analyst's model under sensor noise alone.
     pub null: MotionFit,
     /// Every set, best first.
     pub all: Vec<Scored<MotionFit>>,
-    /// The best set, empty where nothing pays.
+    /// Best set; empty if no effect raises the evidence enough.
     pub best: Scored<MotionFit>,
-    /// Channels that show by themselves that they can't be relied on.
+    /// Unreliable channels: dead or saturated.
     pub broken: Vec<BrokenChannel>,
 }
 
-/// Other sets, nearest first; sets that merely add to the best are no rivals. Where nothing is named, what came nearest.
+/// Returns the other sets, nearest first, without sets that only add to the best one. If the best set is empty, returns all sets with effects.
 pub(super) fn other_sets<'a>(
     best: &'a Scored<MotionFit>,
     all: &'a [Scored<MotionFit>],

@@ -1,4 +1,4 @@
-//! What the dynamic search starts from.
+//! Input of the dynamic search.
 
 use crate::reconcile::rules::MotionRules;
 use crate::series::channels::Channels;
@@ -16,13 +16,13 @@ pub struct MotionFrame {
     pub vehicle: Vehicle,
     /// Bodies whose equations are compared.
     pub bodies: Vec<usize>,
-    /// Those among them whose equations are left out: a channel that enters them is dead.
+    /// Compared bodies whose equations are left out because a dead channel enters them.
     pub not_compared: Vec<usize>,
     /// Parameters measured elsewhere.
     pub known: BTreeMap<String, f64>,
     /// The record that is fitted.
     pub data: Channels,
-    /// The record that judges; where none is given the fitted one does.
+    /// Held-out record that tests the result; `None` if the fitted record does.
     pub hold_out: Option<Channels>,
     /// The band of every comparison.
     pub band: Band,
@@ -40,9 +40,9 @@ pub struct MotionFrame {
     pub corrections: Vec<Adjustment>,
     /// Names of units.
     pub units: UnitNames,
-    /// Thresholds of names.
+    /// Thresholds for naming effects.
     pub rules: MotionRules,
-    /// Cuts the search short; what it found is then of no use.
+    /// Stops the search early; its result is then of no use.
     pub stop: Stop,
 }
 

@@ -21,8 +21,8 @@ pub struct GapProfile {
     pub by_amplitude: Vec<[f64; 2]>,
 }
 
-/// The profile of a residual beside the measured quantity, both as bins at `f_hz` of one windowed transform at `rate_hz` that begins at
-/// `start_s` ([`crate::series::window::Windowed`]); empty where there are fewer than two bins.
+/// Returns the profile of a residual relative to the measured quantity; empty for fewer than two bins. Both are bins at `f_hz` of one windowed
+/// transform at `rate_hz` that begins at `start_s` ([`crate::series::window::Windowed`]).
 pub fn gap_profile(
     residual: &Bins,
     measured: &Bins,

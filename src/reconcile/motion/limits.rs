@@ -1,4 +1,4 @@
-//! What nature and declared tolerances allow of a fit.
+//! Limits of a fit from physics and declared tolerances.
 
 use super::candidate::{Candidate, Sign};
 use super::change::Change;
@@ -10,15 +10,15 @@ use crate::reconcile::rules::MotionRules;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
-/// Standard deviations of a declared tolerance that no channel of a healthy job exceeds but in one job of a hundred: the normal quantile
-/// of both tails, shared by `n` gains and delays.
+/// Returns the limit of a declared tolerance, standard deviations, that a channel exceeds in one healthy job of a hundred: the normal quantile of
+/// both tails, shared by `n` gains and delays.
 pub fn tolerance_limit(rules: &MotionRules, n: usize) -> f64 {
     let tail = rules.false_rate / (2.0 * n.max(1) as f64);
     Normal::new(0.0, 1.0).map_or(3.0, |z| z.inverse_cdf(1.0 - tail))
 }
 
-/// The solution with every nuisance within what a healthy job has ([`tolerance_limit`]): priors of those that would leave it are
-/// narrowed until they stay. Without this a model that fits badly is silenced by channels that read nothing at all.
+/// Returns the solution with every nuisance within the limit of a healthy job ([`tolerance_limit`]). Priors of nuisances beyond the limit are
+/// narrowed until they are within. Without this limit, a model that fits badly loses its residual through channels that read nothing at all.
 pub fn within_tolerance(
     rules: &MotionRules,
     columns: &mut [PriorColumn],
@@ -112,8 +112,8 @@ pub fn beyond_tolerance(frame: &MotionFrame, fit: &MotionFit) -> bool {
     })
 }
 
-/// How much a fault of timing of size one makes a channel late, RMS over the record about its mean, s: what a tolerance of
-/// synchronisation, which speaks of one delay, is held against.
+/// Returns the lateness of a channel from a timing fault of size one, RMS over the record about its mean, s. This lateness is compared with the
+/// tolerance of synchronisation, which applies to one delay.
 pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
     let [begin, end] = fit.design.span_s();
     match shape {
@@ -125,8 +125,8 @@ pub(super) fn late_on_average(shape: &Change, fit: &MotionFit) -> f64 {
     }
 }
 
-/// Whether several faults of a kind are what `n` healthy channels may have together: what all of them have in common shows in nothing, so
-/// that the channels without a fault may be off as well, the other way. Sum of squares about the mean of all, over the tolerance, against
+/// Returns whether several faults of a kind are within the scatter of `n` healthy channels. An error common to all channels shows in nothing, so the
+/// channels without a fault may be off too, the other way. The test takes the sum of squares about the mean of all, over the tolerance. Its limit is
 /// the chi-square of n - 1 degrees that one healthy job in a hundred exceeds.
 fn are_healthy(rules: &MotionRules, off: &[f64], n: usize, tolerance: f64) -> bool {
     if off.len() < 2 || n < 2 || tolerance <= 0.0 {
@@ -180,7 +180,7 @@ pub fn plausible(rules: &MotionRules, candidates: &[Candidate], fit: &MotionFit)
     })
 }
 
-/// Whether no mass and no spring of the analyst's is negative: the mirror image of a vehicle, which a channel turned the wrong way makes, is none.
+/// Returns whether no mass and no spring of the analyst's is negative: a reversed channel gives the mirror image of a vehicle, not a vehicle.
 fn is_upright(fit: &MotionFit) -> bool {
     let v = &fit.assembled.vehicle;
     let bodies: Vec<usize> = (0..v.bodies.len()).collect();
@@ -196,8 +196,8 @@ fn is_upright(fit: &MotionFit) -> bool {
         .all(|i| fit.values.get(i).is_none_or(|x| !(*x < 0.0)))
 }
 
-/// Whether every effect that has a size has one beyond its own scatter: three and a half standard deviations are what the evidence of a
-/// name, odds of 400, comes to.
+/// Returns whether every effect with a size exceeds its own scatter: three and a half standard deviations, which equal the evidence for naming, odds
+/// of 400.
 pub fn stands_out(rules: &MotionRules, fit: &MotionFit) -> bool {
     let least = (2.0 * rules.decisive).sqrt();
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {

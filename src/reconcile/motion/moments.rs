@@ -132,7 +132,7 @@ impl<'a> Look<'a> {
         }
     }
 
-    /// The sample at which a step with `gravity` takes most of the first of `own` (r) beside the others (q, orthonormal), and how much:
+    /// Returns the sample at which a step with `gravity` explains most of the first of `own` (r) given the others (q, orthonormal), and how much:
     /// `(r . c)^2 / (c . c - sum (q . c)^2)`.
     fn best(&self, own: &[Bins], gravity: f64) -> Option<(usize, f64)> {
         let n = self.products.len();

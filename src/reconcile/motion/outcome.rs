@@ -1,4 +1,4 @@
-//! What the dynamic workflow has to say.
+//! Outcome of the dynamic workflow.
 
 use super::change::Change;
 use super::gap::{Proof, RecordGap};
@@ -13,15 +13,15 @@ pub struct MotionEffect {
     pub id: String,
     /// Place alone.
     pub place: Option<String>,
-    /// What it changes.
+    /// Change of the vehicle or of a channel.
     pub change: Change,
     /// Sizes of its parameters.
     pub size: Vec<f64>,
-    /// One sd of each.
+    /// One sd of each size.
     pub sigma: Vec<f64>,
-    /// Unit of the first.
+    /// Unit of the first size.
     pub unit: String,
-    /// Whether the size is one that occurs.
+    /// Whether the size is plausible.
     pub plausible: bool,
 }
 
@@ -36,42 +36,42 @@ pub struct Smallest {
     pub unit: String,
 }
 
-/// Everything.
+/// Outcome of the dynamic workflow: verdict, effects, gaps and the next measurement.
 #[derive(Clone, Debug)]
 pub struct MotionOutcome {
     /// Verdict.
     pub verdict: Verdict,
     /// Named effects; empty unless named.
     pub effects: Vec<MotionEffect>,
-    /// What came closest.
+    /// Effects of the best attempt.
     pub best_attempt: Vec<MotionEffect>,
-    /// Joint covariance of the sizes of what came closest, effects in order, by rows; empty where the channel itself says what is wrong.
+    /// Joint covariance of the sizes of the best attempt, effects in order, by rows; empty if the readings of a channel show its fault.
     pub covariance: Vec<Vec<f64>>,
-    /// Corrections of channels with the named effects in: those of the job and those found.
+    /// Corrections of channels with the named effects included: corrections of the job and corrections found.
     pub corrections: Vec<Adjustment>,
     /// Other explanations, nearest first.
     pub rivals: Vec<Rival>,
-    /// Log evidence of the best set less that of no effect.
+    /// Log evidence of the best set less the log evidence without effects.
     pub evidence: f64,
-    /// Log evidence that names.
+    /// Log evidence needed to name an effect.
     pub decisive: f64,
-    /// Gap on what judges.
+    /// Gap on the test data.
     pub gap: Gap,
-    /// What that was.
+    /// Test data of the gap.
     pub judged_by: Proof,
-    /// Gap there of the analyst's model by equation.
+    /// Gap of the analyst's model on the test data, by equation.
     pub before: Option<RecordGap>,
-    /// With the best attempt in.
+    /// Gap of the best attempt on the test data, by equation.
     pub after: Option<RecordGap>,
     /// Squared residual over noise alone, by number of rows: analyst's model, best attempt.
     pub reduced_chi2: [f64; 2],
     /// Share of the measured quantity left on the fitted record: analyst's model, best attempt, floor.
     pub left: [f64; 3],
-    /// Smallest sizes that would have been seen.
+    /// Smallest sizes that the record would have shown.
     pub smallest: Vec<Smallest>,
-    /// What remains, in words.
+    /// Text on the remaining gap.
     pub remains: String,
-    /// What would separate the first two explanations.
+    /// Instruction that separates the first two explanations.
     pub next_measurement: String,
 }
 

@@ -1,4 +1,4 @@
-//! The members of a set of effects, and what the columns of its least squares stand for.
+//! Members of a set of effects, and the meaning of the columns of its least squares.
 
 use super::change::Change;
 
@@ -7,14 +7,14 @@ use super::change::Change;
 pub struct Part {
     /// Number of the candidate.
     pub candidate: usize,
-    /// Its form.
+    /// Selected form of the effect.
     pub shape: Change,
     /// 1 / gain of a gain fault, delay in s of a delay fault, rate of a clock, step in s of a slip, time constant in s of a low-pass; not used
     /// otherwise.
     pub fault: f64,
 }
 
-/// What a column of the least squares stands for.
+/// Unknown to which a column of the least squares belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ColumnOf {
     /// A parameter of the vehicle.

@@ -113,7 +113,7 @@ pub fn responses(design: &Design, values: &[f64]) -> Vec<Vec<Vec<Complex64>>> {
         .collect()
 }
 
-/// What changes of mass add to each body, mean over the record.
+/// Returns the mass that changes of mass add to each body, mean over the record.
 fn changed_masses(design: &Design, values: &[f64]) -> Vec<f64> {
     let v = &design.vehicle;
     let mut out = vec![0.0; v.bodies.len()];

@@ -24,9 +24,9 @@ pub struct MotionScorer<'a> {
     pub frame: &'a MotionFrame,
     /// The library.
     pub candidates: &'a [Candidate],
-    /// What no effect explains.
+    /// Background: the residual power that no effect explains.
     pub background: Background,
-    /// Designs that hold every form of every candidate, by corrections and swaps.
+    /// Designs with every form of every candidate, by corrections and swaps.
     pub forms: Vec<(Vec<Adjustment>, Vec<String>, Arc<Forms>)>,
 }
 
@@ -43,7 +43,7 @@ const WORTH_REFINING: f64 = 30.0;
 const REFINE: [f64; 8] = [0.2, 0.07, 0.025, 0.009, 0.003, 0.001, 0.0003, 0.0001];
 
 impl MotionScorer<'_> {
-    /// What a candidate in a form costs: [`cost`].
+    /// Returns the cost of a candidate in a form: [`cost`].
     pub fn cost(&self, candidate: usize, shape: &Change, n_rows: usize) -> f64 {
         let c = &self.candidates[candidate];
         cost(c, shape, self.candidates.len(), n_rows)
@@ -121,10 +121,10 @@ impl MotionScorer<'_> {
         }
     }
 
-    /// Of several forms those that leave least with everything else as it is; none where the present one does.
+    /// Returns the form of `varied` with the smallest residual, all other parts unchanged; empty if the present form has a smaller one.
     ///
-    /// Of a change of mass the best with its weight and the best without: the balance of weight is another row for the two, so only a
-    /// fit compares them.
+    /// For a change of mass, returns the best form with its weight and the best one without. The balance of weight is another row for the two forms,
+    /// so only a fit compares them.
     fn best_of(&self, now: &MotionFit, part: usize, varied: &[Change]) -> Vec<Change> {
         self.gains_of(now, part, varied)
             .map_or(vec![], |(present, gains)| {
@@ -142,8 +142,8 @@ impl MotionScorer<'_> {
             })
     }
 
-    /// The fit of a set in which a fault of timing is new, from the start that leaves least: beyond a quarter of a wave of what was
-    /// measured, a linear step does not know its way.
+    /// Returns the fit of a set with a new timing fault, from the start with the smallest residual. Beyond a quarter of a wave of the measured
+    /// quantity, a linear step can go in the wrong direction.
     fn settled_from_afar(&self, first: MotionFit, known: &[usize]) -> MotionFit {
         /// Lateness at the end of the record that is tried, s.
         const LATE_S: [f64; 8] = [-0.25, -0.12, -0.06, -0.03, 0.03, 0.06, 0.12, 0.25];

@@ -1,11 +1,11 @@
-//! What remains, in words.
+//! Text on the remaining gap.
 
 use super::gap::{Proof, RecordGap};
 use super::sits::gap_sits;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::rules::MotionRules;
 
-/// What remains and where it sits; `chi` and `left` are before, after (and floor), `told` what kept effects from being named.
+/// Returns a text on the remaining gap and its place. `chi` and `left` are before, after (and floor), `told` the reasons against naming effects.
 pub(super) fn remains(
     rules: &MotionRules,
     verdict: Verdict,

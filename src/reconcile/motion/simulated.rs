@@ -1,8 +1,8 @@
-//! The named model by the error of simulation: parameters found anew by simulating the fitted record, judged by simulating
-//! the held-out one, where there is one.
+//! Error of simulation of the named model. A simulation of the fitted record finds the parameters again, and a simulation of the held-out record, if
+//! there is one, tests them.
 //!
-//! The search compares equations, which are linear in what it looks for; a simulation has no measured motion on its right-hand side, so
-//! neither sensor noise in the regressors nor stretch integrated twice can hide what is wrong. The analyst's model is treated alike.
+//! The search compares equations, which are linear in their unknowns. A simulation has no measured motion on its right-hand side, so neither sensor
+//! noise in the regressors nor twice integrated stretch can hide an error. The analyst's model is treated alike.
 
 use super::frame::MotionFrame;
 use super::gap::{Proof, RecordGap};
@@ -15,11 +15,11 @@ use crate::vehicle::layout::{Measures, Vehicle};
 use crate::vehicle::refine::{Comparison, OPEN, comparison, refine};
 use crate::vehicle::simulate::SimulationError;
 
-/// Samples of the fitted record that are simulated over and over; what they leave open the rest would hardly settle.
+/// Number of samples of the fitted record that are simulated repeatedly; further samples would hardly improve the parameters.
 const FITTED: usize = 12_000;
-/// Samples that a simulation from rest is given to come to terms with displacement sensors.
+/// Samples at the start that a comparison with displacement sensors excludes, while the simulation from rest settles.
 const FORGOTTEN: usize = 200;
-/// Integration steps a sample, the first that does not run away.
+/// Integration steps for each sample; the first number that does not diverge is used.
 const STEPS: [usize; 2] = [2, 8];
 
 /// Error of simulation of one sensor, RMS in its unit.
@@ -27,11 +27,11 @@ const STEPS: [usize; 2] = [2, 8];
 pub struct SimulatedChannel {
     /// Channel.
     pub channel: String,
-    /// RMS of what was measured.
+    /// RMS of the measured quantity.
     pub measured: f64,
-    /// Of the analyst's model.
+    /// RMS error of the analyst's model.
     pub before: f64,
-    /// Of the named one.
+    /// RMS error of the named model.
     pub after: f64,
 }
 
@@ -42,11 +42,11 @@ pub struct SimulatedGap {
     pub channels: Vec<SimulatedChannel>,
     /// Parameters of the named model: name, by regression, by simulation.
     pub parameters: Vec<(String, f64, f64)>,
-    /// What both were simulated on: the held-out record, else the fitted one itself.
+    /// Data on which both were simulated: the held-out record, or else the fitted record.
     pub judged_by: Proof,
 }
 
-/// Simulates both models; the reason where that can't be done.
+/// Simulates both models, or returns the reason if that is impossible.
 ///
 /// # Errors
 /// A sentence: inertance and changes of mass are not simulated; a body's inertia may be unknown; motion may run away.
@@ -164,7 +164,7 @@ fn band(frame: &MotionFrame) -> Band {
     }
 }
 
-/// Parameters that the equations told, but for those measured elsewhere and the mass that stands for the scale where no force does.
+/// Returns the parameters that the equations determine, without those measured elsewhere and the mass that sets the scale if no force does.
 fn free(frame: &MotionFrame, v: &Vehicle, values: &[f64]) -> Vec<usize> {
     let names = v.parameters();
     let is_known = |i: usize| frame.known.contains_key(&names[i].name);

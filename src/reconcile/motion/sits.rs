@@ -3,7 +3,7 @@
 use super::gap::{EquationGap, RecordGap};
 use serde::Serialize;
 
-/// A stretch of something, and the gap there.
+/// Stretch of frequency, time or size, and the gap there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Stretch {
     /// Where it begins.
@@ -21,9 +21,9 @@ pub struct Stretch {
 pub struct GapSits {
     /// Equation, such as `body b`.
     pub equation: String,
-    /// Its gap.
+    /// Gap of the equation.
     pub gap: f64,
-    /// What sensor noise and tolerances leave.
+    /// Expected residual from sensor noise and tolerances.
     pub floor: f64,
     /// Band of frequency, Hz.
     pub band_hz: Option<Stretch>,
@@ -33,7 +33,7 @@ pub struct GapSits {
     pub size_over_rms: Option<Stretch>,
 }
 
-/// Every equation of a gap, the one that lies furthest above its floor first.
+/// Returns every equation of a gap, the equation furthest above its floor first.
 pub fn gap_sits(gap: &RecordGap) -> Vec<GapSits> {
     let above = |e: &&EquationGap| e.gap / e.floor.max(f64::MIN_POSITIVE);
     let mut sorted: Vec<&EquationGap> = gap.equations.iter().collect();
@@ -58,7 +58,7 @@ fn sits(e: &EquationGap) -> GapSits {
     }
 }
 
-/// The stretch with the largest gap; `stretches` are upper edges with gaps, ascending from `begin`.
+/// Returns the stretch with the largest gap; `stretches` are upper edges with gaps, ascending from `begin`.
 fn largest(stretches: &[[f64; 2]], begin: f64) -> Option<Stretch> {
     let edges = stretches.iter().map(|s| s[0]);
     let from = std::iter::once(begin).chain(edges);
@@ -74,7 +74,7 @@ fn largest(stretches: &[[f64; 2]], begin: f64) -> Option<Stretch> {
 }
 
 impl GapSits {
-    /// In a sentence.
+    /// Returns the gap and its largest stretches as a sentence.
     pub fn words(&self) -> String {
         let percent = |v: f64| format!("{:.2} %", 100.0 * v);
         let mut out = format!(

@@ -1,4 +1,4 @@
-//! What of a record can be compared where a channel of it is dead: the equations that the channel does not enter.
+//! Comparable part of a record with a dead channel: the equations that the channel does not enter.
 
 use super::channel_check::BrokenChannel;
 use super::detectable::smallest_sizes;
@@ -14,10 +14,10 @@ use super::{design::design, gap::fitted_gap};
 use crate::reconcile::outcome::Verdict;
 use crate::series::channels::Channels;
 
-/// The outcome of a record with dead channels, which are named; `None` where all are alive.
+/// Returns the outcome of a record with dead channels, which are named; `None` if no channel is dead.
 ///
-/// A reading that is none has no equation: parameters fitted to it are those of no vehicle, and a share of nothing measured is no number.
-/// Gaps before and after are one and the same, of the equations without the channel; NaN where there are none.
+/// A dead channel has no equation: parameters fitted to it are not from a vehicle, and a share of an unmeasured quantity is not a number. The gaps
+/// before and after are equal: both are over the equations without the channel; NaN if there are no such equations.
 pub(super) fn outcome_of_dead(
     frame: &MotionFrame,
     broken: &[BrokenChannel],
@@ -102,7 +102,7 @@ pub(super) fn outcome_of_dead(
     })
 }
 
-/// The frame without the equations that dead channels enter. A dead wheel force is one that was not measured.
+/// Returns the frame without the equations that dead channels enter. A dead wheel force counts as not measured.
 fn sound_part(frame: &MotionFrame, dead: &[&str]) -> MotionFrame {
     let v = &frame.vehicle;
     let still: Vec<usize> = (v.sensors.iter())

@@ -1,4 +1,4 @@
-//! What nothing in the library explains: the residual of a generous model, as background for every comparison.
+//! Residual of a generous model that no effect of the library explains, as background for every comparison.
 
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
@@ -8,14 +8,14 @@ use super::scorer::MotionScorer;
 use crate::estimate::columns::{Basis, PriorColumn, solved};
 use rustfft::num_complex::Complex64;
 
-/// Forms that a generous model takes up, one after the other.
+/// Largest number of forms in a generous model, added one after the other.
 const MOST: usize = 8;
-/// Fall of the squared residual that a form must bring, as a share of what is left and at least this much.
+/// Fall of the squared residual that a form must bring: a share of the present residual, and at least this much.
 const LEAST: f64 = 30.0;
 /// See `LEAST`.
 const SHARE: f64 = 0.01;
 
-/// The power that is left when the forms that help most, of whatever effect, are all fitted together.
+/// Returns the power of the residual after a joint fit of the forms that help most, of whatever effect.
 pub fn unexplained_background(scorer: &mut MotionScorer, null: &MotionFit) -> Background {
     let forms = scorer.form_columns(null);
     let mut columns: Vec<PriorColumn> = null.columns.to_vec();
@@ -46,14 +46,14 @@ pub fn unexplained_background(scorer: &mut MotionScorer, null: &MotionFit) -> Ba
     of_rows(scorer.frame, null, &left)
 }
 
-/// Background that a fit leaves above sensor noise.
+/// Returns the background in the residual of a fit above sensor noise.
 pub fn of_fit(frame: &MotionFrame, fit: &MotionFit) -> Background {
     let h = responses(&fit.design, &fit.values);
     let sensor = covariance(frame, &fit.design, &h, &Background::default());
     background(frame, &fit.design, &fit.left, &sensor)
 }
 
-/// Background of whitened rows: coloured back by the whitening that made them.
+/// Returns the background of whitened rows, coloured with the whitening that made them.
 fn of_rows(frame: &MotionFrame, null: &MotionFit, rows: &[f64]) -> Background {
     let colour = null.whitener.coloured(rows);
     let h = responses(&null.design, &null.values);
@@ -61,7 +61,7 @@ fn of_rows(frame: &MotionFrame, null: &MotionFit, rows: &[f64]) -> Background {
     background(frame, &null.design, &colour, &sensor)
 }
 
-/// Total power, to compare backgrounds.
+/// Returns the total power, to compare backgrounds.
 pub fn power(b: &Background) -> f64 {
     b.power.iter().flatten().sum()
 }

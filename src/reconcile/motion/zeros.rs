@@ -1,4 +1,4 @@
-//! What the means of accelerometers say of a fit: gravity times their gain, their zeros unknown within what data sheets state.
+//! Test of a fit by the means of accelerometers: gravity times gain, with zeros unknown within the limits of data sheets.
 
 use super::at_rest::{STATIC, finite_mean};
 use super::corrections::adjustments;
@@ -6,8 +6,8 @@ use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use crate::vehicle::layout::Measures;
 
-/// Squared deviates of the accelerometers' means from gravity times the gain that a fit gives them, their zeros unknown within
-/// what data sheets state. A channel without its static part says nothing.
+/// Returns the sum of squared deviates of the accelerometers' means from gravity times gain under a fit. Their zeros are unknown within the limits of
+/// data sheets. Channels without a static part are left out.
 pub fn zeros(frame: &MotionFrame, fit: &MotionFit) -> f64 {
     let adjust = adjustments(frame, &fit.parts);
     let gain = |channel: &str| -> f64 {

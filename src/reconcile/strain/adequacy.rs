@@ -1,4 +1,4 @@
-//! Is a set of effects enough? Chi-square against what noise and stated uncertainty allow: over all, by gauge, by run, held out.
+//! Test whether a set of effects is enough: chi-square against noise and stated uncertainty, over all readings, by gauge, by run, and held out.
 
 use super::covariance::{Selection, covariance};
 use super::frame::StrainFrame;
@@ -16,20 +16,20 @@ pub struct Adequacy {
     pub fit: f64,
     /// Readings less parameters.
     pub n_fit: f64,
-    /// Reduced chi-square of the held-out runs given the fit runs; that of the fit runs where none is held out.
+    /// Reduced chi-square of the held-out runs given the fit runs; if no run is held out, of the fit runs.
     pub held_out: f64,
-    /// Readings of held-out runs; zero where none is held out.
+    /// Number of readings in held-out runs; zero if no run is held out.
     pub n_held_out: f64,
-    /// By gauge over the fit runs.
+    /// Misfit by gauge over the fit runs.
     pub gauges: Vec<Misfit>,
-    /// By run over the fit runs.
+    /// Misfit by run over the fit runs.
     pub runs: Vec<Misfit>,
-    /// Degrees of freedom with which the covariance was estimated; infinite where it is stated. A gauge's own misfit is judged by those of a
-    /// pattern that no loads make.
+    /// Degrees of freedom with which the covariance was estimated; infinite if it is stated. The misfit of a single gauge uses the degrees of freedom
+    /// for patterns that no loads make.
     pub from: f64,
 }
 
-/// Standard normal deviate of a chi-square of `n` degrees of freedom (Wilson and Hilferty 1931).
+/// Returns the standard normal deviate of a chi-square of `n` degrees of freedom (Wilson and Hilferty 1931).
 pub fn deviate(chi2: f64, n: f64) -> f64 {
     if n <= 0.0 {
         return 0.0;
@@ -38,7 +38,7 @@ pub fn deviate(chi2: f64, n: f64) -> f64 {
     ((chi2.max(0.0) / n).cbrt() - (1.0 - spread)) / spread.sqrt()
 }
 
-/// The same where the covariance was itself estimated with `from` degrees of freedom: chi-square over `n` follows an F distribution.
+/// Returns the deviate under a covariance estimated with `from` degrees of freedom: chi-square over `n` then follows an F distribution.
 pub fn deviate_estimated(chi2: f64, n: f64, from: f64) -> f64 {
     /// Chances below this are beyond what a distribution function resolves.
     const LEAST: f64 = 1e-300;
@@ -69,7 +69,7 @@ fn chi2(cov: &[f64], r: &[f64]) -> f64 {
     Cholesky::of(cov, r.len()).map_or(f64::NAN, |c| c.chi2(r))
 }
 
-/// Judges `members` with amplitudes of the sizes of `unknown`; `n_parameters` were fitted.
+/// Computes the chi-squares of `members` with amplitudes of the sizes in `unknown`, after `n_parameters` were fitted.
 pub fn adequacy(
     frame: &StrainFrame,
     members: &[Member<'_>],

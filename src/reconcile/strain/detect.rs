@@ -7,8 +7,8 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::{Candidate, Member, full_id};
 use crate::reconcile::outcome::Detectable;
 
-/// Sizes at which the expected gain of evidence pays for the effect's prior weight, its width and what names it.
-/// Of effects that may sit at many places which overlap (stretches of a card, notes of a run), those of `also` alone are listed.
+/// Returns the sizes at which the expected gain of evidence covers the effect's prior weight, its width and the evidence for a name. Of effects at
+/// many overlapping places (stretches of a card, records of a run), only the effects of `also` are listed.
 pub fn detectable(
     frame: &StrainFrame,
     candidates: &[Candidate],

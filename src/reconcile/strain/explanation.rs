@@ -14,7 +14,7 @@ pub struct Explanation<'a> {
 }
 
 impl<'a> Explanation<'a> {
-    /// The explanation that a fit is.
+    /// Returns the explanation of a fit.
     pub fn of(frame: &StrainFrame, candidates: &'a [Candidate], scored: &'a Scored<Fit>) -> Self {
         let member = |(&c, p): (&usize, &'a Vec<f64>)| {
             candidates.get(c).map(|c| Member {
@@ -41,18 +41,18 @@ impl<'a> Explanation<'a> {
     }
 }
 
-/// What the general form of candidate `c` says, where it is one.
+/// Returns the general form of discrepancy of candidate `c`; `None` for an effect of the library.
 pub fn discrepancy(candidates: &[Candidate], c: usize) -> Option<Discrepancy> {
     candidates.get(c).and_then(|c| c.effect.discrepancy())
 }
 
-/// The effects of a set that could be named: all but noise.
+/// Returns the effects of a set that can be named: all except noise.
 pub fn named_part(candidates: &[Candidate], set: &[usize]) -> Vec<usize> {
     let noise = |c: &usize| matches!(discrepancy(candidates, *c), Some(Discrepancy::Noise(_)));
     set.iter().copied().filter(|c| !noise(c)).collect()
 }
 
-/// Does a set hold a general form that no name stands for?
+/// Returns the text of the general form in a set that no named effect describes; `None` if the set has no such form.
 pub fn is_unmodelled(candidates: &[Candidate], set: &[usize]) -> Option<&'static str> {
     set.iter().find_map(|&c| match discrepancy(candidates, c) {
         Some(Discrepancy::Form(words) | Discrepancy::Smooth(words)) => Some(words),
@@ -60,7 +60,7 @@ pub fn is_unmodelled(candidates: &[Candidate], set: &[usize]) -> Option<&'static
     })
 }
 
-/// Ids with places of the effects of a set, noise left out.
+/// Returns the ids with places of the effects of a set, without noise.
 pub fn ids(candidates: &[Candidate], set: &[usize]) -> Vec<String> {
     let named = named_part(candidates, set);
     named

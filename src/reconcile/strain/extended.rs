@@ -1,11 +1,11 @@
-//! What a model and readings are with named effects in them: what the extended model holds.
+//! Influence, loads and corrected readings of the model extended by identified effects.
 
 use super::frame::StrainFrame;
 use super::state::StrainState;
 use crate::reconcile::effect::{Candidate, Correction, Extension, Member, full_id, library};
 use crate::reconcile::outcome::NamedEffect;
 
-/// The model with the effects of structure and loads in it: influence, and what acts in every run.
+/// Returns the model with the effects of structure and loads included: influence, and the loads of every run.
 pub fn extended_state(frame: &StrainFrame, effects: &[NamedEffect]) -> StrainState {
     let candidates = candidates(frame, effects);
     StrainState::with(frame, &members(frame, effects, &candidates))
@@ -19,7 +19,7 @@ fn candidates(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<Candidate> {
     library(frame, &ids)
 }
 
-/// The effects as members. An effect may have several forms: the one with as many parameters, that makes the same of them.
+/// Returns the effects as members. Of several forms of an effect, selects the form with as many parameters and the same extension.
 fn members<'a>(
     frame: &StrainFrame,
     effects: &'a [NamedEffect],
@@ -40,8 +40,8 @@ fn members<'a>(
     effects.iter().filter_map(member).collect()
 }
 
-/// Readings with faults of channels undone, `n_runs x n_gauges`, and the strain of masses that came aboard after the zero was taken off
-/// them; `None` where no effect asks for it. Faults are undone in the reverse of the order in which they act.
+/// Returns the readings with channel faults corrected, `n_runs x n_gauges`, and without the strain of masses that came aboard after the zero; `None`
+/// if no effect requires a correction. Faults are corrected in the reverse of the order in which they act.
 pub fn corrected_readings(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<Vec<f64>> {
     let at = |name: &str| frame.gauges.iter().position(|g| g.name == name);
     let n_g = frame.n_gauges();
@@ -74,7 +74,7 @@ pub fn corrected_readings(frame: &StrainFrame, effects: &[NamedEffect]) -> Optio
     changed.then_some(out)
 }
 
-/// Undoes a fault in one row of readings; false where it is one of the gauge, not of its reading.
+/// Corrects a fault in one row of readings; returns false for a fault of the gauge and not of its reading.
 fn undo(
     row: &mut [f64],
     gauge: usize,

@@ -1,5 +1,5 @@
-//! Readings with their covariance, and what a set of effects predicts of them: parameters are optimised in `optimum`,
-//! amplitudes integrated out; what is gained stands in `evidence`, candidates are tried in `screen`.
+//! Readings with their covariance, and their prediction by a set of effects. `optimum` optimises the parameters, with amplitudes integrated out;
+//! `evidence` contains the gain, and `screen` tries candidates.
 
 use super::covariance::{Selection, covariance, patterns_read};
 use super::frame::StrainFrame;
@@ -10,18 +10,18 @@ use crate::reconcile::effect::{Candidate, Member, Parameter, SizedAmplitudes};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// What fitting a set leaves behind.
+/// Result of fitting a set.
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
-    /// By member of the set: its parameters.
+    /// Parameters by member of the set.
     pub parameters: Vec<Vec<f64>>,
-    /// By member: standard deviations of its parameters.
+    /// Standard deviations of the parameters by member.
     pub sigma: Vec<Vec<f64>>,
     /// Covariance of all parameters, members in order, by rows.
     pub covariance: Vec<f64>,
     /// Members with amplitudes: candidate number and sizes (see [`SizedAmplitudes::sizes`]).
     pub sizes: Vec<(usize, Vec<f64>)>,
-    /// Residual of the selection, parameters in.
+    /// Residual of the selection with the fitted parameters.
     pub residual: Vec<f64>,
     /// r' C^-1 r.
     pub chi2: f64,
@@ -89,7 +89,7 @@ impl<'a> Likelihood<'a> {
         }
     }
 
-    /// The same with the general forms of discrepancy left out of the search.
+    /// Returns the likelihood without the general forms of discrepancy in its search.
     pub fn names_only(self) -> Self {
         Self {
             names_only: true,
@@ -113,7 +113,7 @@ impl<'a> Likelihood<'a> {
         set.iter().zip(parameters).filter_map(member).collect()
     }
 
-    /// Residual of the selection with `set` on.
+    /// Returns the residual of the selection with the effects of `set` included.
     pub fn residual(&self, set: &[usize], parameters: &[Vec<f64>]) -> Vec<f64> {
         let predicted = predict(self.frame, &self.members(set, parameters));
         let picked = self.selection.pick(&predicted, self.frame.n_gauges());

@@ -4,14 +4,14 @@ use super::frame::StrainFrame;
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::outcome::NamedEffect;
 
-/// From as many faults of gauges and cards on, cards count as well: one card beside one gauge is an amplifier and a gauge.
+/// Number of gauge and card faults from which card faults count too: one card next to one gauge is an amplifier fault and a gauge fault.
 const WITH_CARDS: usize = 3;
-/// Gains that bridges and amplifiers are wired wrong by lie outside of this; within, strain that goes another way looks the same.
+/// Range of gains that a changed path of the strain can cause too. Gains of wrongly wired bridges and amplifiers are outside this range.
 const GAIN: [f64; 2] = [0.5, 1.5];
 
-/// Names of gauges that read more or less than modelled and are neighbours of each other, in words; `None` where there are not two.
+/// Returns the names of neighbouring gauges that read more or less than modelled, in words; `None` if there are fewer than two.
 ///
-/// Beside a small region whose stiffness changed, what its unknown shape leaves looks like such gauges, too: then none of them is named.
+/// If the stiffness of a small region changed, the residual from its unknown shape looks like such gauges too: then no gauge is named.
 pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Option<String> {
     let region = (effects.iter()).find_map(|e| match &e.extension {
         Extension::LocalStiffness { place, .. } => Some(place),
@@ -58,7 +58,7 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
     })
 }
 
-/// The gauges of an effect that says they read another strain: by some gain, at another angle or place.
+/// Returns the gauges that read another strain in an effect: with a gain within `GAIN`, or at another angle or place.
 fn reads_otherwise(frame: &StrainFrame, e: &NamedEffect) -> Vec<usize> {
     let Extension::Channels(list) = &e.extension else {
         return Vec::new();
@@ -74,7 +74,7 @@ fn reads_otherwise(frame: &StrainFrame, e: &NamedEffect) -> Vec<usize> {
         .collect()
 }
 
-/// Whether an effect is one of channels that read a share more or less, or of another direction, place or neighbour.
+/// Returns whether an effect changes the gain, the direction or the place of channels, or adds a share of a neighbour.
 fn scales_or_turns(e: &NamedEffect) -> bool {
     let of_strain = |c: &Correction| {
         matches!(
@@ -101,7 +101,7 @@ fn distance(frame: &StrainFrame, a: usize, b: usize) -> Option<f64> {
     )
 }
 
-/// Median over gauges of the distance to the nearest other one that is not a leg of the same rosette; `None` where places are not known.
+/// Returns the median over gauges of the distance to the nearest gauge outside the same rosette; `None` if the places are not known.
 fn usual_distance(frame: &StrainFrame) -> Option<f64> {
     let n = frame.n_gauges();
     let nearest = |g: usize| {

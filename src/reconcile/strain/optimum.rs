@@ -7,13 +7,13 @@ use crate::reconcile::search::{Addition, Scored};
 
 /// Parameters that maximise the posterior of a set.
 pub(super) struct Optimum {
-    /// By member.
+    /// Parameters by member.
     pub(super) theta: Vec<Vec<f64>>,
-    /// Half of chi-square and of the squares by which parameters leave their neutral values.
+    /// Half the sum of chi-square and the squared deviations of the parameters from neutral over their prior standard deviations.
     pub(super) value: f64,
     pub(super) chi2: f64,
     pub(super) residual: Vec<f64>,
-    /// Of `value` in all parameters, by rows.
+    /// Hessian of `value` in all parameters, by rows.
     pub(super) hessian: Vec<f64>,
 }
 

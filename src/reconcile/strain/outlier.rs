@@ -1,4 +1,4 @@
-//! A reading that stands alone: far off, where everything else is at the floor.
+//! Single reading far off, with all other readings at the noise floor.
 
 use super::covariance::{Selection, covariance};
 use super::explanation::Explanation;
@@ -9,10 +9,10 @@ use crate::linalg::precision::Precision;
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
-/// The reading of the fit runs without which `scored` reaches the floor, as `at_floor` judges, in words; `None` where there is no such reading.
+/// Returns a text on the fit-run reading without which `scored` reaches the noise floor, as `at_floor` tests it; `None` without such a reading.
 ///
-/// One spike in a few hundred readings is no effect, nor does it speak against one. It is the reading furthest off given all others, by
-/// `(P r)_i / sqrt(P_ii)` standard deviations, P the precision of the residual r, and further than a healthy gauge is.
+/// One spike in a few hundred readings is not an effect, nor evidence against one. The reading is `(P r)_i / sqrt(P_ii)` standard deviations off
+/// given all others, P the precision of the residual r. It is the one furthest off, and further off than a healthy gauge.
 pub(super) fn but_for_one(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -1,8 +1,8 @@
-//! Evidence of a set under the covariance of its own prediction.
+//! Evidence of a set under the covariance of the set's prediction.
 //!
-//! The error of the model and of the loads is read by the gauges as they are: a channel with a turned sign turns its share of the covariance
-//! with it. Under the covariance of the model without effects a fault of the channel itself therefore looks worse than a form that leaves
-//! the covariance alone, and amplitudes of the form win. Contenders are compared each under its own covariance.
+//! The gauges read the error of the model and of the loads with their faults: a channel with reversed sign also reverses its share of the covariance.
+//! Under the covariance of the model without effects, a channel fault therefore looks worse than a form that leaves the covariance alone, and
+//! amplitudes of the form win. Contenders are therefore compared each under its own covariance.
 
 use super::frame::StrainFrame;
 use super::likelihood::{Fit, Likelihood};
@@ -10,7 +10,7 @@ use crate::reconcile::effect::{Candidate, Stage};
 use crate::reconcile::search::{Scored, Scorer, settle};
 use rayon::prelude::*;
 
-/// The best of `contenders`, and of what may stand for members of `found` at the same gauges, each under its own covariance.
+/// Returns the best of `contenders`, and of alternatives to members of `found` at the same gauges, each under its own covariance.
 pub(super) fn best_by_own_covariance(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -36,7 +36,7 @@ pub(super) fn best_by_own_covariance(
     settle(&all, frame.rules.decisive)
 }
 
-/// A set under the covariance of the prediction that its members make with the parameters that they have in `near`.
+/// Scores a set under the covariance of its prediction, with the parameters that its members have in `near`.
 pub(super) fn under_own_covariance(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -51,13 +51,13 @@ pub(super) fn under_own_covariance(
     Likelihood::new(frame, candidates, &runs, &reference).score(set, Some((near, None)))
 }
 
-/// Log evidence of a set under its own covariance.
+/// Returns the log evidence of a set under its own covariance.
 pub(super) fn own_evidence(frame: &StrainFrame, candidates: &[Candidate], s: &Scored<Fit>) -> f64 {
     let own = under_own_covariance(frame, candidates, &s.set, s);
     own.map_or(s.log_evidence, |own| own.log_evidence)
 }
 
-/// A set that holds more than `near`, fitted from the start, under the covariance of what `near` has of it.
+/// Scores a set with more members than `near`, fitted from the start, under the covariance of the members that `near` contains.
 pub(super) fn with_members(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -70,13 +70,13 @@ pub(super) fn with_members(
     Likelihood::new(frame, candidates, &runs, &reference).score(set, None)
 }
 
-/// Members with their parameters.
+/// Returns the members with their parameters.
 pub(super) fn reference_of(s: &Scored<Fit>) -> Vec<(usize, Vec<f64>)> {
     let parameters = s.fit.parameters.iter().cloned();
     s.set.iter().copied().zip(parameters).collect()
 }
 
-/// Sets in which a fault of one or two channels takes the place of all that `set` says of those channels alone.
+/// Returns the sets in which a fault of one or two channels replaces all members of `set` that act on those channels only.
 fn at_same_gauges(
     candidates: &[Candidate],
     likelihood: &Likelihood<'_>,

@@ -5,7 +5,7 @@ use super::state::{Part, StrainState};
 use crate::reconcile::effect::{Member, Stage};
 
 impl StrainState {
-    /// The model with `members` on, each with its parameters: structure first, then loads; readings are left to [`read_all`].
+    /// Returns the model with `members` included, each with its parameters: structure first, then loads. [`read_all`] applies reading effects.
     pub fn with(frame: &StrainFrame, members: &[Member<'_>]) -> Self {
         let mut state = Self::nominal(frame);
         for stage in [Stage::Structure, Stage::Loads] {
@@ -17,7 +17,7 @@ impl StrainState {
     }
 }
 
-/// What the gauges read of `strain` (one row of gauges in `run`) with the reading effects of `members`.
+/// Applies the reading effects of `members` to `strain` (one row of gauges in `run`).
 pub fn read_all(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -33,7 +33,7 @@ pub fn read_all(
     }
 }
 
-/// Predicted readings of every run, `n_runs x n_gauges`, with `members` on.
+/// Returns the predicted readings of every run, `n_runs x n_gauges`, with `members` included.
 pub fn predict(frame: &StrainFrame, members: &[Member<'_>]) -> Vec<f64> {
     let state = StrainState::with(frame, members);
     let mut out = Vec::with_capacity(frame.n_runs() * frame.n_gauges());

@@ -74,8 +74,8 @@ pub(super) fn wrong_records(frame: &StrainFrame) -> Vec<Finding> {
 /// structure leave less.
 const FAR_OFF: f64 = 0.25;
 
-/// Returns the finding on gauges that are all on the other surface, or all have angles in radians. `alternatives` is asked only where the recorded
-/// loads leave most of the readings; its rows are those of [`StrainFrame::influence`].
+/// Returns the finding on gauges that are all on the other surface, or all have angles in radians. `alternatives` is only called if the recorded
+/// loads leave a share of at least `FAR_OFF` unexplained; its rows are rows of [`StrainFrame::influence`].
 pub fn gauges_installed_otherwise(
     frame: &StrainFrame,
     alternatives: &mut dyn FnMut() -> Vec<AlternativeRows>,

@@ -1,7 +1,7 @@
 //! Wheel loads recovered from the strain of runs that were not fitted, without and with the effects.
 //!
-//! Solved as `recover` solves readings whose errors go together. The covariance is not that of `recover`: it holds what the effects leave,
-//! their amplitudes in this run and gauges as read with faults in, and follows the noted loads, which `recover` does not have.
+//! The solution is as in `recover` for readings with dependent errors. The covariance differs: it contains the errors that remain with the effects,
+//! their amplitudes in this run and gauges as read with faults. It follows the recorded loads, which `recover` does not have.
 
 use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;

@@ -1,4 +1,4 @@
-//! The likelihood as the search asks it: sets scored, additions screened, which candidates go together.
+//! Scorer of the search by likelihood: scores sets, screens additions, and determines which candidates are compatible.
 
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::{Candidate, full_id};
@@ -70,8 +70,8 @@ impl Scorer for Likelihood<'_> {
     }
 }
 
-/// Whether a fault at the gauge of `one` is told from one of `many` in file order, of `n` in all, by the others of `many`: all gauges there
-/// are, or one of a stretch that is not at its end, where the stretch might as well be shorter.
+/// Returns whether other gauges distinguish a fault at the gauge of `one` from a fault at `many`, in file order, of `n` gauges in all. They do if
+/// `many` is all gauges, or a stretch that contains the gauge away from its ends. At an end, a shorter stretch explains as much.
 fn inside(one: &[usize], many: &[usize], n: usize) -> bool {
     let &[gauge] = one else {
         return false;

@@ -8,7 +8,7 @@ use crate::reconcile::effect::{Candidate, Discrepancy, Extension};
 use crate::reconcile::outcome::SmoothAt;
 use crate::reconcile::search::{Addition, Scored, Scorer, settle};
 
-/// Lengths and amplitudes that are tried with every part of the names, of those that did best.
+/// Number of best lengths and amplitudes that are tried with every part of the names.
 const KEPT: usize = 2;
 
 /// Whether a candidate is a smooth error of the model.
@@ -16,12 +16,11 @@ pub(super) fn is_smooth(candidates: &[Candidate], c: usize) -> bool {
     matches!(discrepancy(candidates, c), Some(Discrepancy::Smooth(_)))
 }
 
-/// The smooth error, with as few of the names of `best` as it needs, where it leads what is left without it and explains these runs as well as
-/// all of them do: its log evidence
-/// can't be told from theirs, or is behind by less than the names that it saves must each raise.
+/// Returns the smooth error with as few of the names of `best` as it needs; `None` unless it leads the set without it and explains these runs as well
+/// as all the names. Its log evidence is then indistinguishable from theirs, or behind by less than the names that it saves must each raise.
 ///
-/// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, H the Hessian at the best theta: what a
-/// curve that can take many shapes explains costs as many data as shapes.
+/// `ln p(y | lengths, a) = -(r' C^-1 r + theta' theta / a^2) / 2 - ln det(C) / 2 - ln det(a^2 H) / 2`, H the Hessian at the best theta. A curve that
+/// can take many shapes costs as many data as it has shapes.
 pub(super) fn smooth_instead(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -90,7 +89,7 @@ pub(super) fn smooth_instead(
     (best.log_evidence - found.log_evidence < saved.max(margin)).then_some(found)
 }
 
-/// All parts of `names` but the empty one: the whole first, then single ones, then the rest.
+/// Returns all parts of `names` except the empty one: the whole first, then single names, then all other parts.
 fn parts(names: &[usize]) -> Vec<Vec<usize>> {
     let of = |bits: usize| -> Vec<usize> {
         let set = names.iter().enumerate();
@@ -106,7 +105,7 @@ fn parts(names: &[usize]) -> Vec<Vec<usize>> {
     out
 }
 
-/// The curve of the smooth error in a set: at every gauge, for all loads or for each.
+/// Returns the curve of the smooth error in a set by gauge, for all loads or for each load.
 pub(super) fn curve(
     frame: &StrainFrame,
     candidates: &[Candidate],

@@ -1,22 +1,22 @@
-//! What strains the structure: influence, and what acts in each run.
+//! State of the model that determines the strain: influence, and the loads of each run.
 
 use crate::reconcile::strain::frame::{PayloadWeight, StrainFrame};
 
-/// The model with effects on: influence, what acts, and strain that no load explains.
+/// Model with effects included: influence, loads, and strain that no load explains.
 #[derive(Clone, Debug)]
 pub struct StrainState {
     /// `n_gauges x n_columns`.
     pub influence: Vec<f64>,
     /// `n_runs x n_columns`: wheel loads, then payload mass times 1, dx, dy, dx dy.
     pub columns: Vec<f64>,
-    /// Strain besides, `n_runs x n_gauges`: a mass left out.
+    /// Additional strain, `n_runs x n_gauges`: a mass that the model lacks.
     pub extra: Vec<f64>,
     /// Number of gauges, runs, columns.
     pub shape: [usize; 3],
 }
 
 impl StrainState {
-    /// The analyst's own model.
+    /// Returns the analyst's own model.
     pub fn nominal(frame: &StrainFrame) -> Self {
         let (n_g, n_r, n_c, n_l) = (
             frame.n_gauges(),
@@ -41,7 +41,7 @@ impl StrainState {
         state
     }
 
-    /// Lets the payload act, moved by `dx`, `dy` metres from where the analyst believes it.
+    /// Applies the payload, moved by `dx`, `dy` metres from its place in the job.
     pub fn set_payload(&mut self, frame: &StrainFrame, dx: f64, dy: f64) {
         let [_, n_r, n_c] = self.shape;
         for run in 0..n_r {
@@ -58,7 +58,7 @@ impl StrainState {
         }
     }
 
-    /// Strain of every gauge in `run`, before any reading effect.
+    /// Returns the strain of every gauge in `run`, before any reading effect.
     pub fn strain(&self, run: usize) -> Vec<f64> {
         let [n_g, _, n_c] = self.shape;
         let acts = &self.columns[run * n_c..(run + 1) * n_c];
@@ -70,7 +70,7 @@ impl StrainState {
     }
 }
 
-/// Which part of a reading effect applies.
+/// Part of a reading effect that applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// All of it, offsets and limits included: for predictions.

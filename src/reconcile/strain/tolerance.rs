@@ -1,10 +1,10 @@
-//! Gluing tolerances as errors of the influence.
+//! Installation tolerances of gauges as errors of the influence.
 
 use super::frame::{Scatter, StrainFrame, Wiring};
 
-/// What an angle error of `degrees` (one standard deviation, every gauge by itself) makes of the influence: to first order, with t the
-/// drawn angle, d(reading)/dt = gxy (cos^2 t - sin^2 t) - 2 (exx - eyy) sin t cos t for a quarter bridge, without the shear for a bending
-/// bridge. Gauges whose in-plane strain is unknown, and shear bridges (whose reading is largest at their angle), stay as they are.
+/// Returns the change of the influence for an angle error of `degrees` (one standard deviation, each gauge separately), to first order. With t the
+/// nominal angle, d(reading)/dt = gxy (cos^2 t - sin^2 t) - 2 (exx - eyy) sin t cos t for a quarter bridge, without the shear for a bending bridge.
+/// Gauges with unknown in-plane strain, and shear bridges (their reading is largest at their angle), have no change.
 pub fn angle_scatter(frame: &StrainFrame, degrees: f64) -> Scatter {
     let n_c = frame.n_columns();
     let mut out = vec![0.0; frame.n_gauges() * n_c];

@@ -1,4 +1,4 @@
-//! A damper with two rates, rebound and compression: ca |v| beside c v.
+//! A damper with two rates, rebound and compression: ca |v| in addition to c v.
 
 use super::places::links;
 use crate::reconcile::motion::candidate::Candidate;

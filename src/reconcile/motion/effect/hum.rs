@@ -8,9 +8,9 @@ use crate::vehicle::motion::Motion;
 
 /// Mains, Hz.
 const MAINS_HZ: [f64; 3] = [50.0 / 3.0, 50.0, 60.0];
-/// Multiples of them.
+/// Highest multiple of a mains frequency.
 const MULTIPLES: usize = 6;
-/// What mains wander by, a share.
+/// Largest deviation of a mains frequency from its nominal value, a share.
 const WANDER: f64 = 0.005;
 /// Power of a line over the mean of its neighbourhood: noise of a dozen bins exceeds this in one job of a million.
 const STANDS_OUT: f64 = 16.0;
@@ -38,7 +38,7 @@ pub(super) fn candidates(frame: &MotionFrame, motion: &Motion) -> Vec<Candidate>
     out
 }
 
-/// Frequencies at which a signal stands out where mains may be.
+/// Returns the frequencies at which a signal exceeds its neighbourhood where mains may be.
 fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
     let window = Windowed::of(motion.n_samples(), motion.rate_hz, frame.band);
     let step = window.step_hz();
@@ -62,9 +62,9 @@ fn lines(frame: &MotionFrame, motion: &Motion, x: &[f64]) -> Vec<f64> {
     out
 }
 
-/// The frequency of a line within `reach` of `about`, where one stands out of its neighbourhood.
+/// Returns the frequency of a line within `reach` of `about`, if the line exceeds its neighbourhood.
 fn line(window: &Windowed, motion: &Motion, x: &[f64], about: f64, reach: f64) -> Option<f64> {
-    /// Bins between which a line of its own and its neighbourhood are told apart, either side.
+    /// Number of bins from a line to the first bin of its neighbourhood, either side.
     const NEAR: f64 = 3.0;
     /// Bins of the neighbourhood, either side.
     const FAR: usize = 16;

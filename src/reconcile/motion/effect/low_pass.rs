@@ -4,7 +4,7 @@ use crate::reconcile::motion::candidate::Candidate;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::frame::MotionFrame;
 
-/// Log odds against it beside a plain delay, which it resembles: loggers are late far more often than one of their filters is slow.
+/// Log odds against it relative to a plain delay, which it resembles: loggers are late far more often than one of their filters is slow.
 const HANDICAP: f64 = 3.0;
 
 pub(super) fn candidates(frame: &MotionFrame) -> Vec<Candidate> {

@@ -1,4 +1,4 @@
-//! What is measured at rest: the gains of accelerometers, and their timing.
+//! Measurements at rest: gains and timing of accelerometers.
 
 use super::known::Rows;
 use crate::reconcile::motion::change::Change;
@@ -9,12 +9,12 @@ use crate::reconcile::motion::part::ColumnOf;
 use crate::vehicle::adjustment::{Adjustment, Lag};
 use crate::vehicle::layout::Measures;
 
-/// What a gain is known to from plus and minus 1 g, one sd: a sensor that leans by 4 degrees reads this much less.
+/// Uncertainty of a gain from plus and minus 1 g, one sd: a sensor that leans by 4 degrees reads this much less.
 const TURNED: f64 = 0.0025;
-/// What a moment is known to from a stroke, samples, one sd: between two samples a peak is found to a fifth of their distance.
+/// Uncertainty of a time from a stroke, samples, one sd: a peak between two samples is found to a fifth of their distance.
 const STRUCK: f64 = 0.2;
 
-/// The accelerometers of the compared bodies, as numbers in the design.
+/// Returns the accelerometers of the compared bodies, as numbers in the design.
 fn accelerometers(frame: &MotionFrame, fit: &MotionFit) -> Vec<usize> {
     let v = &fit.assembled.vehicle;
     let own = |name: &str| {
@@ -30,14 +30,14 @@ fn accelerometers(frame: &MotionFrame, fit: &MotionFit) -> Vec<usize> {
         .collect()
 }
 
-/// The estimate of a channel's tolerance; 0 where the fit has none.
+/// Returns the estimate of a channel's tolerance; 0 if the fit has none.
 fn estimate(fit: &MotionFit, of: ColumnOf) -> f64 {
     let at = fit.column_of.iter().position(|c| *c == of);
     at.and_then(|at| fit.estimates.get(at).copied())
         .unwrap_or(0.0)
 }
 
-/// Columns of every fault and tolerance for rows of channels: `entry(row, column)` over the row's standard deviation.
+/// Returns the columns of every fault and tolerance for rows of channels: `entry(row, column)` over the row's standard deviation.
 fn columns(
     fit: &MotionFit,
     n_rows: usize,
@@ -47,7 +47,7 @@ fn columns(
     fit.column_of.iter().map(one).collect()
 }
 
-/// The natural log of what each accelerometer's reading is multiplied by to be the truth; a turned sign counts as a factor of e.
+/// Returns the natural log of the factor from each accelerometer's reading to the truth; a reversed sign counts as a factor of e.
 pub(super) fn turned_over(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     let own = accelerometers(frame, fit);
     let adjust = adjustments(frame, &fit.parts);
@@ -77,8 +77,8 @@ pub(super) fn turned_over(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     }
 }
 
-/// How late each accelerometer reads a stroke at the beginning and one at the end of a record as long as the present; when the strokes
-/// came nobody knows.
+/// Returns how late each accelerometer reads a stroke at the beginning and one at the end of a record as long as the present one. The times of the
+/// strokes are unknown.
 pub(super) fn struck(frame: &MotionFrame, fit: &MotionFit) -> Rows {
     let own = accelerometers(frame, fit);
     let adjust = Adjustment::elsewhere(&adjustments(frame, &fit.parts));

@@ -1,4 +1,4 @@
-//! What the record at hand says of an explanation's parameters, and rows of a further measurement beside it.
+//! Information of the present record about an explanation's parameters, and rows of a further measurement.
 
 use crate::linalg::tall::{Triangle, triangle};
 use crate::reconcile::motion::columns::parameter_column;
@@ -9,23 +9,23 @@ use crate::reconcile::motion::frame::MotionFrame;
 /// Rows of a measurement over their standard deviation.
 #[derive(Clone)]
 pub(super) struct Rows {
-    /// What is read there under the explanation, or its residual.
+    /// Reading under the explanation, or its residual.
     pub(super) reading: Vec<f64>,
     /// Columns of the fit, in its order.
     pub(super) own: Vec<Vec<f64>>,
     /// Columns that the measurement brings, with one sd where they are known beforehand.
     pub(super) fresh: Vec<(Vec<f64>, Option<f64>)>,
-    /// The scale of masses and springs, where the measurement sets it.
+    /// Scale of masses and springs, if the measurement sets it.
     pub(super) scale: Vec<(usize, Vec<f64>)>,
 }
 
-/// An explanation with what the record at hand says of its parameters.
+/// Explanation with the information of the present record about its parameters.
 pub(super) struct Known<'a> {
-    /// Its fit.
+    /// Fit of the explanation.
     pub(super) fit: &'a MotionFit,
     /// Parameters that are held because nothing sets the scale.
     pub(super) held: Vec<usize>,
-    /// The present rows: columns of the fit, then the held parameters.
+    /// Rows of the present record: columns of the fit, then the held parameters.
     pub(super) now: Triangle,
 }
 

@@ -1,4 +1,4 @@
-//! What could be measured next.
+//! Possible further measurements.
 
 use crate::reconcile::motion::design::Design;
 use crate::reconcile::motion::fitted::MotionFit;
@@ -6,34 +6,34 @@ use crate::reconcile::motion::frame::MotionFrame;
 use crate::series::spectrum::Band;
 use crate::vehicle::layout::{Measures, Point};
 
-/// Roads, as multiples of the present one's roughness: what a rougher track and a walking pace bring.
+/// Roughness of other roads, as multiples of the present one: a rougher track and a walking pace.
 const ROADS: [f64; 2] = [2.0, 0.5];
-/// How much longer a record one drives on the same road.
+/// Length of a longer record on the same road, as a multiple of the present one.
 const LONGER: f64 = 4.0;
 /// Parts of the band, even in its logarithm, that a shaker or a row of sleepers can put its power into.
 const PARTS: usize = 3;
 /// A known mass as a share of the body's own: sacks on a truck, a block on a rig.
 const MASS_SHARE: f64 = 0.2;
 
-/// A measurement.
+/// Further measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Measurement {
-    /// The same drive with every motion times a factor.
+    /// Present drive with every motion times a factor.
     Road(f64),
-    /// The same power within a part of the band; `level` is what every motion there is multiplied by.
+    /// Present power within a part of the band; `level` multiplies every motion there.
     Part {
         /// The part.
         part: Band,
         /// The factor.
         level: f64,
     },
-    /// The same drive, so many times as long.
+    /// Present drive, this many times as long.
     Longer(f64),
-    /// The same drive with these outside forces measured besides.
+    /// Present drive with these outside forces measured too.
     Forces(Vec<String>),
-    /// The same drive with one more accelerometer.
+    /// Present drive with one more accelerometer.
     Beside(Point),
-    /// The same drive with a known mass on a body.
+    /// Present drive with a known mass on a body.
     KnownMass {
         /// The body.
         body: usize,
@@ -47,7 +47,7 @@ pub(super) enum Measurement {
 }
 
 impl Measurement {
-    /// As an instruction.
+    /// Returns the measurement as an instruction.
     pub(super) fn words(&self, frame: &MotionFrame) -> String {
         let body = |b: usize| frame.vehicle.bodies.get(b).map_or("", |b| b.name.as_str());
         match self {
@@ -84,7 +84,7 @@ impl Measurement {
         }
     }
 
-    /// What every motion of the record is multiplied by at a frequency, Hz.
+    /// Returns the factor on every motion of the record at a frequency, Hz.
     pub(super) fn gain(&self, f_hz: f64) -> f64 {
         match self {
             Self::Road(times) => *times,
@@ -98,7 +98,7 @@ impl Measurement {
         }
     }
 
-    /// How many records of the present length it is.
+    /// Returns the number of records of the present length in the measurement.
     pub(super) fn repeats(&self) -> f64 {
         match self {
             Self::Longer(times) => *times,
@@ -107,7 +107,7 @@ impl Measurement {
     }
 }
 
-/// What this frame could be measured with besides, what takes least trouble first.
+/// Returns the further measurements that are possible with this frame, least effort first.
 pub(super) fn measurements(frame: &MotionFrame, best: &MotionFit) -> Vec<Measurement> {
     let sensors = || {
         let own = frame.vehicle.sensors.iter();

@@ -1,8 +1,8 @@
-//! The measurement that would separate what a record can't, by what each of several is expected to say.
+//! Measurement that separates explanations which a record can't separate, selected by the predictions of each.
 //!
-//! Every explanation is taken for true in turn; the others predict the same measurement, their parameters free as far as the record at hand
-//! leaves them, and what they miss, over noise, is the expected difference of log evidence ([`worth`]). What could be measured is in
-//! [`measurement`], what an explanation predicts of it in [`view`] and, at rest, in [`bench`].
+//! Each explanation in turn is taken as true. The others predict the same measurement, with parameters as free as in the present record. Their misfit
+//! over noise is the expected difference of log evidence ([`worth`]). [`measurement`] lists the possible measurements. [`view`] and, at rest,
+//! [`bench`] give the predictions of an explanation.
 
 mod bench;
 mod known;
@@ -21,39 +21,39 @@ use super::scorer::MotionScorer;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::search::{Scored, Scorer};
 
-/// Expected difference of log evidence that is worth a measurement: as much as names an effect over another, and half of it again lost to
-/// what no model foresees.
+/// Expected difference of log evidence that justifies a measurement: as much as names one effect over another, and half of it again for losses that
+/// no model predicts.
 const WORTH: f64 = 5.0;
-/// Difference of log evidence at which one is sure: odds of 10^10.
+/// Difference of log evidence that counts as certain: odds of 10^10.
 const SURE: f64 = 25.0;
-/// Rivals that a measurement is held against.
+/// Largest number of alternative explanations for a measurement to separate.
 const MOST: usize = 3;
-/// What an explanation is called that holds no effect.
+/// Name of an explanation without effects.
 const AS_IT_IS: &str = "the model as it is";
-/// Where nothing that comes near could be separated.
+/// Instruction if no measurement separates the nearest explanations.
 const LEFT_OUT: &str = "measure what the model leaves out: the other side and axle, spring travel, a second accelerometer on each body";
 
-/// A measurement with the least log evidence that it is expected to bring between the first explanation and each of the others.
+/// Measurement with the smallest log evidence that it is expected to bring between the first explanation and each other one.
 struct Weighed {
     measurement: Measurement,
     worth: Vec<f64>,
 }
 
 impl Weighed {
-    /// Pairs that it separates, then all that it brings. No pair counts for more than it takes to be sure: of several that are as sure the
-    /// first one is the least trouble.
+    /// Returns the number of separated pairs, then the sum of their log evidence. No pair counts for more than certainty: of several measurements
+    /// that are as certain, the first one is the least effort.
     fn rank(&self) -> (usize, f64) {
         let separated = self.worth.iter().filter(|w| **w > WORTH).count();
         (separated, self.worth.iter().map(|w| w.min(SURE)).sum())
     }
 
-    /// Whether nothing could say more.
+    /// Returns whether every pair is separated with certainty.
     fn is_sure(&self) -> bool {
         self.worth.iter().all(|w| *w >= SURE)
     }
 }
 
-/// What would separate the explanations that come nearest, quantified where a measurement does.
+/// Returns the instruction that separates the nearest explanations, with the expected log evidence if a measurement does.
 pub(super) fn next_measurement(
     scorer: &MotionScorer,
     verdict: Verdict,
@@ -105,8 +105,8 @@ pub(super) fn next_measurement(
     }
 }
 
-/// What is to be separated, the first from the others: the best set and those that the record can't tell from it; where nothing is named, the
-/// set that comes nearest and the best one of another kind; of a hint, the model without it.
+/// Returns the explanations to separate, the first from the others: the best set and the sets that are indistinguishable from it. If nothing is
+/// named, these are the nearest set and the best one of another kind; for a hint, the hint and the model without it.
 fn explanations<'a>(
     scorer: &MotionScorer,
     verdict: Verdict,
@@ -142,7 +142,7 @@ fn explanations<'a>(
     std::iter::once(nearest).chain(rest).collect()
 }
 
-/// The measurement that separates most; `None` where none is worth it.
+/// Returns the measurement that separates most; `None` if no measurement is worth its effort.
 fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed> {
     let frame = scorer.frame;
     let known: Vec<Known> = list.iter().map(|s| Known::of(frame, &s.fit)).collect();

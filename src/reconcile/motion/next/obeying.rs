@@ -1,15 +1,15 @@
-//! What one explanation misses of a record that obeys another.
+//! Misfit of one explanation to a record that obeys another.
 
 use super::view::Recorded;
 use crate::reconcile::motion::design::Bins;
 use rustfft::num_complex::Complex64;
 
-/// By equation and bin what the equations of `other` leave of a record that obeys those of `truth`: of the record at hand less the smallest
-/// errors of its channels, over their noise, that part it from them. Noise that both miss alike is in neither.
+/// Returns, by equation and bin, the residual of the equations of `other` in a record that obeys the equations of `truth`. That record is the present
+/// one less the smallest errors of its channels, over their noise, that explain the residual of `truth`. Noise that both miss alike is in neither.
 ///
-/// In a bin with residual r of the truth, H and G the responses of both, N the power of the channels' noise, C and D what both multiply readings
-/// by: e = N H' (H N H')^-1 r, and other - G (D / C) e is left. An equation that says what a new channel reads says it under the truth: its own
-/// r - H e is taken off. `None` where the two do not speak of the same equations.
+/// Symbols in a bin: r the residual of the truth, H and G the responses of both, N the power of the channels' noise, C and D the factors by which
+/// both multiply readings. Then e = N H' (H N H')^-1 r, and the residual is other - G (D / C) e. For the reading of a new channel, `r - H e` of the
+/// truth is subtracted from it. `None` if both have different equations.
 pub(super) fn missed(other: &Recorded, truth: &Recorded) -> Option<Vec<Bins>> {
     if other.is_new != truth.is_new || other.left.len() != truth.left.len() {
         return None;
@@ -177,7 +177,7 @@ mod tests {
         );
     }
 
-    /// What the other misses is what its own equations leave of a record that the truth leaves nothing of.
+    /// Tests that the misfit of the other equals the residual of its equations in a record that obeys the truth.
     #[test]
     fn what_is_missed_is_what_is_left_of_a_record_that_obeys() {
         let truth_rows = [[c(1.0, 0.0), c(0.5, 0.0), c(0.0, 0.0)]; 1];
@@ -193,7 +193,7 @@ mod tests {
         assert!((missed[0][0] - c(0.8, 0.6)).norm() < 1e-12, "{missed:?}");
     }
 
-    /// A new channel reads what the truth says: the difference of both is missed.
+    /// Tests that the misfit in a new channel is the difference between the readings under both explanations.
     #[test]
     fn a_new_channel_is_missed_by_the_difference() {
         let truth_rows = [[c(1.0, 0.0), c(0.0, 0.0), c(0.0, 0.0)]; 1];

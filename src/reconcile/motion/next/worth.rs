@@ -6,11 +6,11 @@ use super::view::{Recorded, View, Weight};
 use crate::linalg::tall::{Triangle, solve, triangle};
 use crate::reconcile::motion::design::Bins;
 
-/// Half the squared misfit that the other explanation keeps where the first one holds: its parameters are free within what the record at
-/// hand and declared tolerances leave them. `None` where the two do not speak of the same rows.
+/// Returns half the squared misfit of the other explanation if the first one is true; `None` if both have different rows. The other one's parameters
+/// are free within the present record and declared tolerances.
 ///
-/// With d the difference of what both read there over its standard deviation, A the columns of the other one there, B those of the record at
-/// hand and P the priors: 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Noise adds alike to both.
+/// With d the difference of both readings there over its standard deviation, A the columns of the other one there, B its columns in the present
+/// record and P the priors: 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Noise adds alike to both.
 pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64> {
     let other = match (other, truth) {
         (View::AtRest(o), View::AtRest(t)) if o.reading.len() == t.reading.len() => Rows {
@@ -71,7 +71,7 @@ pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64>
 }
 
 impl Recorded {
-    /// The rows of this one, and as their reading what it misses of `truth`, over the noise of this one, times the root of the number of records.
+    /// Returns the rows of this record, over its noise, times the root of the number of records. Their reading is the misfit to `truth`.
     fn rows(&self, truth: &Self) -> Option<Rows> {
         let times = self.repeats.sqrt();
         let rows = |bins: &[Bins], at_rest: Option<f64>| {
