@@ -65,8 +65,9 @@ pub(super) fn patterns_read(
 ///
 /// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
 /// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
-/// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and their part in doubt), with S, m, b as read
-/// with `members` on, + what a calibrated S leaves in doubt ([`learnt`]). Between runs of a gauge, and of any two gauges, stays what repeats of V.
+/// error of one standard deviation makes; each coefficient of S errs by model_rel as well) + V (amplitudes unknown in every run, run by run, and
+/// their part in doubt), with S, m, b as read with `members` on, + what a calibrated S leaves in doubt ([`learnt`]). Between runs of a gauge, and
+/// of any two gauges, stays what repeats of V, and of noise that wanders its variance times its correlation to the power of the runs between.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -87,12 +88,23 @@ pub fn covariance(
     // Of the strain, within a run: wheel forces, unknown amplitudes. Between runs: what repeats of the amplitudes.
     let mut block = vec![0.0; n_g * n_g];
     let mut repeats = vec![0.0; n_g * n_g];
+    let noise = frame.noise * frame.noise;
+    // Between runs that are n apart, the n-th power of the correlation times this.
+    let mut wander: Vec<(f64, Vec<f64>)> = Vec::new();
     for pattern in &columns {
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
     let doubt = frame.relative_doubt();
     let known = frame.nuisance_amplitudes();
     for u in unknown.iter().chain(&known) {
+        let correlation = u.amplitudes.correlation;
+        if correlation > 0.0 {
+            let mut own = vec![0.0; n_g * n_g];
+            for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
+                add_outer(&mut own, pattern, noise + u.scatter_variance(kind));
+            }
+            wander.push((correlation, own));
+        }
         for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
             // The model errs in these patterns as in all others.
             let own: Vec<f64> = pattern
@@ -109,7 +121,6 @@ pub fn covariance(
             }
         }
     }
-    let noise = frame.noise * frame.noise;
     let any_repeats = repeats.iter().any(|v| *v != 0.0);
     let model = frame.model_rel * frame.model_rel;
     let errors = scattered(frame, members, &state);
@@ -139,8 +150,13 @@ pub fn covariance(
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
             let within = match r == s {
                 true => read(&block, (r, g), (s, h)) + if g == h { noise } else { 0.0 },
-                false if any_repeats => read(&repeats, (r, g), (s, h)),
-                false => 0.0,
+                false => {
+                    let steady = any_repeats.then(|| read(&repeats, (r, g), (s, h)));
+                    let apart = r.abs_diff(s) as i32;
+                    let slow = wander.iter();
+                    let slow = slow.map(|(c, own)| c.powi(apart) * read(own, (r, g), (s, h)));
+                    steady.unwrap_or(0.0) + slow.sum::<f64>()
+                }
             };
             let persistent = if g == h { across(g, r, s) } else { 0.0 };
             out[i * n + j] += within + persistent;
@@ -200,6 +216,10 @@ fn scattered(frame: &StrainFrame, members: &[Member<'_>], state: &StrainState) -
             Scatter::Together(error) => out.push(strain(error, 0..n_c)),
             Scatter::Single(error) => out.extend((0..n_c).map(|c| strain(error, c..c + 1))),
         }
+    }
+    if frame.model_rel > 0.0 {
+        let own: Vec<f64> = (state.influence.iter().map(|v| frame.model_rel * v)).collect();
+        out.extend((0..n_c).map(|c| strain(&own, c..c + 1)));
     }
     out.retain(|e| e.iter().any(|v| *v != 0.0));
     out

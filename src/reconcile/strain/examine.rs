@@ -2,10 +2,11 @@
 
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
-use super::judge::{adequacy_of, at_floor, judge, named};
+use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
 use super::recorded::wrong_records;
+use super::sizes_found::named;
 use super::smooth::smooth_instead;
 use super::validation::{Proofs, validated};
 use crate::finding::Finding;
@@ -162,7 +163,8 @@ fn named_instead(
     search_near(likelihood, breadth(likelihood.frame), &plain)
 }
 
-/// The set without noise that was stated too small, where it reaches the floor without.
+/// The set without noise that was stated too small, where it reaches the floor without. Noise that wanders stays: a constant that ten independent
+/// runs show may be none in ten that are correlated.
 fn without_needless_noise(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -170,6 +172,13 @@ fn without_needless_noise(
     best: Scored<Fit>,
 ) -> Scored<Fit> {
     let kept = named_part(candidates, &best.set);
+    let wanders = |c: &usize| {
+        let own = candidates.get(*c).and_then(|c| c.effect.amplitudes(frame));
+        own.is_some_and(|a| a.correlation > 0.0)
+    };
+    if best.set.iter().any(wanders) {
+        return best;
+    }
     let plain = all
         .iter()
         .find(|s| s.set == kept && s.set.len() < best.set.len());

@@ -158,7 +158,7 @@ pub struct StrainFrame {
     pub noise: f64,
     /// Noise of a measured wheel load, kN, 1 sd.
     pub load_noise: f64,
-    /// Model uncertainty, relative to the predicted strain of a gauge and common to all its runs, 1 sd.
+    /// Model uncertainty, 1 sd, common to all runs of a gauge: relative to its predicted strain, and to each of its influence coefficients.
     pub model_rel: f64,
     /// Influence on the analyst's own mesh, where `influence` comes from a finer one: the gap is judged on the analyst's, effects on the finer.
     pub as_modelled: Option<Vec<f64>>,
@@ -224,7 +224,7 @@ impl StrainFrame {
             } else {
                 0.0
             };
-            (self.model_rel * self.model_rel + relative).sqrt()
+            (2.0 * self.model_rel * self.model_rel + relative).sqrt()
         };
         (0..self.n_gauges()).map(doubt).collect()
     }
