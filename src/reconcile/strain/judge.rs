@@ -1,6 +1,7 @@
 //! What is said of the best set of effects: named or not, and what else could be.
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
+use super::companions::without_companions;
 use super::detect::detectable;
 use super::explanation::{Explanation, discrepancy, is_unmodelled, named_part};
 use super::frame::StrainFrame;
@@ -121,6 +122,9 @@ pub(super) fn judge(
     let frame = proofs.frame;
     let rules = &frame.rules;
     let before = adequacy(frame, &[], &[], 0);
+    let (fewer, needless) = without_companions(frame, candidates, best)
+        .map_or((None, None), |(set, words)| (Some(set), Some(words)));
+    let best = fewer.as_ref().unwrap_or(best);
     let mut rivals = rival_sets(frame, candidates, all, best);
     // As its rivals are.
     let level = |s: &Scored<Fit>| own_evidence(frame, candidates, s);
@@ -143,7 +147,7 @@ pub(super) fn judge(
     let explained = Explanation::of(frame, candidates, best);
     let (after, noise) = reach(frame, candidates, best, &before);
     let (reached, alone) = reaches_floor(frame, candidates, best, &after, noise);
-    let unsure: Vec<String> = [few, taken_out.clone(), no_zero, alone]
+    let unsure: Vec<String> = [needless, few, taken_out.clone(), no_zero, alone]
         .into_iter()
         .flatten()
         .collect();
@@ -153,10 +157,7 @@ pub(super) fn judge(
     let (gap, channels) = validated(proofs, candidates, best);
     let null_evidence = (all.iter().find(|s| s.set.is_empty())).map_or(0.0, |s| s.log_evidence);
     let hint = best_of_names(candidates, all);
-    // What these data can't tell from no effect at all.
-    let hinted = hint.is_some_and(|s| {
-        s.log_evidence > null_evidence.max(best.log_evidence) - rules.indistinguishable
-    });
+    let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
     let unmodelled = is_unmodelled(candidates, &best.set);
     let wins = standing.wins(&names);
     let checks = checks_of(&Judged {
@@ -182,8 +183,7 @@ pub(super) fn judge(
         true => Vec::new(),
         false => reasons(&checks),
     });
-    let first = rivals.first().map(|r| &r.1);
-    let next = match first.or(hint) {
+    let next = match rivals.first().map(|r| &r.1).or(hint) {
         Some(s) => next_measurement(frame, &explained, &Explanation::of(frame, candidates, s)),
         None if verdict == Verdict::Unknown => look_again(&after),
         None => "none needed".into(),
@@ -196,24 +196,18 @@ pub(super) fn judge(
         unmodelled,
         withheld.as_deref(),
     );
-    let is_curve = best.set.iter().any(|c| is_smooth(candidates, *c));
     Outcome {
         verdict,
-        effects: if verdict == Verdict::Named {
-            attempt.clone()
-        } else {
-            Vec::new()
+        effects: match verdict {
+            Verdict::Named => attempt.clone(),
+            _ => Vec::new(),
         },
         best_attempt: attempt,
         replaced: Vec::new(),
         rivals,
         evidence: best.log_evidence - null_evidence,
         wins,
-        // The coefficients of a curve say nothing by themselves: `smooth` has what they make.
-        covariance: match is_curve {
-            true => Vec::new(),
-            false => best.fit.covariance.clone(),
-        },
+        covariance: covariance_of(candidates, best),
         smooth: curve(frame, candidates, best),
         noise_factor: noise,
         gap,
@@ -229,6 +223,14 @@ pub(super) fn judge(
         next_measurement: next,
         detectable: detectable(frame, candidates, hint.map_or(&[], |h| h.set.as_slice())),
         input_faults: Vec::new(),
+    }
+}
+
+/// Covariance of the parameters of a set. Coefficients of a curve mean nothing alone, and have none: [`Outcome::smooth`] has their sum.
+fn covariance_of(candidates: &[Candidate], set: &Scored<Fit>) -> Vec<f64> {
+    match set.set.iter().any(|c| is_smooth(candidates, *c)) {
+        true => Vec::new(),
+        false => set.fit.covariance.clone(),
     }
 }
 
@@ -266,25 +268,20 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
         Check::unless(set.taken_out.clone().filter(|_| set.lost > WORTH_NAMING)),
         Check::of(wins as f64 >= rules.drawings * DRAWINGS as f64, || {
             set.standing.doubt.clone().unwrap_or_else(|| {
-                format!("{wins} of {DRAWINGS} resampled run sets hold all of it")
+                format!("{wins} of {DRAWINGS} resampled run sets contain every effect of it")
             })
         }),
         Check::unless(ahead(
             (set.attempt.len(), set.level),
             [rules.indistinguishable, rules.decisive],
-            set.rivals
-                .iter()
-                .map(|r| (r.0.as_slice(), r.1.log_evidence)),
+            (set.rivals.iter()).map(|r| (r.0.as_slice(), r.1.log_evidence)),
         )),
         Check::of(set.attempt.iter().all(|e| e.plausible), || {
-            format!(
-                "the size of {} is none that occurs",
-                implausible(set.attempt)
-            )
+            format!("the size of {} is not plausible", implausible(set.attempt))
         }),
         Check::of(gap.falls && gap.is_above_floor(), || {
             format!(
-                "the gap on the runs that judge does not fall from above its floor by more than its sampling error ({:.2} % before, {:.2} % after, \
+                "the gap on runs that were not fitted does not fall from above its floor by more than its sampling error ({:.2} % before, {:.2} % after, \
                  floor {:.2} %)",
                 100.0 * gap.before,
                 100.0 * gap.after,
@@ -292,19 +289,19 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
             )
         }),
         Check::of(noise <= rules.noise, || {
-            format!("it takes noise {noise:.2} times the stated one to get there")
+            format!("it requires noise of {noise:.2} times the stated noise")
         }),
         Check::of(
             is_unmodelled(set.candidates, &set.best.set).is_none(),
             || "the form that closes the gap is no effect of the library".into(),
         ),
         Check::of(set.reached, || {
-            "gauges or runs lie above their floor".into()
+            "gauges or runs are above their floor".into()
         }),
     ]
 }
 
-/// The effects whose size is none that occurs, with their sizes, in words.
+/// Returns the effects whose size is not plausible, with their sizes, in words.
 fn implausible(attempt: &[NamedEffect]) -> String {
     let far = attempt.iter().filter(|e| !e.plausible);
     let words = far.map(|e| match e.size.first() {

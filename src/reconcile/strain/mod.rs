@@ -2,6 +2,7 @@
 
 mod adequacy;
 mod bias;
+mod companions;
 mod covariance;
 mod detect;
 mod evidence;

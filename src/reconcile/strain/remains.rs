@@ -65,7 +65,7 @@ fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
         Some(reasons) => format!(
             "no gauge and no run stands out by itself (reduced chi-square {reduced_chi2:.2} over all), and nothing is named: {}",
             match reasons {
-                [] => "all gauges and runs together lie above their floor".to_owned(),
+                [] => "all gauges and runs together are above their floor".to_owned(),
                 list => list.join(", "),
             }
         ),

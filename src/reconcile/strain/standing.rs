@@ -58,7 +58,7 @@ impl Standing {
                 unsure.map(|c| format!("{} in {}", ids(candidates, &[*c]).concat(), holds(c)));
             let told: Vec<String> = told.collect();
             Some(format!(
-                "fewer than {:.0} of {DRAWINGS} resampled run sets hold each of these effects, and they are not named: {}",
+                "fewer than {:.0} of {DRAWINGS} resampled run sets contain each of these effects, and they are not reported: {}",
                 frame.rules.drawings * DRAWINGS as f64,
                 told.join(", ")
             ))

@@ -296,7 +296,7 @@ fn verdict(outcome: &Outcome) -> Vec<Block> {
     if !outcome.best_attempt.is_empty() {
         let ids: Vec<&str> = outcome.best_attempt.iter().map(|e| e.id.as_str()).collect();
         out.push(Block::Text(format!(
-            "{}. {} of 100 resampled run sets hold all of it.",
+            "{}. {} of 100 resampled run sets contain every effect.",
             ids.join(", "),
             outcome.wins
         )));
