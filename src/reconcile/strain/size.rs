@@ -284,8 +284,9 @@ fn scattered(
     patterns.iter().map(one).collect()
 }
 
-/// Returns by family and kind the root mean square of the amplitudes that `residual` shows, over runs and patterns, with its standard deviation.
-pub fn amplitudes_found(
+/// Returns by run and pattern the amplitude that `residual` shows, with its variance: mean of what repeats and of what differs from run to run.
+/// Runs are those of `blocks`, without those whose precision does not exist.
+pub fn amplitudes_by_run(
     blocks: &RunBlocks,
     residual: &[f64],
     unknown: &[SizedAmplitudes],
@@ -298,13 +299,27 @@ pub fn amplitudes_found(
         let left = repeated.posterior.as_ref().map_or(0.0, |q| q.entry(i, i));
         constant[p] = [*mean, left];
     }
+    let of_run = |run: &RunPrecision<'_>| -> Vec<[f64; 2]> {
+        let own = scattered(run, residual, unknown, &patterns, &repeated);
+        let both = own.into_iter().zip(&constant);
+        both.map(|(own, c)| [own[0] + c[0], own[1] + c[1]])
+            .collect()
+    };
+    runs.iter().map(of_run).collect()
+}
+
+/// Returns by family and kind the root mean square of the amplitudes that `residual` shows, over runs and patterns, with its standard deviation.
+pub fn amplitudes_found(
+    blocks: &RunBlocks,
+    residual: &[f64],
+    unknown: &[SizedAmplitudes],
+) -> Vec<Vec<[f64; 2]>> {
+    let patterns = patterns_of(unknown);
     // Sum of squares, of squares times their variance, and number.
     let empty = |u: &SizedAmplitudes| vec![[0.0; 3]; u.amplitudes.usual.len()];
     let mut sums: Vec<Vec<[f64; 3]>> = unknown.iter().map(empty).collect();
-    for run in &runs {
-        let own = scattered(run, residual, unknown, &patterns, &repeated);
-        for (p, (own, constant)) in patterns.iter().zip(own.iter().zip(&constant)) {
-            let (mean, left) = (own[0] + constant[0], own[1] + constant[1]);
+    for run in amplitudes_by_run(blocks, residual, unknown) {
+        for (p, [mean, left]) in patterns.iter().zip(run) {
             let sum = &mut sums[p.family][p.kind];
             sum[0] += mean * mean;
             sum[1] += mean * mean * left;
