@@ -18,7 +18,7 @@ pub enum ModelDiscrepancy {
     Memory,
     /// Channels leak into their neighbours in file order.
     CrossTalk,
-    /// Scatter of the same size at all gauges that no load explains.
+    /// Scatter in proportion to the stated noise that no load explains.
     Scatter,
     /// Scatter in proportion to what a gauge usually reads.
     RelativeScatter,
@@ -186,7 +186,12 @@ impl StrainEffect for ModelDiscrepancy {
             (kept.iter().map(|v| v * v).sum::<f64>() / kept.len().max(1) as f64).sqrt()
         };
         let height: Vec<f64> = match self {
-            Self::Scatter | Self::Zeros | Self::Wander(_) => vec![1.0; n_g],
+            Self::Zeros => vec![1.0; n_g],
+            // Noise is as many times the stated one at all gauges.
+            Self::Scatter | Self::Wander(_) => match &frame.gauge_noise {
+                Some(noise) => noise.sd(),
+                None => vec![1.0; n_g],
+            },
             Self::RelativeScatter => (0..n_g).map(usual).collect(),
             _ => return None,
         };

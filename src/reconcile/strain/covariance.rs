@@ -63,11 +63,12 @@ pub(super) fn patterns_read(
 
 /// Covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
 ///
-/// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
-/// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
-/// error of one standard deviation makes; each coefficient of S errs by model_rel as well) + V (amplitudes unknown in every run, run by run, and
-/// their part in doubt), with S, m, b as read with `members` on, + what a calibrated S leaves in doubt ([`learnt`]). Between runs of a gauge, and
-/// of any two gauges, stays what repeats of V, and of noise that wanders its variance times its correlation to the power of the runs between.
+/// C = N (noise, by gauge and correlated where so stated) + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges
+/// at once) + model_rel^2 m m' (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b
+/// the strain that an error of one standard deviation makes; so does each coefficient of S that errs by coefficient_rel) + V (amplitudes unknown
+/// in every run, run by run, and their part in doubt), with S, m, b as read with `members` on, + what a calibrated S leaves in doubt ([`learnt`]).
+/// Between runs of a gauge, and of any two gauges, stays what repeats of V, and of noise that wanders its variance times its correlation to the
+/// power of the runs between.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -88,7 +89,6 @@ pub fn covariance(
     // Of the strain, within a run: wheel forces, unknown amplitudes. Between runs: what repeats of the amplitudes.
     let mut block = vec![0.0; n_g * n_g];
     let mut repeats = vec![0.0; n_g * n_g];
-    let noise = frame.noise * frame.noise;
     // Between runs that are n apart, the n-th power of the correlation times this.
     let mut wander: Vec<(f64, Vec<f64>)> = Vec::new();
     for pattern in &columns {
@@ -99,9 +99,11 @@ pub fn covariance(
     for u in unknown.iter().chain(&known) {
         let correlation = u.amplitudes.correlation;
         if correlation > 0.0 {
-            let mut own = vec![0.0; n_g * n_g];
+            let mut own: Vec<f64> = (0..n_g * n_g)
+                .map(|i| frame.noise_between(i / n_g, i % n_g))
+                .collect();
             for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
-                add_outer(&mut own, pattern, noise + u.scatter_variance(kind));
+                add_outer(&mut own, pattern, u.scatter_variance(kind));
             }
             wander.push((correlation, own));
         }
@@ -149,7 +151,7 @@ pub fn covariance(
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
             let within = match r == s {
-                true => read(&block, (r, g), (s, h)) + if g == h { noise } else { 0.0 },
+                true => read(&block, (r, g), (s, h)) + frame.noise_between(g, h),
                 false => {
                     let steady = any_repeats.then(|| read(&repeats, (r, g), (s, h)));
                     let apart = r.abs_diff(s) as i32;
@@ -217,8 +219,9 @@ fn scattered(frame: &StrainFrame, members: &[Member<'_>], state: &StrainState) -
             Scatter::Single(error) => out.extend((0..n_c).map(|c| strain(error, c..c + 1))),
         }
     }
-    if frame.model_rel > 0.0 {
-        let own: Vec<f64> = (state.influence.iter().map(|v| frame.model_rel * v)).collect();
+    if frame.coefficient_rel > 0.0 {
+        let relative = |v: &f64| frame.coefficient_rel * v;
+        let own: Vec<f64> = state.influence.iter().map(relative).collect();
         out.extend((0..n_c).map(|c| strain(&own, c..c + 1)));
     }
     out.retain(|e| e.iter().any(|v| *v != 0.0));

@@ -48,7 +48,27 @@ pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
 }
 
 /// Judges `frame` with `candidates`: effects of one's own beside those of the library.
+///
+/// The stated uncertainty of the model is an error of the strain that a gauge is predicted to have. If nothing explains the gap beyond it, each
+/// influence coefficient may be off by as much as well, since errors of coefficients do not cancel where the strains of loads do.
 pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
+    let outcome = examined(frame, candidates);
+    let is_open = outcome.verdict == Verdict::Unknown && !frame.stop.is_asked();
+    if !is_open || frame.model_rel <= frame.coefficient_rel {
+        return outcome;
+    }
+    let by_coefficient = StrainFrame {
+        coefficient_rel: frame.model_rel,
+        ..frame.clone()
+    };
+    let second = examined(&by_coefficient, candidates);
+    match second.verdict {
+        Verdict::Unknown => outcome,
+        _ => second,
+    }
+}
+
+fn examined(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let fit_runs = frame.observations.fit_runs();
     let mut reference: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut all: Vec<Scored<Fit>> = Vec::new();
