@@ -494,8 +494,14 @@ fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
     let tried: Vec<&str> = o.best_attempt.iter().map(|e| e.id.as_str()).collect();
     assert_eq!(tried, ["coulomb_friction"], "{}", o.remains);
     assert_eq!(o.verdict, Verdict::Unknown);
-    let said = "accel_gain:a_body explains more of the fitted record, but the gap that judges does not fall by it";
-    assert!(o.remains.contains(said), "{}", o.remains);
+    // Which of the two accelerometers: a zero of a load cell of 1 % leaves that open where friction and a gain mix.
+    let said = "explains more of the fitted record, but the gap that judges does not fall by it";
+    let either = ["a_body", "a_wheel"].map(|c| format!("accel_gain:{c} {said}"));
+    assert!(
+        either.iter().any(|w| o.remains.contains(w.as_str())),
+        "{}",
+        o.remains
+    );
 }
 
 /// The word is for what no parameter was fitted to: without a second record neither the page nor the result says it.

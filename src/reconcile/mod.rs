@@ -4,6 +4,7 @@
 //! on, a covariance of what noise and stated model uncertainty leave, a library of effects, evidence, a verdict.
 
 mod cause;
+mod checks;
 pub mod effect;
 pub mod motion;
 mod observation;

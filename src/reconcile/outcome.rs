@@ -109,17 +109,26 @@ pub struct Gap {
     pub basis: GapBasis,
     /// The same with the errors of the noted wheel loads found anew in every run, before, after and in the floor.
     pub loads_found: Option<GapNumbers>,
+    /// Whether the gap falls by more than its own sampling error.
+    pub falls: bool,
 }
 
 impl Gap {
-    /// (before^2 - after^2) / (before^2 - floor^2); zero where there is nothing to close.
+    /// Returns (before^2 - after^2) / (before^2 - floor^2) within 0 and 1; zero where there is nothing to close.
     pub fn explained_share(&self) -> f64 {
         let closable = self.before * self.before - self.floor * self.floor;
         if closable > 0.0 {
-            (self.before * self.before - self.after * self.after) / closable
+            let closed = self.before * self.before - self.after * self.after;
+            (closed / closable).clamp(0.0, 1.0)
         } else {
             0.0
         }
+    }
+
+    /// Whether the analyst's model leaves more than a right one would, with the loads as recorded or found again.
+    pub fn is_above_floor(&self) -> bool {
+        let found = self.loads_found;
+        self.before > self.floor || found.is_some_and(|f| f.before > f.floor)
     }
 }
 

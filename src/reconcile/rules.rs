@@ -23,8 +23,13 @@ pub struct StrainRules {
     pub part: f64,
     /// Noise up to twice the stated one is noise that was stated too small; more is something else.
     pub noise: f64,
-    /// Share of the drawings of the runs that must hold a name: one that fewer than half hold is ahead by the runs that happened to be driven.
+    /// Share of the resampled run sets that must hold a name, and the whole set: below 60 of 100 it is ahead by the runs that happened to be
+    /// driven (half of them, and twice the five in a hundred that the share is known to).
     pub drawings: f64,
+    /// Largest root mean square of a side load, in usual sizes of its kind: as shares of the wheel force FX .25, FY .6, MX .3, MY .1 and MZ .1
+    /// (moments per metre). FY is then near the friction of a tyre; the others are brakes and aligning moments that a standing vehicle can
+    /// hold.
+    pub side_load: f64,
     /// Gauges within this many usual distances from gauge to nearest gauge are neighbours: gains and angles of several of them at once are a
     /// change of stiffness between them sooner than as many bad gauges.
     pub near: f64,
@@ -45,7 +50,8 @@ impl Default for StrainRules {
             deviate: 3.1,
             part: 4.0,
             noise: 2.0,
-            drawings: 0.5,
+            drawings: 0.6,
+            side_load: 2.5,
             near: 2.5,
         }
     }
@@ -53,7 +59,7 @@ impl Default for StrainRules {
 
 impl StrainRules {
     /// Every one of them.
-    pub const ALL: [Rule<Self>; 8] = [
+    pub const ALL: [Rule<Self>; 9] = [
         ("decisive", |r| &mut r.decisive),
         ("indistinguishable", |r| &mut r.indistinguishable),
         ("noise_known", |r| &mut r.noise_known),
@@ -61,6 +67,7 @@ impl StrainRules {
         ("part", |r| &mut r.part),
         ("noise", |r| &mut r.noise),
         ("drawings", |r| &mut r.drawings),
+        ("side_load", |r| &mut r.side_load),
         ("near", |r| &mut r.near),
     ];
 }
@@ -93,6 +100,8 @@ pub struct MotionRules {
     pub gain: f64,
     /// Scatter of delays that are at fault, s, one sd: some samples at the rates of vehicle records.
     pub delay_s: f64,
+    /// Zero of a load cell, one sd, as a share of the weight on it: 1 % is what is left after a balance on the vehicle.
+    pub zero_force: f64,
     /// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
     pub zero_g: f64,
     /// Stiffness within a gap, as a share of that beyond it, that parts free play from a stop: both are the same law, two slopes.
@@ -117,6 +126,7 @@ impl Default for MotionRules {
             next_form: 0.0025,
             gain: 0.1,
             delay_s: 0.01,
+            zero_force: 0.01,
             zero_g: 0.05,
             play: 0.2,
             limits: 3.0,
@@ -127,7 +137,7 @@ impl Default for MotionRules {
 
 impl MotionRules {
     /// Every one of them.
-    pub const ALL: [Rule<Self>; 14] = [
+    pub const ALL: [Rule<Self>; 15] = [
         ("decisive", |r| &mut r.decisive),
         ("hint", |r| &mut r.hint),
         ("indistinguishable", |r| &mut r.indistinguishable),
@@ -138,6 +148,7 @@ impl MotionRules {
         ("next_form", |r| &mut r.next_form),
         ("gain", |r| &mut r.gain),
         ("delay_s", |r| &mut r.delay_s),
+        ("zero_force", |r| &mut r.zero_force),
         ("zero_g", |r| &mut r.zero_g),
         ("play", |r| &mut r.play),
         ("limits", |r| &mut r.limits),

@@ -6,6 +6,7 @@ mod given;
 mod heat;
 mod hidden;
 mod joint;
+mod ladder;
 mod local;
 mod real;
 mod smooth;

@@ -12,10 +12,12 @@ pub struct Amplitudes {
     pub usual: Vec<f64>,
     /// Usual size (prior sd) of the part of each kind that repeats in all runs; zero where nothing repeats, or a parameter holds it.
     pub steady: Vec<f64>,
+    /// Correlation of noise of these patterns, the stated noise included, between a run and the next in file order; zero for all else.
+    pub correlation: f64,
     /// Unit for reports.
     pub unit: &'static str,
-    /// Above this root mean square an amplitude is not plausible.
-    pub plausible: f64,
+    /// By kind: above this root mean square an amplitude is not plausible.
+    pub plausible: Vec<f64>,
 }
 
 /// Amplitudes with the sizes (variance roots) of each of their kinds.

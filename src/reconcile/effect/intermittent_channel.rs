@@ -28,13 +28,14 @@ impl IntermittentChannel {
             };
             let runs = 0..frame.n_runs();
             // Nearer to nothing than to what the model has it read: a weak reading that was lost counts as well.
-            let silent = |r: usize| matches!(at(r), (y, Some(p)) if y.abs() < NOTHING * frame.noise && y.abs() < (y - p).abs());
-            let clear = |r: usize| matches!(at(r), (_, Some(p)) if p.abs() > CLEAR * frame.noise);
+            let noise = frame.noise_of(g);
+            let silent = |r: usize| matches!(at(r), (y, Some(p)) if y.abs() < NOTHING * noise && y.abs() < (y - p).abs());
+            let clear = |r: usize| matches!(at(r), (_, Some(p)) if p.abs() > CLEAR * noise);
             let open: Vec<bool> = runs.clone().map(silent).collect();
             let lost = runs.clone().any(|r| silent(r) && clear(r));
             let reads = runs
                 .clone()
-                .any(|r| matches!(at(r), (y, Some(_)) if y.abs() > CLEAR * frame.noise));
+                .any(|r| matches!(at(r), (y, Some(_)) if y.abs() > CLEAR * noise));
             if reads && lost {
                 out.push(OnGauges::one(frame, g, Self { open }));
             }

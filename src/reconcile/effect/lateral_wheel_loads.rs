@@ -62,8 +62,12 @@ impl StrainEffect for LateralWheelLoads {
             kinds: known().map(|(k, _)| k).collect(),
             usual: usual(frame),
             steady: usual(frame),
+            correlation: 0.0,
             unit: "kN",
-            plausible: frame.usual_load(),
+            plausible: usual(frame)
+                .iter()
+                .map(|u| frame.rules.side_load * u)
+                .collect(),
         })
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {

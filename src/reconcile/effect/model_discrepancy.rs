@@ -4,6 +4,9 @@
 use super::{Amplitudes, Discrepancy, Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{N_PAYLOAD_COLUMNS, Part, StrainFrame, StrainState};
 
+/// Usual zero of a gauge that was taken in another state, microstrain.
+const USUAL_ZERO: f64 = 20.0;
+
 /// The general forms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModelDiscrepancy {
@@ -15,10 +18,14 @@ pub enum ModelDiscrepancy {
     Memory,
     /// Channels leak into their neighbours in file order.
     CrossTalk,
-    /// Scatter of the same size at all gauges that no load explains.
+    /// Scatter in proportion to the stated noise that no load explains.
     Scatter,
     /// Scatter in proportion to what a gauge usually reads.
     RelativeScatter,
+    /// Every gauge has a zero of its own: zeros were taken in another state than the runs count from.
+    Zeros,
+    /// Noise that wanders slowly from run to run, of the same size at all gauges: correlation from a run to the next, percent.
+    Wander(u8),
 }
 
 impl ModelDiscrepancy {
@@ -31,6 +38,10 @@ impl ModelDiscrepancy {
             Self::CrossTalk,
             Self::Scatter,
             Self::RelativeScatter,
+            Self::Zeros,
+            Self::Wander(50),
+            Self::Wander(80),
+            Self::Wander(95),
         ]
     }
 
@@ -47,6 +58,10 @@ impl ModelDiscrepancy {
             Self::CrossTalk => "channels leak into their neighbours (wiring, multiplexer)",
             Self::Scatter => "readings scatter from run to run as no load explains",
             Self::RelativeScatter => "readings scatter from run to run in proportion to their size",
+            Self::Wander(_) => "zeros wander slowly from run to run",
+            Self::Zeros => {
+                "readings of many gauges are off by a constant each (zeros taken in another state: loaded, warm, or with other leads)"
+            }
         }
     }
 }
@@ -74,11 +89,13 @@ impl StrainEffect for ModelDiscrepancy {
             Self::CrossTalk => "cross_talk",
             Self::Scatter => "scatter",
             Self::RelativeScatter => "relative_scatter",
+            Self::Zeros => "zeros",
+            Self::Wander(_) => "wander",
         }
     }
     fn discrepancy(&self) -> Option<Discrepancy> {
         Some(match self {
-            Self::Scatter => Discrepancy::Noise(self.words()),
+            Self::Scatter | Self::Wander(_) => Discrepancy::Noise(self.words()),
             _ => Discrepancy::Form(self.words()),
         })
     }
@@ -91,7 +108,7 @@ impl StrainEffect for ModelDiscrepancy {
     }
     fn parameters(&self) -> Vec<Parameter> {
         match self {
-            Self::Scatter | Self::RelativeScatter => Vec::new(),
+            Self::Scatter | Self::RelativeScatter | Self::Zeros | Self::Wander(_) => Vec::new(),
             _ => vec![Parameter {
                 unit: "1",
                 neutral: 0.0,
@@ -169,7 +186,12 @@ impl StrainEffect for ModelDiscrepancy {
             (kept.iter().map(|v| v * v).sum::<f64>() / kept.len().max(1) as f64).sqrt()
         };
         let height: Vec<f64> = match self {
-            Self::Scatter => vec![1.0; n_g],
+            Self::Zeros => vec![1.0; n_g],
+            // Noise is as many times the stated one at all gauges.
+            Self::Scatter | Self::Wander(_) => match &frame.gauge_noise {
+                Some(noise) => noise.sd(),
+                None => vec![1.0; n_g],
+            },
             Self::RelativeScatter => (0..n_g).map(usual).collect(),
             _ => return None,
         };
@@ -178,22 +200,28 @@ impl StrainEffect for ModelDiscrepancy {
                 .map(|k| if k == g { *h } else { 0.0 })
                 .collect::<Vec<f64>>()
         };
-        let size = if *self == Self::Scatter {
-            3.0 * frame.noise.max(0.5)
-        } else {
-            0.1
+        let (scatter, steady) = match self {
+            Self::Scatter => (3.0 * frame.noise.max(0.5), 0.0),
+            Self::Zeros => (0.0, USUAL_ZERO),
+            Self::Wander(_) => (0.5 * frame.noise.max(0.5), 0.0),
+            _ => (0.1, 0.0),
+        };
+        let correlation = match self {
+            Self::Wander(percent) => 0.01 * f64::from(*percent),
+            _ => 0.0,
         };
         Some(Amplitudes {
             patterns: height.iter().enumerate().map(pattern).collect(),
             kinds: vec![0; n_g],
-            usual: vec![size],
-            steady: vec![0.0],
-            unit: if *self == Self::Scatter {
-                "microstrain"
-            } else {
+            usual: vec![scatter],
+            steady: vec![steady],
+            correlation,
+            unit: if *self == Self::RelativeScatter {
                 "1"
+            } else {
+                "microstrain"
             },
-            plausible: f64::INFINITY,
+            plausible: vec![f64::INFINITY],
         })
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {
@@ -208,6 +236,8 @@ impl StrainEffect for ModelDiscrepancy {
             Self::LoadDependent | Self::StrainDependent => {
                 "load in equal steps to the full payload and back".into()
             }
+            Self::Zeros => "unload to the installation state and read the zeros again".into(),
+            Self::Wander(_) => "read the zeros between runs (`zero` in the runs file)".into(),
             Self::Scatter | Self::RelativeScatter => {
                 "repeat one run three times: scatter shows, an effect of the loads repeats".into()
             }

@@ -17,9 +17,9 @@ impl SaturatedChannel {
         /// Readings held at a limit differ by noise only: five standard deviations.
         const ALIKE: f64 = 5.0;
         let predicted = predict(frame, &[]);
-        let near = ALIKE * frame.noise;
         let mut out = Vec::new();
         for gauge in 0..frame.n_gauges() {
+            let near = ALIKE * frame.noise_of(gauge);
             let read: Vec<f64> = (0..frame.n_runs())
                 .map(|r| frame.observations.value(r, gauge).abs())
                 .filter(|v| v.is_finite())

@@ -71,8 +71,9 @@ impl StrainEffect for Thermal {
             kinds: vec![0],
             usual: vec![self.usual_degrees()],
             steady: vec![self.usual_degrees()],
+            correlation: 0.0,
             unit: "degC",
-            plausible: 60.0,
+            plausible: vec![60.0],
         })
     }
     fn extension(&self, _frame: &StrainFrame, _parameters: &[f64]) -> Extension {

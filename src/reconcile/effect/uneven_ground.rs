@@ -37,8 +37,9 @@ impl StrainEffect for UnevenGround {
             patterns,
             usual: vec![USUAL * frame.usual_load()],
             steady: vec![USUAL * frame.usual_load()],
+            correlation: 0.0,
             unit: "kN",
-            plausible: 4.0 * frame.usual_load(),
+            plausible: vec![4.0 * frame.usual_load()],
         })
     }
     fn extension(&self, frame: &StrainFrame, _parameters: &[f64]) -> Extension {

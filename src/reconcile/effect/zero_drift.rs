@@ -97,8 +97,9 @@ impl ChannelFault for ZeroDrift {
             kinds: vec![0; gauges.len()],
             usual: vec![USUAL_SCATTER],
             steady: vec![0.0],
+            correlation: 0.0,
             unit: self.unit(),
-            plausible: PLAUSIBLE,
+            plausible: vec![PLAUSIBLE],
         })
     }
     fn extension(&self, names: &[String], parameters: &[f64]) -> Extension {

@@ -47,18 +47,15 @@ pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<
         let at = design.channels.iter().position(|c| c.name == name)?;
         forces.push((at, mean / gain));
         variance += (frame.noise_force.unwrap_or(0.0) / gain).powi(2) / n as f64;
+        variance += (frame.rules.zero_force * mean / gain).powi(2);
     }
     let own = v.masses(&frame.bodies);
     let mut masses: Vec<(usize, f64)> = own.iter().map(|&i| (i, frame.gravity)).collect();
     let value = |i: usize| values.get(i).copied().unwrap_or(f64::NAN);
     for (s, step) in v.steps.iter().enumerate() {
         let i = v.step_index(s);
-        let share = step_share(frame, step);
         if step.gravity > 0.0 {
-            masses.push((i, step.gravity * share));
-        } else if value(i).is_finite() {
-            // A change whose weight does not show: what the wheels carry of it is unknown.
-            variance += (frame.gravity * share * value(i)).powi(2);
+            masses.push((i, step.gravity * step_share(frame, step)));
         }
     }
     let weight: f64 = masses.iter().map(|&(i, g)| g * value(i)).sum();

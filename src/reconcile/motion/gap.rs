@@ -8,6 +8,7 @@ use super::floor::{Floor, floors, plain};
 use super::frame::MotionFrame;
 use super::gap_profile::{GapProfile, gap_profile};
 use super::noise::{BANDS, band_of};
+use crate::reconcile::checks::Fall;
 use crate::series::channels::Channels;
 use crate::vehicle::adjustment::Adjustment;
 use crate::vehicle::layout::Vehicle;
@@ -36,12 +37,29 @@ pub struct RecordGap {
     pub gap: f64,
     /// What a complete model leaves.
     pub floor: Floor,
+    /// Number of frequencies that carry the squared residual, `(sum p)^2 / sum p^2` over them and the equations: half of them for white noise.
+    pub frequencies: f64,
     /// Equations.
     pub equations: Vec<EquationGap>,
     /// Parameters of the vehicle that was compared.
     pub values: Vec<f64>,
     /// The vehicle that was compared.
     pub vehicle: Vehicle,
+}
+
+impl RecordGap {
+    /// Returns the fall of the squared gap from `without` an effect to this one.
+    ///
+    /// White noise of gap g leaves `s^2 = g^2 / (2 N)` in each part, real or imaginary, of N frequencies. A fall d has the standard error
+    /// `2 s sqrt(d)`; for no more than noise takes, d is about 2 s^2. With n the frequencies that carry the residual, N = 2 n.
+    pub(super) fn fall_from(&self, without: &Self) -> Fall {
+        let by = without.gap.powi(2) - self.gap.powi(2);
+        let part = self.gap.powi(2) / (4.0 * self.frequencies.max(1.0));
+        Fall {
+            by,
+            error: 2.0 * (part * by.max(part)).sqrt(),
+        }
+    }
 }
 
 /// What a gap was judged on.
@@ -186,6 +204,7 @@ fn together(frame: &MotionFrame, fit: &MotionFit, gaps: &[RecordGap]) -> Option<
         e.floor = rms(&|g: &RecordGap| g.equations.get(i).map_or(0.0, |e| e.floor));
     }
     whole.gap = rms(&|g| g.gap);
+    whole.frequencies = gaps.iter().map(|g| g.frequencies).sum();
     whole.floor = Floor::mean(&gaps.iter().map(|g| g.floor).collect::<Vec<_>>());
     Some(whole)
 }
@@ -205,8 +224,24 @@ fn gap_of(
         .map(|(i, l)| equation_gap(frame, d, i, l, &values, floor[i].expected()))
         .collect();
     let mean = equations.iter().map(|e| e.gap.powi(2)).sum::<f64>() / equations.len().max(1) as f64;
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for (i, l) in left.iter().enumerate() {
+        let whole = size(&measured(d, i, &values))
+            .max(f64::MIN_POSITIVE)
+            .powi(2);
+        for v in l {
+            let power = v.norm_sqr() / whole;
+            sum += power;
+            squares += power * power;
+        }
+    }
     RecordGap {
         gap: mean.sqrt(),
+        frequencies: if squares > 0.0 {
+            sum * sum / squares
+        } else {
+            1.0
+        },
         floor: Floor::mean(&floor),
         values,
         vehicle: d.vehicle.clone(),

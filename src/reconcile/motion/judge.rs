@@ -16,6 +16,7 @@ use super::outcome::{MotionEffect, MotionOutcome};
 use super::proven::proven;
 use super::scorer::MotionScorer;
 use super::sentences::remains;
+use crate::reconcile::checks::{Check, ahead, reasons, verdict};
 use crate::reconcile::outcome::{Gap, GapBasis, Rival, Verdict};
 use crate::reconcile::rules::MotionRules;
 use crate::reconcile::search::{Scored, settle};
@@ -95,38 +96,39 @@ pub(super) fn judged(
     let taken = |g: &Option<RecordGap>| g.as_ref().map_or(0.0, |g| g.gap * g.gap);
     let excess = (taken(&before.fitted) - taken(&after.fitted)).max(0.0);
     let gap = gap_of(&before.proof, &after.proof, proof(frame, &best.fit));
-    let against = [
-        (evidence > rules.decisive, "its evidence is not decisive"),
-        (
-            stands_out(rules, &best.fit),
-            "a size of it does not stand out of its own scatter",
-        ),
-        (
-            after.at_floor(rules, excess),
-            "what it leaves lies above the floor",
-        ),
-        (
-            gap.after < gap.before,
-            "the gap that judges does not fall by it",
-        ),
+    let rivals = rivals(scorer, &best, &all);
+    let checks = [
+        Check::of(evidence > rules.decisive, || {
+            "its evidence is not decisive".into()
+        }),
+        Check::of(stands_out(rules, &best.fit), || {
+            "a size of it does not stand out of its own scatter".into()
+        }),
+        Check::of(after.at_floor(rules, excess), || {
+            "what it leaves lies above the floor".into()
+        }),
+        Check::of(gap.falls && gap.is_above_floor(), || {
+            "the gap that judges does not fall by it from above the floor by more than its sampling error".into()
+        }),
+        Check::unless(ahead(
+            (best.set.len(), best.log_evidence),
+            [rules.indistinguishable, rules.decisive],
+            (rivals.iter()).map(|r| (r.ids.as_slice(), best.log_evidence - r.evidence_difference)),
+        )),
     ];
-    let against: Vec<&str> = (against.iter())
-        .filter(|(holds, _)| !holds)
-        .map(|a| a.1)
-        .collect();
-    let decided = !best.set.is_empty() && against.is_empty();
     let hint = all
         .iter()
         .find(|s| !s.set.is_empty())
         .is_some_and(|s| s.log_evidence - null_evidence > rules.hint);
-    let verdict = if !broken.is_empty() || decided {
-        Verdict::Named
-    } else if !before.at_floor(rules, 0.0) {
-        Verdict::Unknown
-    } else if hint && best.set.is_empty() {
-        Verdict::BelowDetectability
-    } else {
-        Verdict::None
+    let verdict = match broken.is_empty() {
+        true => verdict(
+            best.set.is_empty(),
+            &checks,
+            before.at_floor(rules, 0.0),
+            hint,
+        ),
+        // A channel that shows by itself that it can't be relied on.
+        false => Verdict::Named,
     };
     if verdict == Verdict::Unknown && !best.set.is_empty() {
         let ids: Vec<&str> = (best.set.iter())
@@ -135,7 +137,7 @@ pub(super) fn judged(
         told.push(format!(
             "{} comes nearest and is not named: {}",
             ids.join(" + "),
-            against.join(", ")
+            reasons(&checks).join(", ")
         ));
     }
     let attempt: Vec<MotionEffect> = if broken.is_empty() {
@@ -147,7 +149,6 @@ pub(super) fn judged(
         true => best.fit.covariance.clone(),
         false => vec![],
     };
-    let rivals = rivals(scorer, &best, &all);
     let left = shares_left(&before.fitted, &after.fitted);
     let chi = [before.reduced_chi2, after.reduced_chi2];
     let judged_by = proof(frame, &best.fit);
@@ -208,6 +209,10 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
             Proof::Fitted => GapBasis::Fitted,
         },
         loads_found: None,
+        falls: match (before, after) {
+            (Some(before), Some(after)) => after.fall_from(before).is_seen(),
+            _ => false,
+        },
     }
 }
 
@@ -253,7 +258,8 @@ fn nameable(
                 (false, false) => return true,
             };
             power(&rest).is_none_or(|without| {
-                let others = power(&[]).filter(|_| beside).map_or(0.0, |p| p - without);
+                // Of a single effect: of all that there is to take.
+                let others = power(&[]).map_or(0.0, |p| if beside { p - without } else { p });
                 let least = tolerance + share * others.max(0.0);
                 without - own.gap * own.gap > least
             })
@@ -313,7 +319,20 @@ fn rivals(
 ) -> Vec<Rival> {
     /// As many as anyone reads.
     const MOST: usize = 4;
+    let ids = |s: &Scored<MotionFit>| {
+        let ids = s.set.iter().map(|&c| scorer.candidates[c].id.clone());
+        let mut ids: Vec<String> = ids.collect();
+        ids.sort();
+        ids
+    };
+    let mut seen = vec![ids(best)];
     other_sets(best, all)
+        .filter(|s| {
+            let own = ids(s);
+            let new = !seen.contains(&own);
+            seen.push(own);
+            new
+        })
         .take(MOST)
         .map(|s| {
             let difference = best.log_evidence - s.log_evidence;

@@ -3,7 +3,7 @@
 use super::fitted::MotionFit;
 use super::gap::proof_gap;
 use super::scorer::MotionScorer;
-use crate::reconcile::proven::{Useless, without_useless};
+use crate::reconcile::proven::{Useless, Without, without_useless};
 use crate::reconcile::search::{Scored, Scorer};
 
 /// `best` without members that prove nothing ([`without_useless`]), and what is said of each.
@@ -17,14 +17,19 @@ pub(super) fn proven(
         if scorer.is_stopped() {
             return None;
         }
-        let with = proof_gap(scorer.frame, &set.fit)?.gap;
+        let with = proof_gap(scorer.frame, &set.fit)?;
         let mut without = |c: &usize| {
             let rest: Vec<usize> = set.set.iter().copied().filter(|m| m != c).collect();
             let known = all.iter().find(|s| s.set == rest).cloned();
-            let fewer = known.or_else(|| scorer.score(&rest, Some((set, None))))?;
-            Some((proof_gap(scorer.frame, &fewer.fit)?.gap, fewer))
+            let fit = known.or_else(|| scorer.score(&rest, Some((set, None))))?;
+            let without = proof_gap(scorer.frame, &fit.fit)?;
+            Some(Without {
+                gap: without.gap,
+                fall: with.fall_from(&without),
+                fit,
+            })
         };
-        Some((with, members.iter().map(&mut without).collect()))
+        Some((with.gap, members.iter().map(&mut without).collect()))
     });
     let told = |u: &Useless| {
         format!(

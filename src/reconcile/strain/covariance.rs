@@ -63,10 +63,12 @@ pub(super) fn patterns_read(
 
 /// Covariance of the residual of `selection`, `n x n` by rows, microstrain^2.
 ///
-/// C = noise^2 I + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges at once) + model_rel^2 m m'
-/// (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b the strain that an
-/// error of one standard deviation makes) + V (amplitudes unknown in every run, run by run, and their part in doubt), with S, m, b as read
-/// with `members` on, + what a calibrated S leaves in doubt (`learnt`). Between runs of a gauge, and of any two gauges, stays what repeats of V.
+/// C = N (noise, by gauge and correlated if so stated) + load_noise^2 S S' (run by run: an error of a measured wheel force enters all gauges
+/// at once) + model_rel^2 m m' (gauge by gauge, all runs together: a wrong influence stays wrong) + sum over `scatter` of b b' (the same, with b
+/// the strain that an error of one standard deviation makes; a coefficient of S that errs by coefficient_rel adds such a b) + V (amplitudes
+/// unknown in every run, run by run, and their uncertainty), with S, m, b as read with `members` on, + the uncertainty of a calibrated S
+/// (`learnt`). Between runs of a gauge, and of any two gauges, the repeating part of V remains. Noise that wanders adds its variance times its
+/// correlation to the power of the runs between.
 pub fn covariance(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -87,12 +89,24 @@ pub fn covariance(
     // Of the strain, within a run: wheel forces, unknown amplitudes. Between runs: what repeats of the amplitudes.
     let mut block = vec![0.0; n_g * n_g];
     let mut repeats = vec![0.0; n_g * n_g];
+    // Between runs that are n apart, the n-th power of the correlation times this.
+    let mut wander: Vec<(f64, Vec<f64>)> = Vec::new();
     for pattern in &columns {
         add_outer(&mut block, pattern, frame.load_noise * frame.load_noise);
     }
     let doubt = frame.relative_doubt();
     let known = frame.nuisance_amplitudes();
     for u in unknown.iter().chain(&known) {
+        let correlation = u.amplitudes.correlation;
+        if correlation > 0.0 {
+            let mut own: Vec<f64> = (0..n_g * n_g)
+                .map(|i| frame.noise_between(i / n_g, i % n_g))
+                .collect();
+            for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
+                add_outer(&mut own, pattern, u.scatter_variance(kind));
+            }
+            wander.push((correlation, own));
+        }
         for (pattern, &kind) in u.amplitudes.patterns.iter().zip(&u.amplitudes.kinds) {
             // The model errs in these patterns as in all others.
             let own: Vec<f64> = pattern
@@ -109,7 +123,6 @@ pub fn covariance(
             }
         }
     }
-    let noise = frame.noise * frame.noise;
     let any_repeats = repeats.iter().any(|v| *v != 0.0);
     let model = frame.model_rel * frame.model_rel;
     let errors = scattered(frame, members, &state);
@@ -138,9 +151,14 @@ pub fn covariance(
     for (i, &(r, g)) in selection.0.iter().enumerate() {
         for (j, &(s, h)) in selection.0.iter().enumerate().take(i + 1) {
             let within = match r == s {
-                true => read(&block, (r, g), (s, h)) + if g == h { noise } else { 0.0 },
-                false if any_repeats => read(&repeats, (r, g), (s, h)),
-                false => 0.0,
+                true => read(&block, (r, g), (s, h)) + frame.noise_between(g, h),
+                false => {
+                    let steady = any_repeats.then(|| read(&repeats, (r, g), (s, h)));
+                    let apart = r.abs_diff(s) as i32;
+                    let slow = wander.iter();
+                    let slow = slow.map(|(c, own)| c.powi(apart) * read(own, (r, g), (s, h)));
+                    steady.unwrap_or(0.0) + slow.sum::<f64>()
+                }
             };
             let persistent = if g == h { across(g, r, s) } else { 0.0 };
             out[i * n + j] += within + persistent;
@@ -200,6 +218,11 @@ fn scattered(frame: &StrainFrame, members: &[Member<'_>], state: &StrainState) -
             Scatter::Together(error) => out.push(strain(error, 0..n_c)),
             Scatter::Single(error) => out.extend((0..n_c).map(|c| strain(error, c..c + 1))),
         }
+    }
+    if frame.coefficient_rel > 0.0 {
+        let relative = |v: &f64| frame.coefficient_rel * v;
+        let own: Vec<f64> = state.influence.iter().map(relative).collect();
+        out.extend((0..n_c).map(|c| strain(&own, c..c + 1)));
     }
     out.retain(|e| e.iter().any(|v| *v != 0.0));
     out

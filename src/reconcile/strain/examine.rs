@@ -2,10 +2,11 @@
 
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
-use super::judge::{adequacy_of, at_floor, judge, named};
+use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
 use super::recorded::wrong_records;
+use super::sizes_found::named;
 use super::smooth::smooth_instead;
 use super::validation::{Proofs, validated};
 use crate::finding::Finding;
@@ -47,7 +48,27 @@ pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
 }
 
 /// Judges `frame` with `candidates`: effects of one's own beside those of the library.
+///
+/// The stated uncertainty of the model is an error of the strain that a gauge is predicted to have. If nothing explains the gap beyond it, each
+/// influence coefficient may be off by as much as well, since errors of coefficients do not cancel where the strains of loads do.
 pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
+    let outcome = examined(frame, candidates);
+    let is_open = outcome.verdict == Verdict::Unknown && !frame.stop.is_asked();
+    if !is_open || frame.model_rel <= frame.coefficient_rel {
+        return outcome;
+    }
+    let by_coefficient = StrainFrame {
+        coefficient_rel: frame.model_rel,
+        ..frame.clone()
+    };
+    let second = examined(&by_coefficient, candidates);
+    match second.verdict {
+        Verdict::Unknown => outcome,
+        _ => second,
+    }
+}
+
+fn examined(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let fit_runs = frame.observations.fit_runs();
     let mut reference: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut all: Vec<Scored<Fit>> = Vec::new();
@@ -162,7 +183,8 @@ fn named_instead(
     search_near(likelihood, breadth(likelihood.frame), &plain)
 }
 
-/// The set without noise that was stated too small, where it reaches the floor without.
+/// The set without noise that was stated too small, where it reaches the floor without. Noise that wanders stays: a constant that ten independent
+/// runs show may be none in ten that are correlated.
 fn without_needless_noise(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -170,6 +192,13 @@ fn without_needless_noise(
     best: Scored<Fit>,
 ) -> Scored<Fit> {
     let kept = named_part(candidates, &best.set);
+    let wanders = |c: &usize| {
+        let own = candidates.get(*c).and_then(|c| c.effect.amplitudes(frame));
+        own.is_some_and(|a| a.correlation > 0.0)
+    };
+    if best.set.iter().any(wanders) {
+        return best;
+    }
     let plain = all
         .iter()
         .find(|s| s.set == kept && s.set.len() < best.set.len());

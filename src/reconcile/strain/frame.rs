@@ -4,7 +4,7 @@
 
 use crate::reconcile::Observations;
 use crate::reconcile::rules::StrainRules;
-use crate::sensitivity::Uncertainty;
+use crate::sensitivity::{GaugeNoise, Uncertainty};
 use crate::stop::Stop;
 
 /// How a gauge's arms are wired, as far as an angle error is concerned.
@@ -154,12 +154,16 @@ pub struct StrainFrame {
     pub masses: Vec<MassSignature>,
     /// Zones and joints whose stiffness may be wrong.
     pub stiffness: Vec<StiffnessSignature>,
-    /// Strain noise of a mean, microstrain, 1 sd.
+    /// Strain noise of a mean, microstrain, 1 sd; by gauge its root mean square.
     pub noise: f64,
+    /// Noise of gauges that differs or is correlated, in units of `noise`; `None` where all gauges have the same, independent of each other.
+    pub gauge_noise: Option<GaugeNoise>,
     /// Noise of a measured wheel load, kN, 1 sd.
     pub load_noise: f64,
-    /// Model uncertainty, relative to the predicted strain of a gauge and common to all its runs, 1 sd.
+    /// Model uncertainty, 1 sd, relative to the predicted strain of a gauge and common to all its runs.
     pub model_rel: f64,
+    /// Model uncertainty, 1 sd, relative to each influence coefficient by itself and common to all runs.
+    pub coefficient_rel: f64,
     /// Influence on the analyst's own mesh, where `influence` comes from a finer one: the gap is judged on the analyst's, effects on the finer.
     pub as_modelled: Option<Vec<f64>>,
     /// What else leaves each gauge's influence in doubt, each an error of one standard deviation (`n_gauges x n_columns`), independent
@@ -199,6 +203,20 @@ impl StrainFrame {
         self.load_names.len() + N_PAYLOAD_COLUMNS
     }
 
+    /// Returns the standard deviation of the noise of a gauge, microstrain.
+    pub fn noise_of(&self, gauge: usize) -> f64 {
+        self.noise_between(gauge, gauge).sqrt()
+    }
+
+    /// Returns the covariance of the noise of two gauges in a run, microstrain^2.
+    pub fn noise_between(&self, g: usize, h: usize) -> f64 {
+        let relative = match &self.gauge_noise {
+            Some(noise) => noise.between(g, h),
+            None => f64::from(u8::from(g == h)),
+        };
+        self.noise * self.noise * relative
+    }
+
     /// Root mean square of the wheel loads over all runs, kN; one where there are none.
     pub fn usual_load(&self) -> f64 {
         let power = self.loads.iter().map(|f| f * f).sum::<f64>() / self.loads.len().max(1) as f64;
@@ -224,7 +242,7 @@ impl StrainFrame {
             } else {
                 0.0
             };
-            (self.model_rel * self.model_rel + relative).sqrt()
+            (self.model_rel.powi(2) + self.coefficient_rel.powi(2) + relative).sqrt()
         };
         (0..self.n_gauges()).map(doubt).collect()
     }

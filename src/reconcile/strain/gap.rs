@@ -7,6 +7,7 @@ use super::state::StrainState;
 use crate::estimate::rms;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::spd::dot;
+use crate::reconcile::checks::Fall;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
@@ -72,6 +73,11 @@ impl Judged {
         self.mesh.extend(other.mesh);
     }
 
+    /// Returns the fall of the squared residual by the effects.
+    fn fall(&self) -> Fall {
+        Fall::between(&self.before, &self.after, &self.floor)
+    }
+
     /// RMS over RMS of the readings: before, after, floor.
     pub fn numbers(&self) -> GapNumbers {
         let scale = rms(self.reading.iter().copied());
@@ -130,6 +136,7 @@ impl Judged {
                 mesh,
                 basis,
                 loads_found: Some(loads_found.numbers()),
+                falls: after < before && (self.fall().is_seen() || loads_found.fall().is_seen()),
             },
             channels,
         )

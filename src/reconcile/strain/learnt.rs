@@ -66,6 +66,17 @@ pub(super) fn heavier_tail(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
     }
 }
 
+/// Returns the expected factor on the precision given a residual of `chi2`, `(v + n) / (v + chi^2)`: a multivariate Student's t is a Gaussian whose
+/// precision has an unknown factor. 1 where the covariance is stated.
+pub(super) fn expected_precision(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
+    match &frame.learnt {
+        Some(u) if u.dof.is_finite() => {
+            (u.dof.max(1.0) + n as f64) / (u.dof.max(1.0) + chi2.max(0.0))
+        }
+        _ => 1.0,
+    }
+}
+
 /// The readings of a run: places in the selection, and what gauges share in each.
 struct Run {
     run: usize,

@@ -2,6 +2,7 @@
 
 mod adequacy;
 mod bias;
+mod companions;
 mod covariance;
 mod detect;
 mod evidence;
@@ -26,9 +27,11 @@ mod recorded;
 mod recovered;
 mod remains;
 mod resampled;
+mod rivals;
 mod scorer;
 mod screen;
 mod size;
+mod sizes_found;
 mod smooth;
 mod standing;
 mod state;

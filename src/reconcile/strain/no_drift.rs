@@ -1,11 +1,14 @@
 //! Zeros that are said to drift and scatter, but do not: noise of a gauge's own, or readings that bend with the load.
 
+use super::covariance::{Selection, patterns_read};
+use super::explanation::Explanation;
 use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::prediction::predict;
+use super::size::{RunBlocks, amplitudes_by_run};
 use crate::estimate::f_tail;
 use crate::linalg::{Matrix, dense};
-use crate::reconcile::effect::{Candidate, FaultKind, Member, full_id};
+use crate::reconcile::effect::{Candidate, FaultKind, Member, SizedAmplitudes, full_id};
 use crate::reconcile::search::Scored;
 
 /// Chance of a wrong doubt of a zero that drifts.
@@ -66,7 +69,7 @@ pub(super) fn no_drift(
 struct Besides {
     /// Number of the run over that of all.
     at: Vec<f64>,
-    /// Strain that it would read with the others on.
+    /// Strain that it would read with the others on, their amplitudes included.
     model: Vec<f64>,
     /// What it reads besides.
     rest: Vec<f64>,
@@ -92,6 +95,7 @@ fn beside_others(
         })
         .collect();
     let predicted = predict(frame, &members);
+    let amplitudes = of_amplitudes(frame, candidates, scored, but, gauge);
     let n_g = frame.n_gauges();
     let n_r = frame.n_runs().max(1) as f64;
     let mut out = Besides {
@@ -105,9 +109,55 @@ fn beside_others(
             .get(run * n_g + gauge)
             .filter(|_| read.is_finite())
         {
+            let model = model + amplitudes[run];
             out.at.push(run as f64 / n_r);
-            out.model.push(*model);
+            out.model.push(model);
             out.rest.push(read - model);
+        }
+    }
+    out
+}
+
+/// Strain at `gauge` by run of the amplitudes of all members but one, as the readings of all gauges show them. In a gauge whose zero moves by run
+/// they show less, since the amplitude of that zero is unknown as well.
+fn of_amplitudes(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    scored: &Scored<Fit>,
+    but: usize,
+    gauge: usize,
+) -> Vec<f64> {
+    let mut out = vec![0.0; frame.n_runs()];
+    let e = Explanation::of(frame, candidates, scored);
+    let read = |u: &SizedAmplitudes| {
+        let mut read = u.clone();
+        read.amplitudes.patterns = patterns_read(frame, &e.members, &u.amplitudes.patterns);
+        read
+    };
+    let unknown: Vec<SizedAmplitudes> = e.unknown.iter().map(read).collect();
+    if unknown.len() < 2 {
+        return out;
+    }
+    let runs: Vec<usize> = (0..frame.n_runs()).collect();
+    let selection = Selection::of_runs(frame, &runs);
+    let n_g = frame.n_gauges();
+    let readings = selection.pick(&frame.observations.values, n_g);
+    let predicted = selection.pick(&predict(frame, &e.members), n_g);
+    let residual: Vec<f64> = readings.iter().zip(predicted).map(|(y, p)| y - p).collect();
+    let blocks = RunBlocks::of(frame, &e.members, &selection);
+    let mut read: Vec<usize> = selection.0.iter().map(|e| e.0).collect();
+    read.dedup();
+    // By pattern: what the gauge reads of it, nothing of the zero itself.
+    let families = scored.fit.sizes.iter().zip(&unknown);
+    let at_gauge = families.flat_map(|((c, _), u)| {
+        let patterns = u.amplitudes.patterns.iter();
+        patterns.map(move |p| if *c == but { 0.0 } else { p[gauge] })
+    });
+    let at_gauge: Vec<f64> = at_gauge.collect();
+    let by_run = amplitudes_by_run(&blocks, &residual, &unknown);
+    if by_run.len() == read.len() {
+        for (run, own) in read.into_iter().zip(by_run) {
+            out[run] = own.iter().zip(&at_gauge).map(|(a, p)| a[0] * p).sum();
         }
     }
     out

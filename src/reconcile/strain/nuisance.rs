@@ -26,8 +26,9 @@ impl StrainFrame {
             kinds,
             usual: sizes.clone(),
             steady: sizes.clone(),
+            correlation: 0.0,
             unit: "1",
-            plausible: f64::INFINITY,
+            plausible: vec![f64::INFINITY; sizes.len()],
         };
         Some(SizedAmplitudes {
             amplitudes,

@@ -3,9 +3,10 @@
 use super::explanation::{ids, is_unmodelled, named_part};
 use super::likelihood::Fit;
 use super::own_covariance::under_own_covariance;
-use super::validation::{Proofs, validated, validated_beside};
+use super::validation::{Proofs, residuals_on};
+use crate::reconcile::checks::Fall;
 use crate::reconcile::effect::Candidate;
-use crate::reconcile::proven::{Useless, without_useless};
+use crate::reconcile::proven::{Useless, Without, without_useless};
 use crate::reconcile::search::Scored;
 use rayon::prelude::*;
 
@@ -32,14 +33,21 @@ pub(super) fn proven(
         if frame.stop.is_asked() {
             return None;
         }
+        let [with, _] = residuals_on(proofs, candidates, set, &set.set);
         let without = |c: &usize| {
             let rest: Vec<usize> = set.set.iter().copied().filter(|m| m != c).collect();
-            let fitted = under_own_covariance(frame, candidates, &rest, set)?;
-            let gap = validated_beside(proofs, candidates, &fitted, &set.set).0;
-            Some((gap.after, fitted))
+            let fit = under_own_covariance(frame, candidates, &rest, set)?;
+            let [without, _] = residuals_on(proofs, candidates, &fit, &set.set);
+            Some(Without {
+                gap: without.numbers().after,
+                fall: Fall::between(&without.after, &with.after, &with.floor),
+                fit,
+            })
         };
-        let with = validated(proofs, candidates, set).0.after;
-        Some((with, names.par_iter().map(without).collect()))
+        Some((
+            with.numbers().after,
+            names.par_iter().map(without).collect(),
+        ))
     });
     let told = |u: &Useless| {
         format!(

@@ -9,63 +9,13 @@ use crate::estimate::rms;
 use crate::reconcile::effect::Member;
 use crate::reconcile::outcome::{ChannelGap, Misfit};
 
-/// Why a set that was tried is not named.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Withheld {
-    /// Its effects whose size is none that occurs.
-    pub implausible: Vec<String>,
-    /// Its gap before and after where it does not fall on the runs that judge.
-    pub no_fall: Option<[f64; 2]>,
-    /// Its noise over the stated one where that is more than noise stated too small.
-    pub noise: Option<f64>,
-    /// What speaks against its names: neighbours that fail together, drawings of the runs.
-    pub doubt: Option<String>,
-    /// What it takes is told already: a form that is no effect of the library.
-    pub is_told: bool,
-}
-
-impl Withheld {
-    /// What speaks against the set itself.
-    fn reasons(&self) -> Vec<String> {
-        let mut out: Vec<String> = self.doubt.iter().cloned().collect();
-        if !self.implausible.is_empty() {
-            out.push(format!(
-                "the size of {} is none that occurs",
-                self.implausible.join(", ")
-            ));
-        }
-        if let Some([before, after]) = self.no_fall {
-            out.push(format!(
-                "the gap on the runs that judge does not fall ({:.2} % before, {:.2} % after)",
-                100.0 * before,
-                100.0 * after
-            ));
-        }
-        if let Some(noise) = self.noise {
-            out.push(format!(
-                "it takes noise {noise:.2} times the stated one to get there"
-            ));
-        }
-        out
-    }
-
-    /// In words; without a reason: the misfit itself.
-    fn words(&self) -> String {
-        match (self.reasons(), self.is_told) {
-            (list, _) if !list.is_empty() => list.join(", "),
-            (_, true) => "the form that closes the gap is no effect of the library".into(),
-            (_, false) => "all gauges and runs together lie above their floor".into(),
-        }
-    }
-}
-
 /// A sentence or two on what `members` leave of the fit runs.
 pub fn remains(
     frame: &StrainFrame,
     members: &[Member<'_>],
     after: &Adequacy,
     strange: Option<&str>,
-    withheld: Option<&Withheld>,
+    withheld: Option<&[String]>,
 ) -> String {
     let rest = beyond(frame, members, after, withheld);
     match (strange, strange.and_then(|_| model_bias(frame))) {
@@ -106,15 +56,18 @@ pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
     }
 }
 
-/// What is said where no single gauge or run lies above its floor; `withheld` where there is a gap all the same.
-fn none_alone(reduced_chi2: f64, withheld: Option<&Withheld>) -> String {
+/// What is said where no single gauge or run lies above its floor; `withheld`, the reasons against the set, where there is a gap all the same.
+fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
     match withheld {
         None => format!(
             "nothing above the floor at any gauge or in any run (reduced chi-square {reduced_chi2:.2})"
         ),
-        Some(w) => format!(
+        Some(reasons) => format!(
             "no gauge and no run stands out by itself (reduced chi-square {reduced_chi2:.2} over all), and nothing is named: {}",
-            w.words()
+            match reasons {
+                [] => "all gauges and runs together are above their floor".to_owned(),
+                list => list.join(", "),
+            }
         ),
     }
 }
@@ -124,7 +77,7 @@ fn beyond(
     frame: &StrainFrame,
     members: &[Member<'_>],
     after: &Adequacy,
-    withheld: Option<&Withheld>,
+    withheld: Option<&[String]>,
 ) -> String {
     let list = |parts: &[Misfit]| {
         let mut sorted: Vec<&Misfit> = parts.iter().filter(|m| m.deviate > 3.0).collect();
@@ -141,8 +94,8 @@ fn beyond(
         return none_alone(after.fit, withheld);
     }
     let mut out = format!("reduced chi-square {:.2} over all", after.fit);
-    if let Some(w) = withheld.filter(|w| !w.reasons().is_empty()) {
-        out += &format!("; nothing is named: {}", w.words());
+    if let Some(reasons) = withheld.filter(|r| !r.is_empty()) {
+        out += &format!("; nothing is named: {}", reasons.join(", "));
     }
     if !gauges.is_empty() {
         out += &format!("; gauges: {gauges}");
@@ -188,40 +141,14 @@ fn correlation(points: &[(f64, f64)]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Withheld, none_alone};
+    use super::none_alone;
 
     /// Beside a gap it is never said that nothing is above the floor, whatever keeps the set from being named.
     #[test]
     fn nothing_above_the_floor_is_said_only_where_there_is_no_gap() {
-        let implausible = Withheld {
-            implausible: vec!["zero_drift:G01".into()],
-            ..Withheld::default()
-        };
-        let no_fall = Withheld {
-            no_fall: Some([0.01, 0.02]),
-            ..Withheld::default()
-        };
-        let noise = Withheld {
-            noise: Some(2.5),
-            ..Withheld::default()
-        };
-        let doubt = Withheld {
-            doubt: Some("three neighbours".into()),
-            ..Withheld::default()
-        };
-        let told = Withheld {
-            is_told: true,
-            ..Withheld::default()
-        };
-        for (withheld, said) in [
-            (implausible, "zero_drift:G01"),
-            (no_fall, "1.00 % before, 2.00 % after"),
-            (noise, "2.50 times"),
-            (doubt, "three neighbours"),
-            (told, "no effect of the library"),
-            (Withheld::default(), "together"),
-        ] {
-            let words = none_alone(1.0, Some(&withheld));
+        let reasons = ["three neighbours".to_owned()];
+        for (withheld, said) in [(&reasons[..], "three neighbours"), (&[], "together")] {
+            let words = none_alone(1.0, Some(withheld));
             assert!(!words.contains("nothing above the floor"), "{words}");
             assert!(words.contains(said), "{words}");
         }

@@ -3,9 +3,11 @@
 use super::covariance::Selection;
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
+use super::learnt::expected_precision;
 use super::likelihood::Fit;
 use super::prediction::predict;
 use super::size::RunBlocks;
+use crate::linalg::spd::dot;
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
@@ -74,7 +76,8 @@ pub(super) fn drawings_won(
     won
 }
 
-/// By run: log density of its readings with the set on, less constants.
+/// By run: log density of its readings with the set on, less constants; with a covariance that was estimated, at the precision that the residual of
+/// all runs makes most likely.
 fn densities(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -89,21 +92,16 @@ fn densities(
     let residual =
         |&(r, g): &(usize, usize)| frame.observations.value(r, g) - predicted[r * n_g + g];
     let residual: Vec<f64> = selection.0.iter().map(residual).collect();
-    blocks
-        .precisions(&e.unknown)
-        .iter()
+    let by_run: Vec<[f64; 2]> = (blocks.precisions(&e.unknown).iter())
         .map(|run| {
             let r: Vec<f64> = run.at.iter().map(|&i| residual[i]).collect();
-            let chi2: f64 = run
-                .precision
-                .apply(&r)
-                .iter()
-                .zip(&r)
-                .map(|(a, b)| a * b)
-                .sum();
-            -0.5 * (chi2 + run.precision.log_det())
+            [dot(&run.precision.apply(&r), &r), run.precision.log_det()]
         })
-        .collect()
+        .collect();
+    let whole = by_run.iter().map(|run| run[0]).sum();
+    let precision = expected_precision(frame, whole, selection.len());
+    let density = |[chi2, log_det]: [f64; 2]| -0.5 * (precision * chi2 + log_det);
+    by_run.into_iter().map(density).collect()
 }
 
 /// Numbers that repeat from call to call (a linear congruential generator, Knuth's constants), so that an answer does too.

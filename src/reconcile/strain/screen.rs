@@ -30,6 +30,7 @@ impl Likelihood<'_> {
         let Some(precision) = self.precision(&base.fit.sizes) else {
             return Vec::new();
         };
+        let slow = self.slow_noise(base, &precision);
         let members = self.members(&base.set, &base.fit.parameters);
         let now = Base {
             scored: base,
@@ -59,6 +60,9 @@ impl Likelihood<'_> {
                 if base.set.contains(&c) || smooth || (form && this.names_only) {
                     return None;
                 }
+                if let Some(known) = slow.iter().find(|a| a.candidate == c) {
+                    return Some(known.clone());
+                }
                 let (gain, parameters, sizes) = match candidate.effect.amplitudes(this.frame) {
                     Some(_) if candidate.effect.parameters().is_empty() => {
                         let (after, sizes) = this.run_by_run(c, now);
@@ -84,6 +88,30 @@ impl Likelihood<'_> {
             .collect();
         out.retain(|a| a.gain.is_finite());
         out.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        out
+    }
+
+    /// Noise that wanders from run to run, tried with the correlation between runs in: `-(r' P r - ln det P) / 2` less that of the base.
+    fn slow_noise(&mut self, base: &Scored<Fit>, precision: &Precision) -> Vec<Addition> {
+        let r = &base.fit.residual;
+        let density = |p: &Precision| -0.5 * (dot(r, &p.apply(r)) + p.log_det());
+        let before = density(precision);
+        let mut out = Vec::new();
+        for (candidate, c) in self.candidates.iter().enumerate() {
+            let Some(a) = (c.effect.amplitudes(self.frame)).filter(|a| a.correlation > 0.0) else {
+                continue;
+            };
+            let own = [a.usual, a.steady].concat();
+            let sizes = [base.fit.sizes.as_slice(), &[(candidate, own.clone())]].concat();
+            if let Some(with) = self.precision(&sizes) {
+                out.push(Addition {
+                    candidate,
+                    gain: density(&with) - before + c.log_prior,
+                    parameters: Vec::new(),
+                    sizes: own,
+                });
+            }
+        }
         out
     }
 

@@ -259,6 +259,81 @@ impl Squares {
     }
 }
 
+/// Amplitudes of one run given its residual: by pattern the mean of what differs from run to run, and what is left of its variance.
+fn scattered(
+    run: &RunPrecision<'_>,
+    residual: &[f64],
+    unknown: &[SizedAmplitudes],
+    patterns: &[Pattern<'_>],
+    repeated: &Steady,
+) -> Vec<[f64; 2]> {
+    let repeats = |g: usize| -> f64 {
+        let listed = repeated.which.iter().zip(&repeated.mean);
+        listed.map(|(&p, m)| m * patterns[p].values[g]).sum()
+    };
+    let r: Vec<f64> = (run.at.iter().zip(run.gauges))
+        .map(|(&i, &g)| residual[i] - repeats(g))
+        .collect();
+    let pr = run.precision.apply(&r);
+    let one = |p: &Pattern<'_>| {
+        let here: Vec<f64> = run.gauges.iter().map(|&g| p.values[g]).collect();
+        let variance = unknown[p.family].scatter_variance(p.kind);
+        let known = variance * variance * dot(&here, &run.precision.apply(&here));
+        [variance * dot(&here, &pr), variance - known]
+    };
+    patterns.iter().map(one).collect()
+}
+
+/// Returns by run and pattern the amplitude that `residual` shows, with its variance: mean of what repeats and of what differs from run to run.
+/// Runs are those of `blocks`, without those whose precision does not exist.
+pub fn amplitudes_by_run(
+    blocks: &RunBlocks,
+    residual: &[f64],
+    unknown: &[SizedAmplitudes],
+) -> Vec<Vec<[f64; 2]>> {
+    let patterns = patterns_of(unknown);
+    let runs = blocks.precisions(unknown);
+    let repeated = steady(&runs, residual, &patterns);
+    let mut constant = vec![[0.0; 2]; patterns.len()];
+    for (i, (&p, mean)) in repeated.which.iter().zip(&repeated.mean).enumerate() {
+        let left = repeated.posterior.as_ref().map_or(0.0, |q| q.entry(i, i));
+        constant[p] = [*mean, left];
+    }
+    let of_run = |run: &RunPrecision<'_>| -> Vec<[f64; 2]> {
+        let own = scattered(run, residual, unknown, &patterns, &repeated);
+        let both = own.into_iter().zip(&constant);
+        both.map(|(own, c)| [own[0] + c[0], own[1] + c[1]])
+            .collect()
+    };
+    runs.iter().map(of_run).collect()
+}
+
+/// Returns by family and kind the root mean square of the amplitudes that `residual` shows, over runs and patterns, with its standard deviation.
+pub fn amplitudes_found(
+    blocks: &RunBlocks,
+    residual: &[f64],
+    unknown: &[SizedAmplitudes],
+) -> Vec<Vec<[f64; 2]>> {
+    let patterns = patterns_of(unknown);
+    // Sum of squares, of squares times their variance, and number.
+    let empty = |u: &SizedAmplitudes| vec![[0.0; 3]; u.amplitudes.usual.len()];
+    let mut sums: Vec<Vec<[f64; 3]>> = unknown.iter().map(empty).collect();
+    for run in amplitudes_by_run(blocks, residual, unknown) {
+        for (p, [mean, left]) in patterns.iter().zip(run) {
+            let sum = &mut sums[p.family][p.kind];
+            sum[0] += mean * mean;
+            sum[1] += mean * mean * left;
+            sum[2] += 1.0;
+        }
+    }
+    let found = |[squares, errors, n]: [f64; 3]| match squares > 0.0 {
+        true => [(squares / n).sqrt(), (errors / (n * squares)).sqrt()],
+        false => [0.0, 0.0],
+    };
+    let of = |kinds: Vec<[f64; 3]>| kinds.into_iter().map(found).collect();
+    sums.into_iter().map(of).collect()
+}
+
 /// By family: the sizes (see [`SizedAmplitudes::sizes`]) that explain `residual` best, drawn towards the usual ones.
 ///
 /// Expectation maximisation: with a_r the amplitudes of run r and m what repeats of them, given the residuals,
@@ -287,27 +362,9 @@ pub fn usual_sizes(blocks: &RunBlocks, residual: &[f64], families: &[Amplitudes]
             steady[patterns[p].family].add(patterns[p].kind, repeated.mean[i].powi(2) + known);
         }
         for run in &runs {
-            let repeats = |g: usize| -> f64 {
-                repeated
-                    .which
-                    .iter()
-                    .zip(&repeated.mean)
-                    .map(|(&p, m)| m * patterns[p].values[g])
-                    .sum()
-            };
-            let r: Vec<f64> = run
-                .at
-                .iter()
-                .zip(run.gauges)
-                .map(|(&i, &g)| residual[i] - repeats(g))
-                .collect();
-            let pr = run.precision.apply(&r);
-            for p in &patterns {
-                let here: Vec<f64> = run.gauges.iter().map(|&g| p.values[g]).collect();
-                let variance = unknown[p.family].scatter_variance(p.kind);
-                let mean = variance * dot(&here, &pr);
-                let told = variance * variance * dot(&here, &run.precision.apply(&here));
-                scatter[p.family].add(p.kind, mean * mean + variance - told);
+            let own = scattered(run, residual, &unknown, &patterns, &repeated);
+            for (p, [mean, left]) in patterns.iter().zip(own) {
+                scatter[p.family].add(p.kind, mean * mean + left);
             }
         }
         let mut moved = 0.0f64;

@@ -10,7 +10,7 @@ use crate::reconcile::search::Scored;
 
 /// The names of the best set before the drawings of the runs.
 pub(super) struct Standing {
-    /// Those that at least half of the drawings hold.
+    /// Names that enough resampled run sets hold.
     names: Vec<usize>,
     /// What speaks against the others, in words; `None` where all stand.
     pub doubt: Option<String>,
@@ -25,7 +25,7 @@ impl Standing {
         candidates: &[Candidate],
         all: &[Scored<Fit>],
         best: &Scored<Fit>,
-        rivals: &[Scored<Fit>],
+        rivals: &[(Vec<String>, Scored<Fit>)],
     ) -> Self {
         let names = named_part(candidates, &best.set);
         let others = best.set.iter().copied().filter(|c| !names.contains(c));
@@ -36,7 +36,7 @@ impl Standing {
             _ => None,
         };
         let mut contest = vec![best];
-        contest.extend(rivals.iter().filter(|s| s.set != best.set));
+        contest.extend(rivals.iter().map(|r| &r.1).filter(|s| s.set != best.set));
         for none in [known(&[]), known(&noise).or(scored.as_ref())] {
             contest.extend(none.filter(|s| contest.iter().all(|k| k.set != s.set)));
         }
@@ -58,7 +58,8 @@ impl Standing {
                 unsure.map(|c| format!("{} in {}", ids(candidates, &[*c]).concat(), holds(c)));
             let told: Vec<String> = told.collect();
             Some(format!(
-                "of what explains the rest fewer than half of {DRAWINGS} drawings of the runs hold each, and it is not named: {}",
+                "fewer than {:.0} of {DRAWINGS} resampled run sets contain each of these effects, and they are not reported: {}",
+                frame.rules.drawings * DRAWINGS as f64,
                 told.join(", ")
             ))
         };
@@ -91,11 +92,6 @@ impl Standing {
     pub fn wins(&self, names: &[usize]) -> usize {
         let holding = |s: &&(Vec<usize>, usize)| names.iter().all(|c| s.0.contains(c));
         self.contest.iter().filter(holding).map(|s| s.1).sum()
-    }
-
-    /// Whether no name stands.
-    pub fn is_none(&self) -> bool {
-        self.names.is_empty()
     }
 }
 

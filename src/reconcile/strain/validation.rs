@@ -13,7 +13,7 @@ use rayon::prelude::*;
 const FOLDS: usize = 6;
 
 /// Residuals judged with amplitudes found anew, and with the loads besides.
-type Both = [Judged; 2];
+pub(super) type Both = [Judged; 2];
 
 /// Runs to be judged, with their residuals by the analyst's model.
 struct Proven {
@@ -94,23 +94,29 @@ pub fn validated(
     candidates: &[Candidate],
     scored: &Scored<Fit>,
 ) -> (Gap, Vec<ChannelGap>) {
-    validated_beside(proofs, candidates, scored, &scored.set)
+    let frame = proofs.frame;
+    let [plain, loads_found] = residuals_on(proofs, candidates, scored, &scored.set);
+    let basis = match frame.observations.held_out.iter().any(|h| *h) {
+        true => GapBasis::HeldOut,
+        false => GapBasis::CrossValidated,
+    };
+    plain.gap(frame, basis, &loads_found)
 }
 
-/// The same, on the readings that `beside` is judged on: those of the runs that its effects touch as well.
-pub(super) fn validated_beside(
+/// Returns the residuals of `scored` on the readings that the set `of` is compared on: those of the runs that its effects touch as well.
+pub(super) fn residuals_on(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
     scored: &Scored<Fit>,
-    beside: &[usize],
-) -> (Gap, Vec<ChannelGap>) {
+    of: &[usize],
+) -> Both {
     let frame = proofs.frame;
     let held_out = frame.observations.held_out.iter().any(|h| *h);
     let [mut plain, mut loads_found] = match proofs.parts.as_slice() {
         [one] if held_out => one.judged(candidates, scored),
         parts => in_turn(parts, candidates, scored),
     };
-    let effects = beside.iter().filter_map(|&c| candidates.get(c));
+    let effects = of.iter().filter_map(|&c| candidates.get(c));
     let mut touched: Vec<usize> = effects.flat_map(|c| c.effect.runs()).collect();
     touched.sort_unstable();
     touched.dedup();
@@ -129,12 +135,7 @@ pub(super) fn validated_beside(
             loads_found.extend(b);
         }
     }
-    let basis = if held_out {
-        GapBasis::HeldOut
-    } else {
-        GapBasis::CrossValidated
-    };
-    plain.gap(frame, basis, &loads_found)
+    [plain, loads_found]
 }
 
 fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> Both {

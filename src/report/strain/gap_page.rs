@@ -133,7 +133,13 @@ fn added_section(outcome: &Outcome, added: &[Vec<String>]) -> Section {
         return Section::new(ADDED, vec![nothing]);
     }
     let rows = outcome.best_attempt.iter().map(effect).collect();
-    let head = ["effect", "size", "sigma", "unit", "plausible"];
+    let head = [
+        "effect",
+        "size",
+        "± (half width of the 95 % interval)",
+        "unit",
+        "plausible",
+    ];
     let mut blocks = vec![Block::table(&head, rows)];
     blocks.push(match (outcome.verdict, added.is_empty()) {
         (Verdict::Named, false) => Block::table(
@@ -290,7 +296,7 @@ fn verdict(outcome: &Outcome) -> Vec<Block> {
     if !outcome.best_attempt.is_empty() {
         let ids: Vec<&str> = outcome.best_attempt.iter().map(|e| e.id.as_str()).collect();
         out.push(Block::Text(format!(
-            "{}. When the runs are drawn anew, {} of 100 drawings hold every name of it.",
+            "{}. {} of 100 resampled run sets contain every effect.",
             ids.join(", "),
             outcome.wins
         )));
@@ -329,11 +335,12 @@ fn gap_words(outcome: &Outcome) -> String {
 
 fn effect(e: &NamedEffect) -> Vec<String> {
     let list = |v: &[f64]| v.iter().map(|x| number(*x)).collect::<Vec<_>>().join(", ");
+    let half: Vec<f64> = e.sigma.iter().map(|s| NORMAL_95 * s).collect();
     let plausible = if e.plausible { "yes" } else { "no" };
     vec![
         e.id.clone(),
         list(&e.size),
-        list(&e.sigma),
+        list(&half),
         e.unit.into(),
         plausible.into(),
     ]

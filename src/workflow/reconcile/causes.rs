@@ -9,6 +9,7 @@ use crate::job::{Job, Reconcile};
 use crate::measured::runs_columns::{asked_column, note_unread_runs, run_column, take_units};
 use crate::measured::runs_file::given_loads;
 use crate::reconcile::{Cause, CauseOutcome, CauseSet, Observations, Verdict, weigh_causes};
+use crate::strain_chain::stated_noise;
 
 /// Weighs the causes of the job.
 ///
@@ -22,7 +23,10 @@ pub(super) fn answer(
 ) -> Result<Reconciled, Faults> {
     let causes = read(job, reconcile, work, observations)?;
     let noise = job.measured.as_ref().map_or(1.0, |m| m.noise_microstrain);
-    let noise = vec![noise; observations.n_channels()];
+    let noise: Vec<f64> = match stated_noise(job, &observations.channels)? {
+        Some(stated) => stated.sd().iter().map(|sd| noise * sd).collect(),
+        None => vec![noise; observations.n_channels()],
+    };
     let outcome = work.stage("search", |_| weigh_causes(observations, &noise, &causes));
     if !outcome.rivals.is_empty() {
         let names: Vec<String> = outcome.rivals.iter().map(|r| r.names.join(" + ")).collect();

@@ -123,6 +123,7 @@ pub(super) fn read(
         [&along, &across],
     );
     part.per_mm = Some(along);
+    part.gauge_noise = s.gauge_noise(job)?;
     part.as_modelled = finer.is_some().then_some(base);
     let deck = DeckFrame {
         zones: super::zones::zones(job, fields.model(), &gauges)?,

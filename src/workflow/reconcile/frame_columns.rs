@@ -4,7 +4,8 @@ use crate::host::fault::{Fault, FaultList, Faults};
 use crate::job::Job;
 use crate::job::quantity::quantity_of_name;
 use crate::reconcile::strain::NuisanceLoad;
-use crate::sensitivity::{Load, Sensitivity, Uncertainty};
+use crate::sensitivity::{GaugeNoise, Load, Sensitivity, Uncertainty};
+use crate::strain_chain::stated_noise;
 use crate::units::{KILO, MICROSTRAIN};
 
 /// S as every command has it, with the row of each channel and the scale of each load.
@@ -78,6 +79,15 @@ impl FrameColumns {
         let of_channels = self.sensitivity.uncertainty.as_ref()?.of_gauges(&self.rows);
         let loads: Vec<(usize, f64)> = self.wanted().map(|k| (k, self.scales[k])).collect();
         Some(of_channels.of_loads(&loads))
+    }
+
+    /// Returns the noise of the channels as the job states it; `None` where all have the same, independent of each other.
+    ///
+    /// # Errors
+    /// As [`stated_noise`].
+    pub(super) fn gauge_noise(&self, job: &Job) -> Result<Option<GaugeNoise>, Faults> {
+        let stated = stated_noise(job, &self.sensitivity.gauges)?;
+        Ok(stated.map(|noise| noise.of_gauges(&self.rows)))
     }
 
     fn column(&self, load: usize) -> Vec<f64> {

@@ -229,7 +229,7 @@ impl Residual {
             .into_iter()
             .filter_map(|(run, g)| {
                 let there = *nominal.strain(run).get(g)?;
-                let sd = frame.noise.hypot(doubt.get(g)? * there);
+                let sd = frame.noise_of(g).hypot(doubt.get(g)? * there);
                 let weight = 1.0 / sd.max(f64::MIN_POSITIVE);
                 Some((run, g, frame.observations.value(run, g) - there, weight))
             })

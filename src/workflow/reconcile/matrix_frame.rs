@@ -37,6 +37,7 @@ pub(super) fn read(
     let mut part = ModelPart {
         nuisance,
         learnt: s.learnt(),
+        gauge_noise: s.gauge_noise(job)?,
         load_names: tables.columns.iter().map(|c| c.0.clone()).collect(),
         payload_origin: [
             nominal_x_m(job).unwrap_or(0.0),

@@ -5,7 +5,7 @@ use crate::job::Job;
 use crate::reconcile::strain::{
     GaugeFacts, MassSignature, NuisanceLoad, PlaneStrainRow, Scatter, StiffnessSignature, Wiring,
 };
-use crate::sensitivity::Uncertainty;
+use crate::sensitivity::{GaugeNoise, Uncertainty};
 
 /// Part of a frame that depends on the model and not on the runs, from a deck or from tables.
 #[derive(Clone, Debug, Default)]
@@ -28,6 +28,8 @@ pub(super) struct ModelPart {
     pub(super) scatter: Vec<Scatter>,
     /// How far a calibrated S may be off.
     pub(super) learnt: Option<Uncertainty>,
+    /// Noise of the channels, where it differs or is correlated.
+    pub(super) gauge_noise: Option<GaugeNoise>,
     /// Nominal place of the payload, m.
     pub(super) payload_origin: [f64; 2],
 }

@@ -2,6 +2,7 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled};
 use crate::estimate::NORMAL_95;
+use crate::finding::few;
 use crate::reconcile::Verdict;
 use crate::units::{number, plus_minus};
 
@@ -20,21 +21,89 @@ pub fn size_in_words(e: &EffectFound) -> String {
     };
     let pairs = found.sizes.iter().zip(&found.sigmas);
     let sizes: Vec<String> = pairs.map(|(v, s)| plus_minus(*v, NORMAL_95 * s)).collect();
-    format!("{} {}", sizes.join(", "), found.unit)
+    match found.unit.as_str() {
+        "1" => sizes.join(", "),
+        unit => format!("{} {unit}", sizes.join(", ")),
+    }
 }
 
-/// Returns an effect as a clause of a sentence.
+/// Returns an effect as a clause of a sentence: what, where and how large, the half width of the 95 % interval with it.
 fn clause(e: &EffectFound) -> String {
-    let kind = e.id.split(':').next().unwrap_or(&e.id);
-    match (kind, &e.place) {
-        ("sign_flip", Some(place)) => format!("{place} reads with reversed sign"),
-        ("dead_channel", Some(place)) => format!("{place} gives no signal"),
+    let (kind, place) = (
+        e.id.split(':').next().unwrap_or(&e.id),
+        e.place.as_deref().unwrap_or(""),
+    );
+    let Some(found) = &e.size else {
+        return e.id.clone();
+    };
+    let pairs: Vec<(f64, f64)> = (found.sizes.iter().copied())
+        .zip(found.sigmas.iter().map(|s| NORMAL_95 * s))
+        .collect();
+    let both = place.replace('+', " and ");
+    match (kind, pairs.as_slice()) {
+        ("sign_flip", _) => format!("{place} reads with reversed sign"),
+        ("dead_channel", _) => format!("{place} gives no signal"),
+        ("gauge_swap", _) => format!("the columns of {both} are exchanged"),
+        ("run_exchange", _) => format!("the readings of runs {both} are exchanged"),
+        ("rail_stiffness", [(v, half)]) => {
+            format!("zone {place} is {} than the model", than(*v, *half))
+        }
+        ("joint_stiffness" | "local_stiffness", [(v, half)]) => {
+            // Natural log of the stiffness times 100.
+            let percent = |log: f64| 100.0 * (0.01 * log).exp_m1();
+            let half = 0.5 * (percent(v + half) - percent(v - half));
+            format!("{place} is {} than the model", than(percent(*v), half))
+        }
+        ("gauge_gain" | "accel_gain", [(v, half)]) => {
+            format!(
+                "{place} reads {} times the true value",
+                plus_minus(*v, *half)
+            )
+        }
+        ("gauge_angle", [(v, half)]) => {
+            format!("{place} is turned by {} degrees", plus_minus(*v, *half))
+        }
+        ("zero_drift", [(v, half), ..]) => format!(
+            "the zero of {place} is off by {} {}",
+            plus_minus(*v, *half),
+            found.unit
+        ),
+        ("unaccounted_mass", [(v, half)]) => {
+            format!("the model lacks {} kg at {place}", plus_minus(*v, *half))
+        }
+        ("thermal_uniform", [(v, half)]) => format!(
+            "the temperature differs from that of the zeros by {} degC (rms over the runs)",
+            plus_minus(*v, *half)
+        ),
+        ("lateral_wheel_loads", sizes) if sizes.len() == SIDE.len() => {
+            let each = SIDE.iter().zip(sizes);
+            let each = each.map(|((name, unit), (v, half))| {
+                format!("{name} {} {unit}", plus_minus(*v, *half))
+            });
+            let each: Vec<String> = each.collect();
+            format!("the wheels carry side loads: {} (rms)", each.join(", "))
+        }
         _ => effect_in_words(e),
     }
 }
 
+/// Components of side loads in the order of their sizes, with their units.
+const SIDE: [(&str, &str); 5] = [
+    ("FX", "kN"),
+    ("FY", "kN"),
+    ("MX", "kN m"),
+    ("MY", "kN m"),
+    ("MZ", "kN m"),
+];
+
+/// Returns a change of stiffness in percent as `15.8 ± 0.4 % less stiff`.
+fn than(percent: f64, half: f64) -> String {
+    let way = if percent < 0.0 { "less" } else { "more" };
+    format!("{} % {way} stiff", plus_minus(percent.abs(), half))
+}
+
 impl Reconciled {
-    /// Returns the verdict as a sentence.
+    /// Returns the verdict in words: what, where, how large, how sure, and what to do.
     pub(super) fn sentence(&self) -> String {
         let gap = &self.gap;
         match self.verdict {
@@ -43,21 +112,77 @@ impl Reconciled {
                 if causes.is_empty() {
                     causes = self.named.clone();
                 }
-                format!("Identified: {}{}.", causes.join("; "), closed(gap))
+                format!(
+                    "Identified: {}{}{}.{}",
+                    causes.join("; "),
+                    self.gauges_closed(),
+                    closed(gap),
+                    self.sure()
+                )
             }
             Verdict::None => format!(
                 "Model and measurement agree within noise and stated uncertainty{}.",
                 open(gap)
             ),
             Verdict::Unknown => format!(
-                "Model and measurement disagree, and no known effect explains it{}.",
-                open(gap)
+                "Model and measurement disagree, and no known effect explains it{}.{}",
+                open(gap),
+                self.nearest()
             ),
             Verdict::BelowDetectability => format!(
-                "An effect is indicated, too small for these data to identify{}.",
-                open(gap)
+                "An effect is indicated, too small for these data to identify{}.{}",
+                open(gap),
+                self.nearest()
             ),
         }
+    }
+
+    /// The gauges that the effects explain, in words: those beyond their own floor before and not after, worst first.
+    fn gauges_closed(&self) -> String {
+        /// As many gauges as a sentence holds.
+        const MOST: usize = 4;
+        let Some(strain) = &self.strain else {
+            return String::new();
+        };
+        let still = |name: &str| strain.gauges_off.iter().any(|m| m.name == name);
+        let off = strain.gauges_off_before.iter();
+        let names: Vec<&str> = off.map(|m| m.name.as_str()).filter(|n| !still(n)).collect();
+        let residuals = |after: bool| {
+            let own = strain.outcome.channels.iter();
+            let own = own.filter(|c| names.iter().take(MOST).any(|n| *n == c.channel));
+            let own = own.map(|c| if after { c.after } else { c.before });
+            own.fold(0.0f64, f64::max)
+        };
+        match names.len() {
+            0 => String::new(),
+            _ => format!(
+                "; {} {} off by up to {} microstrain and now by up to {}",
+                few(&names[..names.len().min(MOST)]),
+                if names.len() == 1 { "was" } else { "were" },
+                number(residuals(false)),
+                number(residuals(true))
+            ),
+        }
+    }
+
+    /// How sure the identified set is.
+    fn sure(&self) -> String {
+        let strain = self.strain.as_ref();
+        strain.map_or_else(String::new, |s| {
+            format!(" {} of 100 resampled run sets agree.", s.wins_of_100)
+        })
+    }
+
+    /// The nearest explanation where none is identified, and what would settle it.
+    fn nearest(&self) -> String {
+        let attempt = self.best_attempt.iter().flatten();
+        let attempt: Vec<String> = attempt.map(clause).collect();
+        let near = match (attempt.is_empty(), self.rivals.first()) {
+            (false, _) => attempt.join("; "),
+            (true, Some(r)) => r.id.clone(),
+            (true, None) => return String::new(),
+        };
+        format!(" Nearest explanation, not applied: {near}.")
     }
 }
 

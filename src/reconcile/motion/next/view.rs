@@ -238,8 +238,6 @@ fn weight(
     n_channels: usize,
     sets_scale: bool,
 ) -> Option<Weight> {
-    /// A load cell's zero, as a share of the weight on it, one sd.
-    const ZERO: f64 = 0.01;
     let v = &fit.assembled.vehicle;
     if !v.rests_on_wheels(&frame.bodies) {
         return None;
@@ -249,7 +247,7 @@ fn weight(
         .iter()
         .filter_map(|&i| fit.values.get(i).filter(|m| m.is_finite()))
         .sum();
-    let sigma = ZERO.hypot(frame.gain_tolerance) * frame.gravity * sum.abs();
+    let sigma = frame.rules.zero_force.hypot(frame.gain_tolerance) * frame.gravity * sum.abs();
     if !(sigma > 0.0) {
         return None;
     }

@@ -1,0 +1,101 @@
+//! Alternative explanations of a set.
+
+use super::explanation::{ids, is_unmodelled, named_part};
+use super::frame::StrainFrame;
+use super::likelihood::Fit;
+use super::own_covariance::{under_own_covariance, with_members};
+use super::smooth::is_smooth;
+use super::validation::{Proofs, validated};
+use crate::reconcile::effect::Candidate;
+use crate::reconcile::outcome::Rival;
+use crate::reconcile::search::Scored;
+use rayon::prelude::*;
+
+/// Rivals beyond this log evidence are not worth naming.
+pub(super) const WORTH_NAMING: f64 = 25.0;
+
+/// Another set with its ids.
+pub(super) type RivalSet = (Vec<String>, Scored<Fit>);
+
+/// Rivals of a set of log evidence `level`, in words and numbers.
+pub(super) fn rivals_told(
+    proofs: &Proofs<'_>,
+    candidates: &[Candidate],
+    rivals: &[RivalSet],
+    level: f64,
+) -> Vec<Rival> {
+    let one = |(ids, s): &RivalSet| Rival {
+        ids: ids.clone(),
+        evidence_difference: level - s.log_evidence,
+        gap_after: validated(proofs, candidates, s).0.after,
+        indistinguishable: level - s.log_evidence < proofs.frame.rules.indistinguishable,
+    };
+    rivals.par_iter().map(one).collect()
+}
+
+/// Other sets of at most the same number of effects, nearest first, that do not contain the best one; each under its own covariance, as the
+/// best one is.
+pub(super) fn rival_sets(
+    frame: &StrainFrame,
+    candidates: &[Candidate],
+    all: &[Scored<Fit>],
+    best: &Scored<Fit>,
+) -> Vec<RivalSet> {
+    const MOST: usize = 5;
+    /// Of twice as many, since under their own covariance they come in another order.
+    const TRIED: usize = 2 * MOST;
+    let own = named_part(candidates, &best.set);
+    // Beside a curve, which can take many shapes, sets of any number of names stand.
+    let curved = own.iter().any(|c| is_smooth(candidates, *c));
+    let is_near = |s: &Scored<Fit>| best.log_evidence - s.log_evidence < WORTH_NAMING;
+    let other = |s: &&Scored<Fit>| {
+        let named = named_part(candidates, &s.set);
+        !named.is_empty()
+            && is_unmodelled(candidates, &s.set).is_none()
+            && named != own
+            && (curved || named.len() <= own.len().max(1))
+            && is_near(s)
+    };
+    let near: Vec<&Scored<Fit>> = all.iter().filter(other).take(TRIED).collect();
+    // What the best set takes of noise stands for no name: a rival may take it, too.
+    let besides: Vec<usize> = (best.set.iter().copied())
+        .filter(|c| !own.contains(c))
+        .collect();
+    let alike = |s: &&Scored<Fit>| {
+        let alone = under_own_covariance(frame, candidates, &s.set, s);
+        let mut set = named_part(candidates, &s.set);
+        set.extend(&besides);
+        set.sort_unstable();
+        let beside = (set != s.set).then(|| with_members(frame, candidates, &set, s));
+        let better = |a: &Scored<Fit>, b: &Scored<Fit>| a.log_evidence.total_cmp(&b.log_evidence);
+        let both = alone.into_iter().chain(beside.flatten());
+        both.max_by(better).unwrap_or_else(|| (*s).clone())
+    };
+    let mut out: Vec<Scored<Fit>> = near.par_iter().map(alike).collect();
+    out.retain(is_near);
+    out.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    out.truncate(MOST);
+    let with_ids = |s: Scored<Fit>| (ids(candidates, &s.set), s);
+    out.into_iter().map(with_ids).collect()
+}
+
+/// Drops what has the names of the judged set from its rivals, and all but the first of those of equal names: other starts and forms of one effect.
+pub(super) fn without_own(
+    candidates: &[Candidate],
+    best: &Scored<Fit>,
+    rivals: &mut Vec<RivalSet>,
+) {
+    let mut seen = vec![sorted_ids(candidates, &best.set)];
+    rivals.retain(|r| {
+        let own = sorted_ids(candidates, &r.1.set);
+        let new = !seen.contains(&own);
+        seen.push(own);
+        new
+    });
+}
+
+fn sorted_ids(candidates: &[Candidate], set: &[usize]) -> Vec<String> {
+    let mut out = ids(candidates, set);
+    out.sort();
+    out
+}
