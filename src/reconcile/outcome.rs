@@ -1,24 +1,24 @@
-//! What the workflow has to say, for strain and acceleration alike.
+//! Result types of reconcile, for strain and acceleration.
 
 use crate::finding::Finding;
 use crate::reconcile::effect::Extension;
 use serde::Serialize;
 
-/// The verdict.
+/// Verdict of reconcile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Effects are named: decisive, at the floor, plausible.
+    /// Effects are identified: their evidence is decisive, the residual reaches its floor, and their sizes are plausible.
     Named,
     /// Model and measurement agree within noise and stated uncertainty.
     None,
-    /// There is a gap, and nothing in the library closes it.
+    /// There is a gap, and no effect of the library closes it.
     Unknown,
-    /// There is a hint of an effect, too small for these data to name.
+    /// There is a hint of an effect that is too small for these data to identify.
     BelowDetectability,
 }
 
 impl Verdict {
-    /// The word in results.
+    /// Returns the verdict as written in results.
     pub fn word(self) -> &'static str {
         match self {
             Self::Named => "named",
@@ -29,51 +29,51 @@ impl Verdict {
     }
 }
 
-/// A named effect.
+/// Identified effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NamedEffect {
     /// Id with place.
     pub id: String,
-    /// Place alone.
+    /// Place without the id.
     pub place: Option<String>,
-    /// Sizes, one a parameter (or a kind of amplitude: its root mean square over runs).
+    /// Size by parameter, or by kind of amplitude (root mean square over runs).
     pub size: Vec<f64>,
-    /// One standard deviation of each.
+    /// Standard deviation of each size.
     pub sigma: Vec<f64>,
-    /// Their unit.
+    /// Unit of size and standard deviation.
     pub unit: &'static str,
-    /// Is the size one that occurs?
+    /// Whether the size occurs in practice.
     pub plausible: bool,
-    /// What the model must be given.
+    /// Change of the job or the deck that represents the effect.
     pub extension: Extension,
 }
 
-/// Another explanation.
+/// Alternative explanation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rival {
     /// Ids with places.
     pub ids: Vec<String>,
-    /// Log evidence of the named set less that of this one.
+    /// Log evidence of the identified set less the log evidence of this explanation.
     pub evidence_difference: f64,
-    /// Gap that it leaves on held-out runs.
+    /// Gap on held-out runs with this explanation.
     pub gap_after: f64,
-    /// These data can't tell it from what was named.
+    /// Whether these data cannot distinguish this explanation from the identified cause.
     pub indistinguishable: bool,
 }
 
-/// Which runs the gap is judged on.
+/// Runs that the gap is computed on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GapBasis {
     /// Runs that were never used for fitting.
     HeldOut,
-    /// No run was held out: every run in turn, with sizes and amplitudes found from the others.
+    /// No run was held out. The gap is computed on each run in turn, with sizes and amplitudes estimated from the other runs.
     CrossValidated,
-    /// Nothing was held out, and what is judged was fitted.
+    /// No run was held out, and the gap is computed on fitted data.
     Fitted,
 }
 
 impl GapBasis {
-    /// The word in results and on reports.
+    /// Returns the basis as written in results and reports.
     pub fn words(self) -> &'static str {
         match self {
             Self::HeldOut => "held-out",
@@ -83,38 +83,38 @@ impl GapBasis {
     }
 }
 
-/// RMS(reading - model) / RMS(reading): before, after, and what a right model would leave, made alike.
+/// RMS(reading - model) / RMS(reading): before, after, and as expected of a right model. All three are computed in the same way.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GapNumbers {
-    /// The analyst's model.
+    /// Gap of the analyst's model.
     pub before: f64,
-    /// With the named effects.
+    /// Gap with the identified effects.
     pub after: f64,
-    /// What noise, stated model uncertainty and the mesh leave.
+    /// Gap expected from noise, stated model uncertainty and the mesh.
     pub floor: f64,
 }
 
 /// The gap on runs that were not fitted: RMS(reading - model) / RMS(reading).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gap {
-    /// The analyst's model.
+    /// Gap of the analyst's model.
     pub before: f64,
-    /// With the named effects; amplitudes of a run found from one half of the channels and judged on the other.
+    /// Gap with the identified effects. Amplitudes of a run are estimated from one half of the channels and tested on the other.
     pub after: f64,
-    /// What noise, stated model uncertainty and the mesh leave.
+    /// Gap expected from noise, stated model uncertainty and the mesh.
     pub floor: f64,
-    /// What the mesh alone makes: the difference from a mesh half as wide; `None` where none was solved.
+    /// Gap from the mesh alone: the difference from a mesh half as wide. `None` if no such mesh was solved.
     pub mesh: Option<f64>,
-    /// Which runs it is judged on.
+    /// Runs that the gap is computed on.
     pub basis: GapBasis,
-    /// The same with the errors of the noted wheel loads found anew in every run, before, after and in the floor.
+    /// Gap numbers with the errors of the recorded wheel loads estimated again in every run, for before, after and floor.
     pub loads_found: Option<GapNumbers>,
     /// Whether the gap falls by more than its own sampling error.
     pub falls: bool,
 }
 
 impl Gap {
-    /// Returns (before^2 - after^2) / (before^2 - floor^2) within 0 and 1; zero where there is nothing to close.
+    /// Returns (before^2 - after^2) / (before^2 - floor^2), limited to 0 .. 1; zero if the gap does not exceed its floor.
     pub fn explained_share(&self) -> f64 {
         let closable = self.before * self.before - self.floor * self.floor;
         if closable > 0.0 {
@@ -125,49 +125,49 @@ impl Gap {
         }
     }
 
-    /// Whether the analyst's model leaves more than a right one would, with the loads as recorded or found again.
+    /// Returns whether the gap of the analyst's model exceeds its floor, with the loads as recorded or estimated again.
     pub fn is_above_floor(&self) -> bool {
         let found = self.loads_found;
         self.before > self.floor || found.is_some_and(|f| f.before > f.floor)
     }
 }
 
-/// The gap at one channel, in the channel's unit.
+/// Gap at one channel, in the unit of the channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelGap {
     /// Channel.
     pub channel: String,
     /// RMS residual on held-out runs before.
     pub before: f64,
-    /// After.
+    /// RMS residual on held-out runs after.
     pub after: f64,
-    /// Floor.
+    /// Expected RMS residual of a right model.
     pub floor: f64,
     /// RMS reading.
     pub reading: f64,
 }
 
-/// A load recovered from held-out strain without and with the named effects.
+/// Load recovered from held-out strain, without and with the identified effects.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadShift {
     /// Run.
     pub run: String,
     /// Load.
     pub load: String,
-    /// Unit of what follows: kN, kN m for a moment.
+    /// Unit of the values: kN, or kN m for a moment.
     pub unit: &'static str,
-    /// As measured or computed for the run.
+    /// Load measured or computed for the run.
     pub stated: f64,
-    /// Recovered by the analyst's model.
+    /// Load recovered with the analyst's model.
     pub before: f64,
-    /// Recovered with the effects in.
+    /// Load recovered with the identified effects.
     pub after: f64,
-    /// One standard deviation of `after`.
+    /// Standard deviation of `after`.
     pub sigma: f64,
 }
 
 impl LoadShift {
-    /// Has it moved by more than two standard deviations?
+    /// Returns whether the load changes by more than two standard deviations.
     pub fn moved(&self) -> bool {
         (self.after - self.before).abs() > 2.0 * self.sigma
     }
@@ -184,81 +184,81 @@ pub struct Detectable {
     pub unit: &'static str,
 }
 
-/// How far something lies from its floor.
+/// Residual of a gauge or run compared with its floor.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Misfit {
     /// Gauge or run.
     pub name: String,
-    /// Chi-square by number of readings: 1 at the floor.
+    /// Chi-square over the number of readings: 1 at the floor.
     pub reduced_chi2: f64,
-    /// The same as a standard normal deviate.
+    /// Chi-square as a standard normal deviate.
     pub deviate: f64,
 }
 
-/// The factor by which a smooth error of the model is off at a gauge.
+/// Factor of a smooth model error at a gauge.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SmoothAt {
     /// Gauge.
     pub gauge: String,
-    /// Its place, metres.
+    /// Position of the gauge, metres.
     pub place_m: [f64; 3],
-    /// The load; `None` where all loads share the factor.
+    /// Load that the factor applies to; `None` if all loads share the factor.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load: Option<String>,
-    /// Strain over what the model predicts.
+    /// Strain over the strain that the model predicts.
     pub factor: f64,
-    /// One standard deviation of it.
+    /// Standard deviation of `factor`.
     pub sd: f64,
 }
 
-/// Everything.
+/// Result of reconcile for strain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// Verdict.
     pub verdict: Verdict,
-    /// Named effects; empty unless named.
+    /// Identified effects; empty unless the verdict is [`Verdict::Named`].
     pub effects: Vec<NamedEffect>,
-    /// What would have been named, had it reached the floor, been decisive or plausible.
+    /// Effects of the best set, even if the set is not decisive, not at the floor or not plausible.
     pub best_attempt: Vec<NamedEffect>,
-    /// The names that a smooth error of the model explains as well as; empty where none does.
+    /// Effects replaced by a smooth model error that explains the data as well; empty if there is no such error.
     pub replaced: Vec<NamedEffect>,
-    /// Other explanations, nearest first.
+    /// Alternative explanations, nearest first.
     pub rivals: Vec<Rival>,
-    /// Log evidence of the named set (or best attempt) less that of no effect.
+    /// Log evidence of the identified set (or best attempt) less the log evidence without effects.
     pub evidence: f64,
-    /// Of 100 drawings of the runs, those whose best set holds every one of its names.
+    /// Number of resampled run sets, out of 100, whose best set contains every effect of the identified set (or best attempt).
     pub wins: usize,
-    /// Joint covariance of the parameters of the named set (or best attempt), effects in order, by rows.
+    /// Joint covariance of the parameters of the identified set (or best attempt), effects in order, by rows.
     pub covariance: Vec<f64>,
-    /// Noise that the readings show over the stated one; 1 where the stated one holds.
+    /// Noise that the readings show over the stated noise; 1 if the stated noise is right.
     pub noise_factor: f64,
-    /// The curve of a smooth error of the model, where one explains these data as well as any names; empty otherwise.
+    /// Curve of a smooth model error that explains these data as well as any identified effects; empty if there is none.
     pub smooth: Vec<SmoothAt>,
     /// Gap.
     pub gap: Gap,
-    /// Where the gap sits, in words.
+    /// Gauges with the largest shares of the squared gap, and gauges above their floor, as text.
     pub sits: String,
-    /// By channel.
+    /// Gap by channel.
     pub channels: Vec<ChannelGap>,
-    /// Loads before and after.
+    /// Recovered loads before and after.
     pub loads: Vec<LoadShift>,
     /// Reduced chi-square: fit runs before, fit runs after, held-out runs after.
     pub reduced_chi2: [f64; 3],
-    /// Gauges beyond their own floor before any effect, worst first.
+    /// Gauges above their own floor before any effect, worst first.
     pub gauges_off_before: Vec<Misfit>,
-    /// Gauges beyond their own floor after: the second pass.
+    /// Gauges above their own floor after the effects, worst first: the second pass.
     pub gauges_off: Vec<Misfit>,
-    /// Runs beyond the floor after.
+    /// Runs above their own floor after the effects, worst first.
     pub runs_off: Vec<Misfit>,
-    /// What remains, in words; where it sits and how it grows.
+    /// Residual after the best set, as text: gauges, runs and growth with the load.
     pub remains: String,
-    /// What the model predicts with the named set (or best attempt) in it, channels as they read, microstrain, `n_runs x n_gauges`; what
-    /// differs from run to run is not in it.
+    /// Readings predicted with the identified set (or best attempt), microstrain, `n_runs x n_gauges`, as the channels read. Contributions that
+    /// differ from run to run are excluded.
     pub predicted: Vec<f64>,
-    /// What would separate the first two explanations.
+    /// Measurement that would separate the first two explanations, as text.
     pub next_measurement: String,
-    /// Smallest sizes that would have been seen.
+    /// Smallest sizes of effects that these data would show.
     pub detectable: Vec<Detectable>,
-    /// Findings on recorded loads that are wrong themselves; no effect is looked for then.
+    /// Findings on wrong recorded loads. If there are any, no effect is searched for.
     pub input_faults: Vec<Finding>,
 }

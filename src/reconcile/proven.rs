@@ -1,9 +1,9 @@
-//! Sets without names that prove nothing: by which the gap does not fall on what was not fitted.
+//! Removal of effects that do not reduce the gap on data that was not fitted.
 
 use super::checks::Fall;
 use super::search::Scored;
 
-/// A name that is left out, with the gap with and without it.
+/// Effect that is removed from a set, with the gap of the set with and without it.
 pub(super) struct Useless {
     /// Candidate number.
     pub candidate: usize,
@@ -13,13 +13,13 @@ pub(super) struct Useless {
     pub without: f64,
 }
 
-/// A set without one of its names.
+/// Set of effects without one of its members.
 pub(super) struct Without<F> {
-    /// Its gap, on the readings that the whole set is compared on.
+    /// Gap of the smaller set, on the readings that the whole set is compared on.
     pub gap: f64,
-    /// By how much the gap falls by that name.
+    /// Fall of the gap due to the removed effect.
     pub fall: Fall,
-    /// Its fit.
+    /// Fit of the smaller set.
     pub fit: Scored<F>,
 }
 

@@ -1,43 +1,43 @@
-//! The thresholds that a name depends on. A job has no keys for them: programs that ask what another value would do put it into a frame.
+//! Thresholds for identifying an effect. A job has no keys for them; a program that tests another value sets it in a frame.
 
-/// A threshold: name, and where it stands.
+/// Name of a threshold, and the function that returns its value in the thresholds `R`.
 pub type Rule<R> = (&'static str, fn(&mut R) -> &mut f64);
 
-/// Thresholds of strain.
+/// Thresholds for strain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StrainRules {
-    /// Log evidence beyond its prior cost that an effect must raise to be named: ln(1 / 0.01).
+    /// Log evidence, beyond its prior cost, that an effect needs to be identified: ln(1 / 0.01).
     ///
-    /// Where nothing is wrong, the mean of a likelihood ratio is one, and so is that of the sum of all of them over effects and places with
-    /// prior weights that sum to one. By Markov's inequality the sum, and each of its terms, passes 100 in one case of a hundred at most,
-    /// however many places are searched.
+    /// If nothing is wrong, the mean of a likelihood ratio is one. The sum of all ratios over effects and places, with prior weights that sum to one,
+    /// has the mean one as well. By Markov's inequality the sum, and each of its terms, exceeds 100 in at most one case of a hundred, however many
+    /// places are searched.
     pub decisive: f64,
-    /// Rivals within this log evidence can't be told apart: odds below twenty to one.
+    /// Alternative explanations within this log evidence are indistinguishable: odds below twenty to one.
     pub indistinguishable: f64,
-    /// A stated noise comes from some twenty repeats, or from a data sheet: it is known to 15 % (1 / sqrt(2 * 20)).
+    /// Factor for the uncertainty of a stated noise. It comes from some twenty repeats or a data sheet: its uncertainty is 15 % (1 / sqrt(2 * 20)).
     pub noise_known: f64,
-    /// Deviate of a chi-square over all that one case in a thousand has by chance.
+    /// Largest deviate of a chi-square over all readings. One case in a thousand exceeds it by chance.
     pub deviate: f64,
-    /// Deviate of a single gauge or run. Of fifty of them one passes 3.5 by chance in one case of a hundred; noise that is 15 % above what
-    /// is stated brings that to 4.
+    /// Largest deviate of a single gauge or run. Of fifty of them, one exceeds 3.5 by chance in one case of a hundred. Noise 15 % above the stated
+    /// noise raises this value to 4.
     pub part: f64,
-    /// Noise up to twice the stated one is noise that was stated too small; more is something else.
+    /// Largest ratio of noise to stated noise. Up to twice, the noise was stated too small; a larger ratio has another cause.
     pub noise: f64,
-    /// Share of the resampled run sets that must hold a name, and the whole set: below 60 of 100 it is ahead by the runs that happened to be
-    /// driven (half of them, and twice the five in a hundred that the share is known to).
+    /// Share of the resampled run sets that must contain an effect, and the whole set. Below 60 of 100, the lead of a set depends on which runs were
+    /// driven. The limit is half of the run sets plus twice the uncertainty of the share, which is five in a hundred.
     pub drawings: f64,
-    /// Largest root mean square of a side load, in usual sizes of its kind: as shares of the wheel force FX .25, FY .6, MX .3, MY .1 and MZ .1
-    /// (moments per metre). FY is then near the friction of a tyre; the others are brakes and aligning moments that a standing vehicle can
-    /// hold.
+    /// Largest root mean square of a side load, in usual sizes of its kind. Shares of the wheel force are FX .25, FY .6, MX .3, MY .1 and MZ .1
+    /// (moments per metre). At the limit, FY is near the friction of a tyre. The other components are brake and aligning moments that a stationary
+    /// vehicle can bear.
     pub side_load: f64,
-    /// Gauges within this many usual distances from gauge to nearest gauge are neighbours: gains and angles of several of them at once are a
-    /// change of stiffness between them sooner than as many bad gauges.
+    /// Largest distance between neighbouring gauges, in usual distances from a gauge to its nearest gauge. Wrong gains and angles of several
+    /// neighbours at once indicate a stiffness change between them rather than as many bad gauges.
     pub near: f64,
 }
 
-/// Log evidence that names an effect of strain: see [`StrainRules::decisive`].
+/// Log evidence that an effect of strain needs to be identified: see [`StrainRules::decisive`].
 pub(super) const DECISIVE: f64 = 4.605_170_185_988_091;
-/// A name on a truck that has nothing: one in a hundred at most.
+/// Largest rate of identified effects on a truck without faults: one in a hundred.
 const FALSE_NAMES: f64 = 0.01;
 const _: () = assert!(FALSE_NAMES * 100.0 == 1.0);
 
@@ -58,7 +58,7 @@ impl Default for StrainRules {
 }
 
 impl StrainRules {
-    /// Every one of them.
+    /// Name and value of every threshold.
     pub const ALL: [Rule<Self>; 9] = [
         ("decisive", |r| &mut r.decisive),
         ("indistinguishable", |r| &mut r.indistinguishable),
@@ -72,44 +72,45 @@ impl StrainRules {
     ];
 }
 
-/// Thresholds of motion.
+/// Thresholds for motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MotionRules {
-    /// Log evidence that an effect must bring to be named: odds of 400, so that a set of up to three effects holds a chance one in fewer than
-    /// one job of a hundred.
+    /// Log evidence that an effect needs to be identified: odds of 400. Then a set of up to three effects contains a chance effect in fewer than one
+    /// job of a hundred.
     pub decisive: f64,
-    /// Log evidence that is a hint: odds of three.
+    /// Log evidence of a hint of an effect: odds of three.
     pub hint: f64,
-    /// Rivals within this log evidence (odds of 20) can't be told apart.
+    /// Alternative explanations within this log evidence (odds of 20) are indistinguishable.
     pub indistinguishable: f64,
-    /// Declared noise may be wrong by this factor: it is a data sheet's, or was estimated at rest.
+    /// Factor by which declared noise may be wrong: it comes from a data sheet, or from an estimate at standstill.
     pub noise_factor: f64,
-    /// What no job declares (a weak coupling to the other side or axle, a rate that wanders) is taken to be as large as what this one does:
-    /// the squared size of tolerances counts twice in a limit.
+    /// Factor on squared tolerances in a limit, for effects that no job declares (a weak coupling to the other side or axle, a rate that wanders).
+    /// They are assumed to be as large as the declared tolerances, so the squared tolerances count twice.
     pub undeclared: f64,
-    /// Rate at which a job of healthy channels may have one beyond its limit, and a complete model a gap beyond its.
+    /// Rate at which a job with healthy channels may have a channel above its limit, and a complete model a gap above its limit.
     pub false_rate: f64,
-    /// Share of an effect's own power that its form may leave: stretch is integrated from noisy accelerations and nonlinear terms are formed
-    /// from it, to about a fifth of their amplitude at the worst (the lower band edge). A second function of the stretch of one spring must
-    /// take as much beside the first, since the two are one law of force.
+    /// Share of the power of an effect that its form may leave as residual. Stretch is integrated from noisy accelerations, and nonlinear terms are
+    /// computed from it, to about a fifth of their amplitude at the worst (the lower band edge). A second function of the stretch of one spring must
+    /// remove at least this share in addition to the first, since both are one force law.
     pub form: f64,
-    /// Share of what other effects of the vehicle take that a further one must take beside them: forms are made from noisy stretch to about
-    /// a twentieth of their amplitude within the band, and what a form leaves of itself looks like another one.
+    /// Share of the power removed by the other vehicle effects that a further effect must remove in addition. Forms are computed from noisy stretch
+    /// to about a twentieth of their amplitude within the band, and the residual of one form resembles another form.
     pub next_form: f64,
-    /// Scatter of the logarithm of gains that are at fault, one sd: by some per cent; more is ever less likely.
+    /// Standard deviation of the logarithm of faulty gains: some per cent are usual, and larger errors are less and less likely.
     pub gain: f64,
-    /// Scatter of delays that are at fault, s, one sd: some samples at the rates of vehicle records.
+    /// Standard deviation of faulty delays, s: some samples at the rates of vehicle records.
     pub delay_s: f64,
-    /// Zero of a load cell, one sd, as a share of the weight on it: 1 % is what is left after a balance on the vehicle.
+    /// Standard deviation of the zero of a load cell, as a share of the weight on it: 1 % remains after a balance on the vehicle.
     pub zero_force: f64,
-    /// Zero of an accelerometer, one sd, in g: 50 mg is what data sheets of capacitive sensors state.
+    /// Standard deviation of the zero of an accelerometer, in g: data sheets of capacitive sensors state 50 mg.
     pub zero_g: f64,
-    /// Stiffness within a gap, as a share of that beyond it, that parts free play from a stop: both are the same law, two slopes.
+    /// Stiffness within a gap over the stiffness beyond it that separates free play from an end stop. Both have the same force law with two slopes.
     pub play: f64,
-    /// Gap on the data that judge, over the most that a complete model leaves there, beyond which no verdict but `unknown` is possible: three
-    /// tolerances that are stated too small by half add up to as much.
+    /// Ratio of the gap on the data of the proof to the largest gap of a complete model there, above which only the verdict `unknown` is possible.
+    /// Three tolerances that are stated too small by half add up to as much.
     pub limits: f64,
-    /// Share of the measured quantity left at which a fit has lost its way: its parameters are those of no vehicle, and no start for others.
+    /// Residual, as a share of the measured quantity, above which a fit is invalid: its parameters describe no vehicle and are no start for other
+    /// fits.
     pub lost: f64,
 }
 
@@ -136,7 +137,7 @@ impl Default for MotionRules {
 }
 
 impl MotionRules {
-    /// Every one of them.
+    /// Name and value of every threshold.
     pub const ALL: [Rule<Self>; 15] = [
         ("decisive", |r| &mut r.decisive),
         ("hint", |r| &mut r.hint),
@@ -160,7 +161,7 @@ impl MotionRules {
 mod tests {
     use super::*;
 
-    /// Each place is one of its own, and there are as many as numbers in the struct.
+    /// Asserts that each threshold has a distinct place and that the list has as many entries as the struct has numbers.
     fn all_are_listed<R: Copy + Default>(list: &[Rule<R>]) {
         assert_eq!(list.len() * size_of::<f64>(), size_of::<R>());
         let mut rules = R::default();

@@ -1,5 +1,5 @@
-//! Model discrepancy: what no named effect makes, in general forms. Where one of them explains most, the verdict is `unknown` and its
-//! words say what remains. They also keep flexible effects in bounds: side loads must beat plain scatter.
+//! Model discrepancy: general forms of a residual that no identified effect causes. If one of them explains most, the verdict is `unknown`
+//! and the message describes that form. A flexible effect, such as side loads, must also explain more than plain scatter.
 
 use super::{Amplitudes, Discrepancy, Extension, Parameter, Stage, StrainEffect};
 use crate::reconcile::strain::{N_PAYLOAD_COLUMNS, Part, StrainFrame, StrainState};
@@ -12,24 +12,25 @@ const USUAL_ZERO: f64 = 20.0;
 pub enum ModelDiscrepancy {
     /// All strain grows more, or less, than in proportion to the load of the run.
     LoadDependent,
-    /// Every gauge for itself reads more, or less, than in proportion.
+    /// Each gauge separately reads more, or less, than in proportion to its strain.
     StrainDependent,
-    /// Strain follows the load of the run before in part.
+    /// Strain depends in part on the load of the previous run.
     Memory,
     /// Channels leak into their neighbours in file order.
     CrossTalk,
     /// Scatter in proportion to the stated noise that no load explains.
     Scatter,
-    /// Scatter in proportion to what a gauge usually reads.
+    /// Scatter in proportion to the root mean square reading of each gauge.
     RelativeScatter,
-    /// Every gauge has a zero of its own: zeros were taken in another state than the runs count from.
+    /// Each gauge has a different zero error: zeros were taken in another state than the one that the runs count from.
     Zeros,
-    /// Noise that wanders slowly from run to run, of the same size at all gauges: correlation from a run to the next, percent.
+    /// Noise that wanders slowly from run to run, with the correlation between successive runs in percent. All gauges have the same ratio of it to
+    /// their stated noise.
     Wander(u8),
 }
 
 impl ModelDiscrepancy {
-    /// All of them.
+    /// Returns all general forms.
     pub fn all() -> Vec<Self> {
         vec![
             Self::LoadDependent,
@@ -45,7 +46,7 @@ impl ModelDiscrepancy {
         ]
     }
 
-    /// What it says of the gap.
+    /// Returns the description of the gap in messages.
     fn words(self) -> &'static str {
         match self {
             Self::LoadDependent => {
@@ -66,7 +67,7 @@ impl ModelDiscrepancy {
     }
 }
 
-/// How much acts in each run, 1 for the most.
+/// Returns the sum of the absolute wheel loads of `run`, relative to the run with the largest sum.
 fn load_level(state: &StrainState, run: usize) -> f64 {
     let [_, n_r, n_c] = state.shape;
     let size = |r: usize| {

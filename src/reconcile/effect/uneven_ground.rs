@@ -3,15 +3,15 @@
 use super::{Amplitudes, Extension, Nuisance, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, WheelForces, ground_patterns};
 
-/// Strain = strain + influence times a self-balanced change of the wheel forces, unknown in every run.
+/// Self-balanced change of the wheel forces, unknown in every run: strain = strain + influence times the change.
 #[derive(Clone, Debug)]
 pub struct UnevenGround;
 
-/// Usual change of a wheel force, of a usual wheel force.
+/// Usual change of a wheel force, relative to a usual wheel force.
 const USUAL: f64 = 0.25;
 
 impl UnevenGround {
-    /// Itself where the wheel forces are computed, not measured, and the job has no ground of its own.
+    /// Returns the effect if the wheel forces are computed, not measured, and the job does not state uneven ground; otherwise an empty list.
     pub fn all(frame: &StrainFrame) -> Vec<Self> {
         let warps = !ground_patterns(frame).is_empty();
         let missing = frame.wheel_forces == WheelForces::FlatGroundModel && frame.ground == 0.0;

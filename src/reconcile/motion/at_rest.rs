@@ -1,4 +1,4 @@
-//! What a record says of the vehicle at rest: the mean wheel force is its weight, an accelerometer's mean is gravity times its gain.
+//! Static part of a record: the mean wheel force is the weight of the vehicle, the mean of an accelerometer is gravity times its gain.
 
 use super::change::Change;
 use super::design::Design;
@@ -7,12 +7,12 @@ use super::part::ColumnOf;
 use crate::vehicle::layout::{Measures, Vehicle};
 use std::f64::consts::PI;
 
-/// Mean over gravity between which a channel is taken to carry its static part.
+/// Range of the ratio of a channel's mean to gravity in which the channel is assumed to contain its static part.
 pub(super) const STATIC: std::ops::Range<f64> = 0.5..2.0;
-/// What slower motion than the band's adds to the velocity between the ends of a record, as a factor.
+/// Factor on the velocity in the band that accounts for slower motion between the ends of a record.
 const SLOWER: f64 = 2.0;
 
-/// The balance of weight as one more row of the least squares: g (sum of masses) = sum of mean wheel forces.
+/// Balance of weight as one more row of the least squares: g (sum of masses) = sum of mean wheel forces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestRow {
     /// Parameters with the acceleration that each is multiplied by.
@@ -23,7 +23,7 @@ pub struct RestRow {
     pub sigma: f64,
 }
 
-/// The balance of the compared bodies; `None` where a wheel force is missing or zeroed, or a link bears on the ground.
+/// Returns the balance of the compared bodies; `None` if a wheel force is missing or zeroed, or if a link is attached to the ground.
 pub fn rest_row(frame: &MotionFrame, design: &Design, values: &[f64]) -> Option<RestRow> {
     let v = &design.vehicle;
     let grounded = v
@@ -99,14 +99,14 @@ fn stays_above_nothing(frame: &MotionFrame, v: &Vehicle) -> bool {
         .all(|w| stays(&w.channel).unwrap_or(false))
 }
 
-/// Share of the record during which a change of mass is there.
+/// Returns the share of the record during which a change of mass is present.
 fn step_share(frame: &MotionFrame, step: &crate::vehicle::layout::MassStep) -> f64 {
     let n = frame.data.n_samples().max(1);
     let at = |i: usize| frame.data.start_s + i as f64 / frame.data.rate_hz;
     (0..n).map(|i| step.done(at(i))).sum::<f64>() / n as f64
 }
 
-/// RMS of a body's vertical velocity in the band.
+/// Returns the RMS of a body's vertical velocity in the band.
 fn velocity(design: &Design, body: usize) -> f64 {
     let n = design.motion.n_samples().max(1) as f64;
     let sensor = design

@@ -1,4 +1,4 @@
-//! How large the disagreement is: residual of the equations over what was measured, in the band.
+//! Gap of a vehicle model: residual of the equations over the measured quantity, within the frequency band.
 
 use super::corrections::{adjustments, lines};
 use super::design::{Bins, Design, design, measured, size};
@@ -15,43 +15,43 @@ use crate::vehicle::layout::Vehicle;
 use crate::vehicle::stretch::slow_stretches;
 use serde::Serialize;
 
-/// The gap of one equation.
+/// Gap of one equation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct EquationGap {
-    /// Such as `body b`.
+    /// Name of the equation, such as `body b`.
     pub name: String,
     /// Residual over measured quantity.
     pub gap: f64,
-    /// What sensor noise and tolerances leave.
+    /// Expected residual from sensor noise and tolerances, over the measured quantity.
     pub floor: f64,
-    /// The same by band of frequency: upper edge in Hz, gap.
+    /// Gap by frequency band: upper edge in Hz, gap.
     pub by_band: Vec<[f64; 2]>,
-    /// Over time and amplitude.
+    /// Gap over time and amplitude.
     pub profile: GapProfile,
 }
 
-/// The gap of a record.
+/// Gap of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordGap {
-    /// Root mean square over equations.
+    /// Root mean square gap over equations.
     pub gap: f64,
-    /// What a complete model leaves.
+    /// Squared expected residual of a complete model, mean over equations.
     pub floor: Floor,
-    /// Number of frequencies that carry the squared residual, `(sum p)^2 / sum p^2` over them and the equations: half of them for white noise.
+    /// Effective number of frequencies in the squared residual: `(sum p)^2 / sum p^2` over frequencies and equations, half of them for white noise.
     pub frequencies: f64,
-    /// Equations.
+    /// Gap by equation.
     pub equations: Vec<EquationGap>,
-    /// Parameters of the vehicle that was compared.
+    /// Parameters of the compared vehicle.
     pub values: Vec<f64>,
-    /// The vehicle that was compared.
+    /// Compared vehicle.
     pub vehicle: Vehicle,
 }
 
 impl RecordGap {
     /// Returns the fall of the squared gap from `without` an effect to this one.
     ///
-    /// White noise of gap g leaves `s^2 = g^2 / (2 N)` in each part, real or imaginary, of N frequencies. A fall d has the standard error
-    /// `2 s sqrt(d)`; for no more than noise takes, d is about 2 s^2. With n the frequencies that carry the residual, N = 2 n.
+    /// White noise of gap g leaves `s^2 = g^2 / (2 N)` in each part, real or imaginary, of N frequencies. A fall d has the standard error `2 s
+    /// sqrt(d)`. If an effect removes only noise, d is about 2 s^2. With the effective number n of frequencies of the residual, N = 2 n.
     pub(super) fn fall_from(&self, without: &Self) -> Fall {
         let by = without.gap.powi(2) - self.gap.powi(2);
         let part = self.gap.powi(2) / (4.0 * self.frequencies.max(1.0));
@@ -62,20 +62,20 @@ impl RecordGap {
     }
 }
 
-/// What a gap was judged on.
+/// Data that a gap is computed on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Proof {
     /// A record that no parameter was fitted to.
     HeldOut,
-    /// Segments of the fitted record, each under the parameters of the others.
+    /// Segments of the fitted record, each with the parameters fitted to the other segments.
     CrossValidated,
-    /// The fitted record itself: too short to be cut in two.
+    /// Fitted record itself, which is too short to be cut in two.
     Fitted,
 }
 
 impl Proof {
-    /// In words, as in "gap on ..".
+    /// Returns the text for reports, as in "gap on ..".
     pub fn words(self) -> &'static str {
         match self {
             Self::HeldOut => "held-out data",
@@ -87,12 +87,12 @@ impl Proof {
     }
 }
 
-/// Most segments of a cross-validation.
+/// Largest number of segments of a cross-validation.
 const SEGMENTS: usize = 5;
-/// Periods of the lower band edge that a segment holds at least.
+/// Smallest number of periods of the lower band edge in a segment.
 const PERIODS: f64 = 8.0;
 
-/// What a frame's gaps are judged on.
+/// Returns the kind of data that the gaps of a frame are computed on.
 pub fn proof(frame: &MotionFrame, fit: &MotionFit) -> Proof {
     match (frame.hold_out.is_some(), n_segments(frame, fit)) {
         (true, _) => Proof::HeldOut,
@@ -108,7 +108,7 @@ fn n_segments(frame: &MotionFrame, fit: &MotionFit) -> usize {
     n.min(SEGMENTS)
 }
 
-/// The gap of a fit on what the frame is judged by.
+/// Returns the gap of a fit on the data that [`proof`] selects.
 pub fn proof_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
     match (proof(frame, fit), &frame.hold_out) {
         (Proof::HeldOut, Some(record)) => record_gap(frame, fit, record),
@@ -117,7 +117,7 @@ pub fn proof_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
     }
 }
 
-/// The gap on the fitted record.
+/// Returns the gap on the fitted record.
 pub fn fitted_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
     let quiet = quiet(fit);
     let d = quiet.as_ref().unwrap_or(&fit.design);
@@ -125,16 +125,17 @@ pub fn fitted_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
     Some(gap_of(frame, fit, &[d], d, values))
 }
 
-/// The design of a fit without the lines that it holds; `None` where it holds none.
+/// Returns the design of a fit without its mains lines; `None` if the fit has no mains lines.
 fn quiet(fit: &MotionFit) -> Option<Design> {
     let lines = lines(&fit.parts);
     (!lines.is_empty()).then(|| fit.design.silenced(&lines))
 }
 
-/// The gap of a record under the model of a fit, its parameters found anew on the fitted record without the help of nuisance: what
-/// `identify` would leave.
+/// Returns the gap of a record with the model of a fit. The parameters are estimated again on the fitted record without nuisance, so that it is the
+/// gap that `identify` would leave.
 ///
-/// A mass or spring that changed during the fitted record is taken as it was before or after in another one, whichever fits.
+/// A mass or spring that changed during the fitted record has either its former or its later value in another record, whichever gives the smaller
+/// gap.
 pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Option<RecordGap> {
     let quiet = quiet(fit);
     let learnt = quiet.as_ref().unwrap_or(&fit.design);
@@ -167,7 +168,7 @@ pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Op
         .min_by(|a, b| a.gap.total_cmp(&b.gap))
 }
 
-/// The gap of the fitted record cut into segments, each judged under the parameters of the others.
+/// Returns the gap of the fitted record cut into segments, each computed with the parameters fitted to the other segments.
 fn cross_validated_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap> {
     let adjust = adjustments(frame, &fit.parts);
     let n = n_segments(frame, fit);
@@ -189,7 +190,7 @@ fn cross_validated_gap(frame: &MotionFrame, fit: &MotionFit) -> Option<RecordGap
     together(frame, fit, &gaps)
 }
 
-/// Gaps of segments as one; values, bands and profile are those of the whole record.
+/// Combines the gaps of segments into one gap. Values, bands and profile are computed on the whole record.
 fn together(frame: &MotionFrame, fit: &MotionFit, gaps: &[RecordGap]) -> Option<RecordGap> {
     let mut whole = fitted_gap(frame, fit)?;
     let rms = |of: &dyn Fn(&RecordGap) -> f64| {
@@ -280,7 +281,7 @@ fn equation_gap(
     }
 }
 
-/// Parameters of a fit's model on designs by least squares without nuisance, all equations alike: those of the smallest gap.
+/// Returns the parameters of a fit's model with the smallest gap: least squares on `designs`, without nuisance, all equations weighted alike.
 fn plain_values(frame: &MotionFrame, fit: &MotionFit, designs: &[&Design]) -> Vec<f64> {
     let held = held(frame, &fit.assembled.vehicle, &fit.design);
     let fixed: Vec<f64> = held.iter().map(|v| v.unwrap_or(0.0)).collect();

@@ -1,4 +1,4 @@
-//! What a search's best set is worth: named, none, unknown or below what the record shows.
+//! Verdict on the best set of a search: named, none, unknown or below what the record shows.
 
 use super::change::Change;
 use super::channel_check::BrokenChannel;
@@ -40,9 +40,9 @@ impl Gaps {
         }
     }
 
-    /// Whether a complete model may leave this: by its squared residual, or by the size of its gap on the fitted record and on what judges;
-    /// and the gap on what judges is within a few limits in either case. `excess` is the squared size of what named effects took, over that of what
-    /// was measured.
+    /// Returns whether a complete model may leave these gaps. Either the reduced chi-square, or the gap on the fitted record and the validation
+    /// gap (`proof`), are within their limits. In either case a known validation gap is within `rules.limits` times its limit. `excess` is the
+    /// squared size of what identified effects removed, relative to the squared size of the measurement.
     fn at_floor(&self, rules: &MotionRules, excess: f64) -> bool {
         let within = |g: &RecordGap, limits: f64| {
             g.gap.powi(2) <= (limits * g.floor.limit(rules)).powi(2) + rules.form * excess
@@ -216,10 +216,10 @@ pub(super) fn gap_of(before: &Option<RecordGap>, after: &Option<RecordGap>, by: 
     }
 }
 
-/// The best set, or the best one all of whose members may be named: sizes beyond their own scatter (a change of mass of which nothing is known but
-/// that it hides what the wheels weigh makes any channel fit), channels beyond their tolerance, no effect of the vehicle that closes less of the
-/// gap than declared tolerances leave on average, and none beside one of the vehicle that closes no more than what that one's form leaves of
-/// itself.
+/// Returns the best set whose members may all be named; `best` if there is no such set. Each size exceeds its own scatter: a change of mass that
+/// is known only to hide the weight on the wheels makes any channel fit. Each channel fault exceeds its tolerance. Each vehicle effect
+/// reduces the squared gap by more than declared tolerances leave on average. Each member next to a vehicle effect reduces it by more than
+/// the error in the form of that effect leaves.
 fn nameable(
     scorer: &MotionScorer,
     all: &[Scored<MotionFit>],
@@ -275,7 +275,7 @@ fn nameable(
     settle(&rest, frame.rules.decisive).unwrap_or(best)
 }
 
-/// A channel that can't be relied on, as an effect.
+/// Returns a channel that is not reliable, as an effect.
 pub(super) fn broken_effect(b: &BrokenChannel) -> MotionEffect {
     MotionEffect {
         id: format!("{}:{}", b.id, b.channel),
@@ -290,7 +290,7 @@ pub(super) fn broken_effect(b: &BrokenChannel) -> MotionEffect {
     }
 }
 
-/// The effects of a fit in words and numbers.
+/// Returns the effects of a fit with sizes, standard deviations and units.
 fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
     fit.parts
         .iter()
@@ -311,13 +311,13 @@ fn effects_of(scorer: &MotionScorer, fit: &MotionFit) -> Vec<MotionEffect> {
         .collect()
 }
 
-/// The first of [`other_sets`], in words and numbers.
+/// Returns the first of [`other_sets`] as alternative explanations.
 fn rivals(
     scorer: &MotionScorer,
     best: &Scored<MotionFit>,
     all: &[Scored<MotionFit>],
 ) -> Vec<Rival> {
-    /// As many as anyone reads.
+    /// Largest number of alternative explanations in the outcome.
     const MOST: usize = 4;
     let ids = |s: &Scored<MotionFit>| {
         let ids = s.set.iter().map(|&c| scorer.candidates[c].id.clone());

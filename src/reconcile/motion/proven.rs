@@ -1,4 +1,4 @@
-//! A name needs a gap that falls by it on what the record is judged by.
+//! Test that each identified effect reduces the gap on the validation data.
 
 use super::fitted::MotionFit;
 use super::gap::proof_gap;
@@ -6,7 +6,7 @@ use super::scorer::MotionScorer;
 use crate::reconcile::proven::{Useless, Without, without_useless};
 use crate::reconcile::search::{Scored, Scorer};
 
-/// `best` without members that prove nothing ([`without_useless`]), and what is said of each.
+/// Returns `best` without members that do not reduce the gap ([`without_useless`]), and a message on each of these members.
 pub(super) fn proven(
     scorer: &mut MotionScorer,
     all: &[Scored<MotionFit>],

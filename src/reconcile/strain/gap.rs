@@ -1,4 +1,4 @@
-//! The gap on runs that were not fitted, before and after, over all and by gauge, with its floor, all three made alike.
+//! Gap on runs that were not fitted, before and after, over all readings and by gauge, with its floor. All three are computed in the same way.
 
 use super::covariance::{Selection, covariance, read_patterns};
 use super::frame::StrainFrame;
@@ -11,35 +11,35 @@ use crate::reconcile::checks::Fall;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
-/// What of a run is found anew from one half of its gauges (in file order, odd and even) and judged on the other, in the gap before, the gap
-/// after and the floor alike.
+/// Unknowns of a run that are estimated from one half of its gauges (odd or even number in file order) and tested on the other half. The gap before,
+/// the gap after and the floor use the same split.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoundAnew {
-    /// The amplitudes of the effects that are on: none before, since an effect of size zero has none.
+    /// Amplitudes of the active effects and of the nuisance loads. The gap before has no effect amplitudes, since an effect of size zero has none.
     Amplitudes,
-    /// They, and the errors of the noted wheel loads.
+    /// The amplitudes, and the errors of the recorded wheel loads.
     AmplitudesAndLoads,
 }
 
 /// Residuals of runs that were not fitted.
 #[derive(Clone, Debug, Default)]
 pub struct Judged {
-    /// By reading: gauge.
+    /// Gauge number by reading.
     pub gauges: Vec<usize>,
     /// Reading, microstrain.
     pub reading: Vec<f64>,
-    /// Residual of the analyst's model.
+    /// Residual of the analyst's model, microstrain.
     pub before: Vec<f64>,
-    /// Residual with the effects.
+    /// Residual with the effects, microstrain.
     pub after: Vec<f64>,
-    /// Root of the mean square that a right model would leave.
+    /// Root mean square residual that a right model would leave, microstrain.
     pub floor: Vec<f64>,
-    /// What the mesh makes of the prediction.
+    /// Residual on the analyst's mesh less the residual on the finer mesh, microstrain.
     pub mesh: Vec<f64>,
 }
 
 impl Judged {
-    /// The readings of gauges whose number in file order has this remainder by two.
+    /// Returns the readings of gauges whose number in file order has this remainder after division by two.
     pub fn half(&self, remainder: usize) -> Self {
         let kept = |v: &[f64]| {
             v.iter()
@@ -63,7 +63,7 @@ impl Judged {
         }
     }
 
-    /// Joins the residuals of other runs.
+    /// Appends the residuals of other runs.
     pub fn extend(&mut self, other: Self) {
         self.gauges.extend(other.gauges);
         self.reading.extend(other.reading);
@@ -78,7 +78,7 @@ impl Judged {
         Fall::between(&self.before, &self.after, &self.floor)
     }
 
-    /// RMS over RMS of the readings: before, after, floor.
+    /// Returns the RMS residual over the RMS reading: before, after and floor.
     pub fn numbers(&self) -> GapNumbers {
         let scale = rms(self.reading.iter().copied());
         let relative = |v: &[f64]| {
@@ -95,7 +95,8 @@ impl Judged {
         }
     }
 
-    /// The gap over all and by gauge. `finer`: was a finer mesh solved? `loads_found` is the same with the wheel loads found anew as well.
+    /// Returns the gap over all readings and by gauge. `loads_found` contains the residuals with the errors of the recorded wheel loads estimated as
+    /// well.
     pub fn gap(
         &self,
         frame: &StrainFrame,
@@ -150,23 +151,23 @@ fn residual(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) 
     readings.iter().zip(predicted).map(|(y, p)| y - p).collect()
 }
 
-/// Patterns that are found anew, with the covariance of their amplitudes and its mean, as the fit runs tell.
+/// Patterns whose amplitudes are estimated, with the mean and covariance of the amplitudes given the fit runs.
 struct Patterns {
-    /// By run, as the gauges read them there.
+    /// Pattern values by run, pattern and gauge, as the gauges read them in that run.
     values: Vec<Vec<Vec<f64>>>,
     mean: Vec<f64>,
-    /// `n x n` by rows.
+    /// Covariance of the amplitudes, `n x n` by rows.
     covariance: Vec<f64>,
 }
 
 impl Patterns {
-    /// What the mean amplitudes make a gauge read in a run.
+    /// Returns the reading of a gauge in a run that the mean amplitudes cause.
     fn expected(&self, run: usize, gauge: usize) -> f64 {
         let read = self.values[run].iter().zip(&self.mean);
         read.map(|(p, m)| p[gauge] * m).sum()
     }
 
-    /// Covariance of what two gauges read in a run.
+    /// Returns the covariance of the readings of two gauges in a run that the amplitudes cause.
     fn between(&self, run: usize, g: usize, h: usize) -> f64 {
         let (n, values) = (self.mean.len(), &self.values[run]);
         let rows = self.covariance.chunks_exact(n.max(1)).zip(values);
@@ -175,18 +176,18 @@ impl Patterns {
     }
 }
 
-/// The fit runs with a set of effects on: what they tell of the runs to be judged.
+/// Fit runs with a set of active effects, and the covariance that predicts the proof runs from them.
 struct Told<'a> {
     frame: &'a StrainFrame,
     members: &'a [Member<'a>],
     unknown: &'a [SizedAmplitudes],
-    /// The readings of the fit runs, then those of the runs to be judged.
+    /// Readings of the fit runs, then readings of the proof runs.
     both: Selection,
-    /// Covariance of both.
+    /// Covariance of the residual of `both`, microstrain^2.
     joint: Vec<f64>,
     fit: Selection,
     factor: Cholesky,
-    /// Precision times residual.
+    /// Precision of the fit runs times their residual.
     weighted: Vec<f64>,
 }
 
@@ -216,8 +217,9 @@ impl<'a> Told<'a> {
         })
     }
 
-    /// What is found anew. Amplitudes that repeat are learned from the fit runs: m = T B P r, M = T - T B P B' T, with B the patterns over
-    /// the readings of the fit runs and T the variances of what repeats.
+    /// Returns the patterns to be estimated. Amplitudes that repeat in all runs are learned from the fit runs: m = T B P r, M = T - T B P B' T. B
+    /// contains the patterns over the readings of the fit runs, T the variances of the repeating amplitudes, P the precision and r the residual of
+    /// the fit runs.
     fn patterns(&self, anew: FoundAnew) -> Patterns {
         let mut values = Vec::new();
         let (mut steady, mut scatter) = (Vec::new(), Vec::new());
@@ -269,7 +271,7 @@ impl<'a> Told<'a> {
     }
 }
 
-/// Readings of one run given the fit runs: mean and covariance (`n x n`) of the residual.
+/// Returns mean and covariance (`n x n`) of the residual of one run, given the fit runs.
 fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
     let n = run.len();
     let proof = told.both.0.iter().skip(told.fit.len());
@@ -291,23 +293,23 @@ fn given_fit(told: &Told<'_>, run: &Selection) -> (Vec<f64>, Vec<f64>) {
     (mean, out)
 }
 
-/// The runs to be judged, given the fit runs, with one model.
+/// Proof runs given the fit runs, with one model.
 struct Proof<'a> {
     told: &'a Told<'a>,
     patterns: Patterns,
 }
 
-/// One run of them.
+/// One proof run.
 struct ProofRun<'a> {
     proof: &'a Proof<'a>,
     all: Selection,
-    /// Residual of the model on the analyst's own mesh.
+    /// Residual of the model on the analyst's mesh.
     residual: Vec<f64>,
-    /// What of it no run tells: residual less its mean given the fit runs, on the finer mesh.
+    /// Innovation: residual on the finer mesh less its mean given the fit runs.
     innovation: Vec<f64>,
-    /// Mean that stays when the patterns' own mean is taken off: errors of the model that the fit runs tell of, and the mesh.
+    /// Mean given the fit runs less the mean of the patterns, plus `mesh`: model errors that the fit runs show, and the mesh difference.
     offset: Vec<f64>,
-    /// What the mesh makes.
+    /// Residual on the analyst's mesh less the residual on the finer mesh.
     mesh: Vec<f64>,
     /// Covariance of the innovation, `n x n`.
     spread: Vec<f64>,
@@ -344,9 +346,9 @@ impl<'a> Proof<'a> {
 }
 
 impl ProofRun<'_> {
-    /// By reading: its residual when the patterns are found from the other half of the gauges, and the floor of that.
+    /// Returns, by reading, the residual with the patterns estimated from the other half of the gauges, and the floor of this residual.
     fn judged(&self) -> (Vec<f64>, Vec<f64>) {
-        /// What the other half tells of the errors of the loads counts up to this many standard deviations: more is no error of a load.
+        /// Limit, in standard deviations, of the load errors that the other half of the gauges shows. A larger value is not a load error.
         const BELIEVED: f64 = 3.0;
         let n = self.all.len();
         let gauge = |i: usize| self.all.0[i].1;
@@ -401,12 +403,13 @@ impl ProofRun<'_> {
     }
 }
 
-/// Residuals of the proof runs by the analyst's model and with `members`, and their floor.
+/// Returns the residuals of the proof runs by the analyst's model and with `members`, and their floor.
 ///
-/// A reading j that is judged is predicted anew from the readings u of its run that are used: it loses K i_u, K = J_j V J_u' G_uu^-1, with i
-/// the innovation (the residual less what the fit runs tell of it), G its covariance, and J V J' the part of it that the patterns make.
-/// Of a right model is left, given i_u, (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj, with m the errors of the model
-/// that the fit runs tell of. Before, the same is done with the loads alone, or with nothing.
+/// Each reading j of the tested half is predicted from the readings u of the other half of its run. K i_u is subtracted from its residual, with K =
+/// J_j V J_u' G_uu^-1. i is the innovation (the residual less its mean given the fit runs), G its covariance, and J V J' the part of G from the
+/// patterns. A right model leaves the mean square (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj, given i_u. m contains the model errors
+/// that the fit runs show. The residual before has no effects: its only patterns are the nuisance loads and, if `anew` includes them, the wheel
+/// loads.
 pub fn judged(
     finer: &StrainFrame,
     members: &[Member<'_>],
@@ -417,7 +420,7 @@ pub fn judged(
     judged_after(finer, members, unknown, &[(anew, before)])?.pop()
 }
 
-/// Residuals of the proof runs by the analyst's model, for each of `anew`: the same whatever effects are on.
+/// Returns the residuals of the proof runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
 pub(super) fn before(finer: &StrainFrame, anew: &[FoundAnew]) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
     let told = Told::of(finer, &[], &[])?;
@@ -430,7 +433,7 @@ pub(super) fn before(finer: &StrainFrame, anew: &[FoundAnew]) -> Option<Vec<Vec<
     Some(anew.iter().map(of).collect())
 }
 
-/// As [`judged`], for each way of finding anew with its residuals before.
+/// Returns the residuals of [`judged`] for each of `ways`: the unknowns to estimate, with the residuals of [`before`].
 pub(super) fn judged_after(
     finer: &StrainFrame,
     members: &[Member<'_>],

@@ -1,4 +1,4 @@
-//! Zeros that are said to drift and scatter, but do not: noise of a gauge's own, or readings that bend with the load.
+//! Test of zeros that a set identifies as drifting. The cause may instead be noise of that gauge alone, or a reading that depends on the load.
 
 use super::covariance::{Selection, patterns_read};
 use super::explanation::Explanation;
@@ -11,26 +11,26 @@ use crate::linalg::{Matrix, dense};
 use crate::reconcile::effect::{Candidate, FaultKind, Member, SizedAmplitudes, full_id};
 use crate::reconcile::search::Scored;
 
-/// Chance of a wrong doubt of a zero that drifts.
+/// Probability that the F tests reject a zero that does drift.
 const CHANCE: f64 = 1e-3;
-/// Chance that a zero which scatters about where it was passes for one that moved.
+/// Probability that a zero which only scatters about its former value is taken for one that moved.
 const MOVED: f64 = 0.01;
-/// Standard deviations of the stated doubt of a gauge's influence beyond which a slope is not the model's: one gauge of a thousand.
+/// Limit of a slope, in standard deviations of the influence of a gauge. One gauge in a thousand exceeds it by an error of the model.
 const DOUBTS: f64 = 3.3;
 
-/// A zero of a set that is said to drift and does not.
+/// Zero that a set identifies as drifting and that does not drift.
 pub(super) struct NoDrift {
     /// Candidate number.
     pub candidate: usize,
-    /// What speaks against it.
+    /// Reason against the drift.
     pub words: String,
 }
 
-/// The first zero of `scored` that is said to drift and scatter, with what speaks against it; `None` where nothing does.
+/// Returns the first zero of `scored` that is identified as drifting and scattering but fails a test, with the reason; `None` if all zeros pass.
 ///
-/// What the gauge reads beside the other effects is held against `a + b p`, p the strain that the model has it read: what is left does not
-/// follow `p |p|`, nor is `b` beyond its scatter and the doubt of the model (F tests). A zero that has moved has, over the runs in their order, a
-/// constant, a line or a parabola beyond its scatter.
+/// The reading less the contribution of the other effects is compared with `a + b p`, p the predicted strain of the gauge. By F tests, its residual
+/// must not follow `p |p|`, and `b` must not exceed both its scatter and the model uncertainty. A zero that moved has a constant, a line or a
+/// parabola beyond its scatter, over the runs in their order.
 pub(super) fn no_drift(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -65,17 +65,17 @@ pub(super) fn no_drift(
     })
 }
 
-/// What a gauge reads beside other effects, by run.
+/// Reading of a gauge, split into the contribution of the model with the other effects and the rest, by run.
 struct Besides {
-    /// Number of the run over that of all.
+    /// Run number over the number of runs.
     at: Vec<f64>,
-    /// Strain that it would read with the others on, their amplitudes included.
+    /// Predicted reading with the other effects, amplitudes included, microstrain.
     model: Vec<f64>,
-    /// What it reads besides.
+    /// Reading less `model`, microstrain.
     rest: Vec<f64>,
 }
 
-/// What `gauge` reads beside all members but one.
+/// Returns the reading of `gauge`, split into the prediction with all members except `but` and the rest.
 fn beside_others(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -118,8 +118,8 @@ fn beside_others(
     out
 }
 
-/// Strain at `gauge` by run of the amplitudes of all members but one, as the readings of all gauges show them. In a gauge whose zero moves by run
-/// they show less, since the amplitude of that zero is unknown as well.
+/// Returns the strain at `gauge` by run from the amplitudes of all members except `but`, as the readings of all gauges show them. They show less of
+/// it if the zero of the gauge moves by run, since the amplitude of that zero is unknown as well.
 fn of_amplitudes(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -164,13 +164,13 @@ fn of_amplitudes(
 }
 
 impl Besides {
-    /// Powers of the model's strain, over its largest.
+    /// Returns the predicted strain over its largest magnitude; `None` if all predictions are zero.
     fn strained(&self) -> Option<Vec<f64>> {
         let scale = self.model.iter().fold(0.0f64, |m, v| m.max(v.abs()));
         (scale > 0.0).then(|| self.model.iter().map(|v| v / scale).collect())
     }
 
-    /// Whether the rest follows `p |p|` beyond a straight line in `p`.
+    /// Returns whether `rest` follows `p |p|` beyond a straight line in `p`.
     fn bends(&self) -> bool {
         self.strained().is_some_and(|p| {
             let column = |i: usize, j: usize| [1.0, p[i], p[i] * p[i].abs()][j];
@@ -178,7 +178,7 @@ impl Besides {
         })
     }
 
-    /// Whether the rest follows `p` beyond a constant, by more than the share `doubt` of it.
+    /// Returns whether `rest` follows `p` beyond a constant, with a slope above `doubt`.
     fn goes_with_load(&self, doubt: f64) -> bool {
         self.strained().is_some_and(|p| {
             let column = |i: usize, j: usize| [1.0, p[i]][j];
@@ -187,7 +187,7 @@ impl Besides {
         })
     }
 
-    /// Whether constant, line and parabola over the runs are none that scatter makes.
+    /// Returns whether scatter alone explains the constant, line and parabola over the runs.
     fn has_not_moved(&self) -> bool {
         /// Constant, line, parabola.
         const FORMS: usize = 3;
@@ -197,7 +197,7 @@ impl Besides {
     }
 }
 
-/// Chance with which scatter alone makes `r` follow the first `more` columns as well as it does beyond the first `few` (F test).
+/// Returns the probability (F test) that scatter alone makes `r` follow the first `more` columns as well as it does beyond the first `few`.
 fn chance(r: &[f64], column: impl Fn(usize, usize) -> f64, few: usize, more: usize) -> f64 {
     if r.len() < more + 2 {
         return 1.0;
@@ -212,7 +212,7 @@ fn chance(r: &[f64], column: impl Fn(usize, usize) -> f64, few: usize, more: usi
     f_tail(ratio.max(0.0), (more - few) as f64, freedom)
 }
 
-/// Slope of the straight line through `y` over `x` (least squares).
+/// Returns the least squares slope of `y` over `x`.
 fn slope(x: &[f64], y: &[f64]) -> f64 {
     let n = x.len().max(1) as f64;
     let mean = x.iter().sum::<f64>() / n;
@@ -224,7 +224,7 @@ fn slope(x: &[f64], y: &[f64]) -> f64 {
     if xx > 0.0 { xy / xx } else { 0.0 }
 }
 
-/// Squared residual of `r` beside the columns of `x`.
+/// Returns the sum of squares of `r` after a least squares fit of the columns of `x`.
 fn left(x: &Matrix, r: &[f64]) -> f64 {
     let whole: f64 = r.iter().map(|v| v * v).sum();
     if x.ncols() == 0 {
@@ -242,9 +242,9 @@ fn left(x: &Matrix, r: &[f64]) -> f64 {
 mod tests {
     use super::Besides;
 
-    /// Scatter whose mean, slope and bend are none, of +-1 and +-2.
+    /// Scatter of +-1 and +-2 without mean, slope or bend.
     const SCATTER: [f64; 8] = [1.0, -2.0, 2.0, -1.0, 1.0, 2.0, -2.0, -1.0];
-    /// Strain of runs whose load does not go with their order, microstrain.
+    /// Strain of runs whose load is not sorted by run number, microstrain.
     const MODEL: [f64; 8] = [300.0, 0.0, 700.0, 100.0, 600.0, 200.0, 500.0, 400.0];
 
     fn reads(f: impl Fn(f64, f64) -> f64) -> Besides {

@@ -1,4 +1,4 @@
-//! What an explanation says of a measurement: its residual there, and how readings, faults and tolerances enter it.
+//! Residual of a measurement under an explanation, and how readings, faults and tolerances enter it.
 
 use super::bench::{struck, turned_over};
 use super::known::{Known, Rows};
@@ -22,33 +22,33 @@ use crate::vehicle::stretch::slow_stretches;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// What is left of a measurement under an explanation, before its parameters move, and how they move it.
+/// Residual of a measurement under an explanation at its present parameters, and the columns by which parameters change it.
 pub(super) enum View {
     /// Equations of motion of a record, or the reading of one more sensor.
     Record(Box<Recorded>),
-    /// Numbers measured at rest, each with its rows: the same for all explanations.
+    /// Numbers measured at rest, with their rows. All explanations have the same numbers.
     AtRest(Rows),
 }
 
 /// A record under an explanation.
 pub(super) struct Recorded {
-    /// Residual by equation, the present estimates of tolerances in it.
+    /// Residual by equation, with the present estimates of tolerances included.
     pub(super) left: Vec<Bins>,
-    /// Whether an equation says what a new channel reads: its residual is that reading, no error of the record.
+    /// Whether each equation predicts the reading of a new channel. Its residual is then that reading, not an error of the record.
     pub(super) is_new: Vec<bool>,
     /// How the channels of the record enter the equations.
     pub(super) channels: Vec<Entered>,
     /// Whitening by sensor noise and background.
     pub(super) whitener: Whitener,
-    /// Columns in the order of the fit's own, then those that the measurement brings, before whitening.
+    /// Columns of the fit, in its order, before whitening.
     pub(super) own: Vec<Vec<Bins>>,
-    /// With one sd where they are known beforehand.
+    /// Columns that the measurement adds, before whitening, with one standard deviation if it is known beforehand.
     pub(super) fresh: Vec<(Vec<Bins>, Option<f64>)>,
-    /// The scale of masses and springs, where the measurement sets it.
+    /// Columns of the held parameters, by parameter index, if the measurement sets the scale of masses and springs.
     pub(super) scale: Vec<(usize, Vec<Bins>)>,
-    /// The balance of weight, where the measurement brings it.
+    /// Balance of weight, if the measurement adds it.
     pub(super) weight: Option<Weight>,
-    /// How many records of this length it is.
+    /// Length of the measurement in records of this length.
     pub(super) repeats: f64,
 }
 
@@ -58,27 +58,27 @@ pub(super) struct Entered {
     pub(super) name: String,
     /// Power of its noise.
     pub(super) power: f64,
-    /// Response of each equation to it as it is corrected, by bin.
+    /// Response of each equation to the corrected channel, by bin.
     pub(super) responses: Vec<Bins>,
-    /// Truth over reading, by bin.
+    /// Ratio of the true value to the reading, by bin.
     pub(super) undone: Bins,
 }
 
-/// The balance of weight, and the entries of the columns in it, in the order of [`Recorded`], over its standard deviation.
+/// Balance of weight, with the entries of the columns of [`Recorded`], in the same order, divided by its standard deviation.
 pub(super) struct Weight {
-    /// g (sum of masses).
+    /// Weight: g (sum of masses).
     pub(super) weight: f64,
     /// One standard deviation.
     pub(super) sigma: f64,
-    /// Of the fit's own columns.
+    /// Entries of the columns of the fit.
     pub(super) own: Vec<f64>,
-    /// Of those that the measurement brings.
+    /// Entries of the columns that the measurement adds.
     pub(super) fresh: Vec<f64>,
-    /// Of the scale.
+    /// Entries of the columns of the held parameters.
     pub(super) scale: Vec<f64>,
 }
 
-/// What an explanation says of a measurement; `None` where it says nothing.
+/// Returns the residual and the columns of a measurement under an explanation; `None` if its equations cannot be formed.
 pub(super) fn view(
     frame: &MotionFrame,
     measurement: &Measurement,
@@ -105,11 +105,11 @@ impl View {
     }
 }
 
-/// The equations of motion of a further drive.
+/// Forms the equations of motion of a further drive.
 ///
-/// Motion that obeys the one explanation is, to the first order of what parts the two, the motion at hand under the same filter at every
-/// channel, less what parts it from the equations of the one ([`super::obeying`]); the equations of the other miss it by the difference of the
-/// forces of both at that motion.
+/// The starting point is the present motion with the same filter at every channel. Its residual in one explanation is subtracted from it, which
+/// gives a motion that obeys this explanation ([`super::obeying`]). This is correct to first order in the difference of two explanations. The
+/// residual of the other explanation is the difference of the forces of both at that motion.
 fn driven(
     frame: &MotionFrame,
     measurement: &Measurement,
@@ -180,7 +180,7 @@ fn driven(
     Some(out)
 }
 
-/// Gives the equations the outside forces that they ask for, as channels with noise.
+/// Sets the channels `forces` to the external forces that the equations of motion require, with their noise.
 fn give_forces(
     frame: &MotionFrame,
     d: &mut Design,
@@ -188,7 +188,7 @@ fn give_forces(
     forces: &[String],
     sets_scale: bool,
 ) -> Option<()> {
-    /// Noise of a force channel that is not declared, as a share of the force: what load cells have.
+    /// Noise of a force channel without declared noise, as a share of the force: a typical value of load cells.
     const NOISE: f64 = 0.01;
     if forces.is_empty() {
         return Some(());
@@ -229,7 +229,7 @@ fn give_forces(
     Some(())
 }
 
-/// The balance of weight that forces bring besides.
+/// Returns the balance of weight that force channels add; `None` if the bodies do not rest on wheels or its standard deviation is not positive.
 fn weight(
     frame: &MotionFrame,
     fit: &MotionFit,
@@ -273,7 +273,7 @@ fn weight(
     })
 }
 
-/// The reading of one more accelerometer, as an equation: what the others and the rigid body have it read.
+/// Forms the equation for the reading of one more accelerometer at `at`, predicted from the other sensors of the rigid body.
 fn beside(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
     let mut d = (*fit.design).clone();
     let v = d.vehicle.clone();
@@ -322,7 +322,7 @@ fn beside(frame: &MotionFrame, fit: &MotionFit, at: Point) -> Option<Recorded> {
     Some(with_columns(frame, fit, &d, &h, vec![reading], whitener))
 }
 
-/// A record with the columns of the fit in it, and those of tolerances that are new.
+/// Returns the record with the columns of the fit and the columns of new tolerances.
 fn with_columns(
     frame: &MotionFrame,
     fit: &MotionFit,
@@ -390,7 +390,7 @@ fn with_columns(
     }
 }
 
-/// The channels of a design, with what the corrections make of them.
+/// Returns the channels of a design with their noise, their responses and the corrections `adjust`.
 fn entered(d: &Design, h: &[Vec<Vec<Complex64>>], adjust: &[Adjustment]) -> Vec<Entered> {
     let one = |(c, channel): (usize, &BinChannel)| {
         let n = channel.bins.len().max(1) as f64;
@@ -417,7 +417,7 @@ impl Recorded {
     }
 }
 
-/// As much of a record as says what the rest would: a road is alike from mile to mile.
+/// Returns at most the first 65 536 samples of a record. They represent the rest, since a road is similar from mile to mile.
 fn beginning(record: &Channels) -> Channels {
     const SAMPLES: usize = 65_536;
     let mut out = record.clone();
@@ -427,7 +427,7 @@ fn beginning(record: &Channels) -> Channels {
     out
 }
 
-/// A record with every motion times a real gain at each frequency, means as they are.
+/// Returns a record with every motion multiplied by a real gain at each frequency. Means do not change.
 fn shaped(record: &Channels, gain: impl Fn(f64) -> f64) -> Channels {
     let (mut out, _) = record.with_gaps_filled();
     let mut fourier = Fourier::default();
@@ -443,7 +443,7 @@ fn shaped(record: &Channels, gain: impl Fn(f64) -> f64) -> Channels {
     out
 }
 
-/// What no effect explains grows as the motion does.
+/// Scales the power of the unexplained background by the mean squared gain of the motion in each band.
 fn scaled(
     frame: &MotionFrame,
     now: &Design,
