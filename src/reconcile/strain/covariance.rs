@@ -1,4 +1,4 @@
-//! What noise and stated model uncertainty do to the residual, runs and gauges together.
+//! Covariance of the residual from noise and stated model uncertainty, over runs and gauges.
 
 use super::frame::{Scatter, StrainFrame};
 use super::learnt::{Shares, learnt, shares};
@@ -6,12 +6,12 @@ use super::prediction::read_all;
 use super::state::{Part, StrainState};
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 
-/// Readings under consideration: (run, gauge), in a fixed order.
+/// Selected readings: (run, gauge), in a fixed order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Selection(pub Vec<(usize, usize)>);
 
 impl Selection {
-    /// All readings of `runs`.
+    /// Selects all readings of `runs`.
     pub fn of_runs(frame: &StrainFrame, runs: &[usize]) -> Self {
         Self(frame.observations.entries(runs))
     }
@@ -21,12 +21,12 @@ impl Selection {
         self.0.len()
     }
 
-    /// No reading at all.
+    /// Returns whether no reading is selected.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The selected entries of an `n_runs x n_gauges` table.
+    /// Returns the selected entries of an `n_runs x n_gauges` table.
     pub fn pick(&self, table: &[f64], n_gauges: usize) -> Vec<f64> {
         self.0
             .iter()
@@ -35,7 +35,7 @@ impl Selection {
     }
 }
 
-/// Patterns as the gauges read them in `run`: the linear part of the reading effects of `members` applied.
+/// Returns the patterns as the gauges read them in `run`, after the linear part of the reading effects of `members`.
 pub fn read_patterns(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -50,7 +50,7 @@ pub fn read_patterns(
     patterns.iter().map(read).collect()
 }
 
-/// The same in a run that no fault of single runs touches.
+/// Returns the patterns as the gauges read them in a run without faults of single runs.
 pub(super) fn patterns_read(
     frame: &StrainFrame,
     members: &[Member<'_>],

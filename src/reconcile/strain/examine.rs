@@ -1,4 +1,4 @@
-//! The workflow on static strain: find, name, judge, show.
+//! Workflow on static strain: search, identify, test, report.
 
 use super::explanation::{is_unmodelled, named_part};
 use super::frame::StrainFrame;
@@ -14,7 +14,7 @@ use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::{Outcome, Verdict};
 use crate::reconcile::search::{Breadth, Scored, Scorer, search, search_near, settle};
 
-/// How far the search looks in static problems: three effects at once are as many as a few runs can part, with noise as a fourth.
+/// Returns the breadth of the search in static problems. A few runs can separate at most three effects at once, with noise as a fourth.
 fn breadth(frame: &StrainFrame) -> Breadth {
     Breadth {
         largest: 4,
@@ -24,8 +24,8 @@ fn breadth(frame: &StrainFrame) -> Breadth {
     }
 }
 
-/// Judges `frame` with the effects of the library that `only` lists (all, where it is empty). No effect is looked for where recorded loads
-/// have another sign or unit, or are exchanged: the outcome holds the findings then.
+/// Examines `frame` with the effects of the library that `only` lists (all, if it is empty). If recorded loads have the wrong sign or unit, or are
+/// exchanged, the outcome contains these findings and no effect is searched for.
 pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
     let wrong = wrong_records(frame);
     if wrong.is_empty() {
@@ -34,7 +34,7 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
     refused(frame, wrong)
 }
 
-/// Returns the outcome of a frame whose inputs are wrong, as `wrong` says: no effect is looked for.
+/// Returns the outcome of a frame with wrong inputs, reported by the findings `wrong`. No effect is searched for.
 pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
     let words: Vec<&str> = wrong.iter().map(|f| f.message.as_str()).collect();
     let remedies: Vec<&str> = wrong.iter().map(|f| f.remedy.as_str()).collect();
@@ -47,10 +47,10 @@ pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
     }
 }
 
-/// Judges `frame` with `candidates`: effects of one's own beside those of the library.
+/// Examines `frame` with `candidates`, which may include effects outside the library.
 ///
-/// The stated uncertainty of the model is an error of the strain that a gauge is predicted to have. If nothing explains the gap beyond it, each
-/// influence coefficient may be off by as much as well, since errors of coefficients do not cancel where the strains of loads do.
+/// The stated uncertainty of the model is first an error of the strain predicted at a gauge. If no effect explains the gap beyond it, each influence
+/// coefficient may have an error of this size as well: errors of coefficients do not cancel if the strains of loads do.
 pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let outcome = examined(frame, candidates);
     let is_open = outcome.verdict == Verdict::Unknown && !frame.stop.is_asked();
@@ -73,9 +73,9 @@ fn examined(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let mut reference: Vec<(usize, Vec<f64>)> = Vec::new();
     let mut all: Vec<Scored<Fit>> = Vec::new();
     let mut best: Option<Scored<Fit>> = None;
-    /// The covariance follows the best prediction; the set is stable after two passes in practice.
+    /// Largest number of passes. The covariance follows the best prediction, and the set is stable after two passes in practice.
     const PASSES: usize = 3;
-    /// Of the sets of a pass, those that the next one begins with.
+    /// Number of best sets of a pass from which the next pass starts.
     const KEPT: usize = 8;
     for _ in 0..PASSES {
         let mut likelihood = Likelihood::new(frame, candidates, &fit_runs, &reference);

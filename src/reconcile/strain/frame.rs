@@ -1,4 +1,4 @@
-//! The static strain problem as numbers: influence of every load on every gauge, what acted in every run, what was read.
+//! Static strain problem as numbers: influence of every load on every gauge, loads and readings of every run.
 //!
 //! Units throughout this module: microstrain, kN, kN m, kg, m, degrees Celsius, degrees of angle, percent of stiffness.
 
@@ -18,10 +18,10 @@ pub enum Wiring {
     Shear,
 }
 
-/// What is known of a gauge.
+/// Known properties of a gauge.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GaugeFacts {
-    /// Name: the channel's.
+    /// Name of the channel.
     pub name: String,
     /// Wiring.
     pub wiring: Wiring,
@@ -34,42 +34,42 @@ pub struct GaugeFacts {
 /// In-plane strain at a gauge per unit of every column, in the frame that `angle_deg` counts from: exx, eyy, gxy (engineering shear).
 pub type PlaneStrainRow = Vec<[f64; 3]>;
 
-/// What a change of stiffness is one of.
+/// Kind of a change of stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StiffnessOf {
-    /// The thickness of a zone, in percent.
+    /// Thickness of a zone, in percent.
     Zone,
-    /// A joint, natural log of its stiffness times 100.
+    /// Joint: natural log of its stiffness times 100.
     Joint,
-    /// A small region (a crack, a missing patch), natural log of its stiffness times 100.
+    /// Small region (a crack, a missing patch): natural log of its stiffness times 100.
     Local,
-    /// What the user described, in a unit of its own.
+    /// Change that the user described, in the unit of the description.
     Described,
 }
 
-/// A change of stiffness somewhere: what it does to the influence matrix.
+/// Change of stiffness at a place, with its effect on the influence matrix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessSignature {
-    /// What it is one of.
+    /// Kind of the change.
     pub of: StiffnessOf,
-    /// Zone, joint, element; of a described change its id.
+    /// Zone, joint or element; for a described change, its id.
     pub place: String,
-    /// Changes of the influence matrix (`n_gauges x n_columns`) at sizes, ascending, zero left out.
+    /// Sizes in ascending order, without zero, and the change of the influence matrix (`n_gauges x n_columns`) at each.
     pub at_percent: Vec<(f64, Vec<f64>)>,
     /// Prior standard deviation of the size.
     pub prior_percent: f64,
 }
 
-/// An extra mass at a place: microstrain per kg at every gauge.
+/// Additional mass at a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MassSignature {
     /// Place.
     pub place: String,
-    /// By gauge.
+    /// Microstrain per kg, by gauge.
     pub per_kg: Vec<f64>,
 }
 
-/// Where the wheel forces of the runs come from.
+/// Source of the wheel forces of the runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WheelForces {
     /// Measured, with the stated noise.
@@ -78,54 +78,54 @@ pub enum WheelForces {
     FlatGroundModel,
 }
 
-/// Whether the analyst's model lets the payload's weight act at its place.
+/// Whether the analyst's model applies the payload's weight at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PayloadWeight {
-    /// It acts as a point load.
+    /// Weight applied as a point load.
     InModel,
-    /// It is missing (gravity as a body force cancels under inertia relief).
+    /// Weight missing (gravity as a body force cancels under inertia relief).
     Missing,
 }
 
-/// An error of every gauge's influence, one standard deviation, `n_gauges x n_columns`.
+/// Error of every gauge's influence, one standard deviation, `n_gauges x n_columns`.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Scatter {
-    /// The columns of a gauge err together: its angle, its place.
+    /// Errors common to all columns of a gauge, from its angle or its place.
     Together(Vec<f64>),
-    /// Each coefficient errs by itself: the mesh.
+    /// Independent error of each coefficient, from the mesh.
     Single(Vec<f64>),
 }
 
-/// A load that the job knows of as a nuisance: present in every run, never noted.
+/// Nuisance load of the job: present in every run, never recorded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NuisanceLoad {
     /// Name.
     pub name: String,
     /// Microstrain per unit, by gauge.
     pub per_unit: Vec<f64>,
-    /// Its usual size, one standard deviation.
+    /// Usual size of the load, one standard deviation.
     pub size: f64,
 }
 
 /// Number of payload columns that follow the load columns: weight, weight times dx, times dy, times dx dy.
 pub const N_PAYLOAD_COLUMNS: usize = 4;
 
-/// The whole static problem.
+/// Static problem with all its data.
 #[derive(Clone, Debug)]
 pub struct StrainFrame {
     /// Readings, microstrain.
     pub observations: Observations,
     /// Gauges, in channel order.
     pub gauges: Vec<GaugeFacts>,
-    /// Names of the wheel loads: the first columns.
+    /// Names of the wheel loads, which are the first columns of `influence`.
     pub load_names: Vec<String>,
-    /// Which of them are moments, kN m; others, and all where this is empty, are forces, kN.
+    /// Whether each wheel load is a moment (kN m) or a force (kN). If empty, all are forces.
     pub moments: Vec<bool>,
     /// Plan position (x forward or back, y left), metres, of each wheel load, where known.
     pub load_positions: Option<Vec<[f64; 2]>>,
     /// Microstrain per kN of each wheel load, then per kg of payload: 1, dx, dy, dx dy; `n_gauges x (n_loads + 4)` by rows.
     pub influence: Vec<f64>,
-    /// In-plane strain behind each row of `influence`; empty where unknown, then an angle error of that gauge can't be named.
+    /// In-plane strain for each row of `influence`. If the strain of a gauge is unknown, its row is empty and its angle error cannot be identified.
     pub tensors: Vec<PlaneStrainRow>,
     /// Change of `influence` per mm along the gauge axis, where known.
     pub per_mm: Option<Vec<f64>>,
@@ -133,18 +133,18 @@ pub struct StrainFrame {
     pub loads: Vec<f64>,
     /// Payload by run: mass in kg, distance in x and in y (left) from its nominal place in m.
     pub payload: Vec<[f64; 3]>,
-    /// The nominal place, x and y, m, as the job's coordinates count.
+    /// Nominal place of the payload, x and y, m, in the coordinates of the job.
     pub payload_origin: [f64; 2],
-    /// Does the analyst's model hold the payload's weight?
+    /// Whether the analyst's model contains the payload's weight.
     pub payload_weight: PayloadWeight,
-    /// Where the wheel forces come from.
+    /// Source of the wheel forces.
     pub wheel_forces: WheelForces,
     /// Forces and moments at the wheels that the model leaves out: (name `FY_LF`, microstrain per kN or kN m by gauge).
     pub other_loads: Vec<(String, Vec<f64>)>,
-    /// Loads that the model has as nuisance loads: found anew in every run, before, after and in the floor alike.
+    /// Nuisance loads of the model. They are estimated separately in every run, for the gap before, the gap after and the noise floor.
     pub nuisance: Vec<NuisanceLoad>,
-    /// Usual change of a wheel force by ground that is not flat, where the job has it: found anew in every run as nuisance loads are; zero where
-    /// it has none.
+    /// Usual change of a wheel force by ground that is not flat; zero if the job has no such ground. The change is estimated separately in every run,
+    /// in the way of a nuisance load.
     pub ground: f64,
     /// Microstrain per degree of a uniform temperature change, by gauge.
     pub thermal_uniform: Option<Vec<f64>>,
@@ -156,24 +156,24 @@ pub struct StrainFrame {
     pub stiffness: Vec<StiffnessSignature>,
     /// Strain noise of a mean, microstrain, 1 sd; by gauge its root mean square.
     pub noise: f64,
-    /// Noise of gauges that differs or is correlated, in units of `noise`; `None` where all gauges have the same, independent of each other.
+    /// Noise that differs between gauges or is correlated, in units of `noise`; `None` if all gauges have equal, independent noise.
     pub gauge_noise: Option<GaugeNoise>,
     /// Noise of a measured wheel load, kN, 1 sd.
     pub load_noise: f64,
     /// Model uncertainty, 1 sd, relative to the predicted strain of a gauge and common to all its runs.
     pub model_rel: f64,
-    /// Model uncertainty, 1 sd, relative to each influence coefficient by itself and common to all runs.
+    /// Model uncertainty, 1 sd, relative to each influence coefficient, independent between coefficients and common to all runs.
     pub coefficient_rel: f64,
-    /// Influence on the analyst's own mesh, where `influence` comes from a finer one: the gap is judged on the analyst's, effects on the finer.
+    /// Influence on the analyst's own mesh, if `influence` comes from a finer one. The gap is tested on the analyst's mesh, effects on the finer one.
     pub as_modelled: Option<Vec<f64>>,
-    /// What else leaves each gauge's influence in doubt, each an error of one standard deviation (`n_gauges x n_columns`), independent
-    /// from gauge to gauge and common to all runs: an angle, a place, an influence coefficient on the mesh.
+    /// Further errors of each gauge's influence: an angle, a place, an influence coefficient on the mesh. Each has one standard deviation
+    /// (`n_gauges x n_columns`), is independent from gauge to gauge and common to all runs.
     pub scatter: Vec<Scatter>,
-    /// Where S was calibrated: how far it may be off, microstrain per kN of the wheel loads, and what repeats of one loading scatter by.
+    /// Uncertainty of a calibrated S, microstrain per kN of the wheel loads, with the scatter between repeats of one loading.
     pub learnt: Option<Uncertainty>,
-    /// Thresholds of names.
+    /// Thresholds for identified effects.
     pub rules: StrainRules,
-    /// Cuts the search short; what it found is then of no use.
+    /// Request to stop the search; its results are then of no use.
     pub stop: Stop,
 }
 
@@ -193,7 +193,7 @@ impl StrainFrame {
         self.load_names.len()
     }
 
-    /// Whether a load is a moment.
+    /// Returns whether a load is a moment.
     pub fn is_moment(&self, load: usize) -> bool {
         self.moments.get(load).copied().unwrap_or(false)
     }
@@ -217,14 +217,14 @@ impl StrainFrame {
         self.noise * self.noise * relative
     }
 
-    /// Root mean square of the wheel loads over all runs, kN; one where there are none.
+    /// Returns the root mean square of the wheel loads over all runs, kN; one if all are zero or missing.
     pub fn usual_load(&self) -> f64 {
         let power = self.loads.iter().map(|f| f * f).sum::<f64>() / self.loads.len().max(1) as f64;
         if power > 0.0 { power.sqrt() } else { 1.0 }
     }
 
-    /// By gauge: relative error, 1 sd, of the strain that a load of its own makes there: stated uncertainty, `scatter` and what a
-    /// calibrated S leaves in doubt, over the wheel loads.
+    /// Returns the relative error by gauge, 1 sd, of the strain that an effect with amplitudes makes there. It combines the stated uncertainty,
+    /// `scatter` and the uncertainty of a calibrated S, over the wheel loads.
     pub fn relative_doubt(&self) -> Vec<f64> {
         let (n_c, n_l) = (self.n_columns(), self.n_loads());
         let power = |m: &[f64], g: usize| -> f64 {
@@ -247,7 +247,7 @@ impl StrainFrame {
         (0..self.n_gauges()).map(doubt).collect()
     }
 
-    /// The same problem with the analyst's own mesh.
+    /// Returns the problem with the influence on the analyst's own mesh.
     pub fn as_modelled(&self) -> Self {
         let mut own = self.clone();
         if let Some(influence) = own.as_modelled.take() {
@@ -256,9 +256,9 @@ impl StrainFrame {
         own
     }
 
-    /// Gauges that share the place of `gauge`: the legs of its rosette, itself included, in file order.
+    /// Returns the gauges with the place and wiring of `gauge`: the legs of its rosette, itself included, in file order.
     pub fn rosette(&self, gauge: usize) -> Vec<usize> {
-        /// Legs of a stacked or planar rosette are drawn at one place; the two sides of a plate lie further apart.
+        /// Largest distance, along each axis, of the legs of one rosette. Their nominal places agree; the two sides of a plate are further apart.
         const SAME_PLACE_M: f64 = 0.0025;
         let Some(here) = self.gauges.get(gauge).and_then(|g| g.position) else {
             return vec![gauge];

@@ -1,4 +1,4 @@
-//! What is said of the best set of effects: named or not, and what else could be.
+//! Verdict on the best set of effects: whether it is named, and its alternative explanations.
 
 use super::adequacy::{Adequacy, adequacy, deviate_estimated};
 use super::companions::without_companions;
@@ -26,7 +26,7 @@ use crate::reconcile::effect::{Candidate, Discrepancy};
 use crate::reconcile::outcome::{Gap, Misfit, NamedEffect, Outcome, Verdict};
 use crate::reconcile::search::Scored;
 
-/// Whether what a set leaves is what noise and stated uncertainty leave.
+/// Returns whether the residual of a set is within its expected size from noise and stated uncertainty.
 pub(super) fn at_floor(frame: &StrainFrame, a: &Adequacy) -> bool {
     let rules = &frame.rules;
     let inside = |reduced: f64, n: f64| {
@@ -52,7 +52,7 @@ fn worst_first(parts: &[Misfit], limit: f64) -> Vec<Misfit> {
     off
 }
 
-/// Noise over the stated one where a set holds noise besides.
+/// Returns the ratio of the noise of a set to the stated noise; 1 if the set contains no additional noise.
 fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<Fit>) -> f64 {
     let is_noise = |c: usize| matches!(discrepancy(candidates, c), Some(Discrepancy::Noise(_)));
     let added = scored.fit.sizes.iter().filter(|s| is_noise(s.0));
@@ -60,7 +60,7 @@ fn noise_factor(frame: &StrainFrame, candidates: &[Candidate], scored: &Scored<F
     (1.0 + added / frame.noise.max(f64::MIN_POSITIVE).powi(2)).sqrt()
 }
 
-/// Judges a set: how far it comes, how many parameters it took.
+/// Returns the adequacy of a set, given the number of its parameters.
 pub(super) fn adequacy_of(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -71,7 +71,7 @@ pub(super) fn adequacy_of(
     adequacy(frame, &e.members, &e.unknown, n_parameters)
 }
 
-/// How far a set comes, and the noise that it takes over the stated one.
+/// Returns the adequacy of a set, and the ratio of its noise to the stated noise.
 fn reach(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -86,7 +86,8 @@ fn reach(
     (after, noise_factor(frame, candidates, scored))
 }
 
-/// Whether a set that leaves `after`, with `noise` times the stated one, is at the floor; what is said of a reading but for which it is.
+/// Returns whether a set with the residual `after` and `noise` times the stated noise is at the floor. If it is only so without one reading, the
+/// second value is a message on that reading.
 fn reaches_floor(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -103,7 +104,7 @@ fn reaches_floor(
     (alone.is_some(), alone)
 }
 
-/// The set of names alone, at least one, that has most evidence.
+/// Returns the set with the most log evidence among the sets of one or more effects without general forms.
 fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option<&'a Scored<Fit>> {
     let is_name = |c: &usize| discrepancy(candidates, *c).is_none();
     all.iter()
@@ -111,8 +112,8 @@ fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
 }
 
-/// Judges the best set. Names that do not recur when the runs are resampled, or by which the gap does not fall on runs that were not fitted, are
-/// taken out, and neither fit nor gap has them: what is left is tested against its own expected residual.
+/// Tests the best set and returns the outcome. Effects that do not recur in resampled run sets, or that do not reduce the gap on runs that were
+/// not fitted, are removed from fit and gap. The smaller set is tested against its own expected residual.
 pub(super) fn judge(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -226,7 +227,8 @@ pub(super) fn judge(
     }
 }
 
-/// Covariance of the parameters of a set. Coefficients of a curve mean nothing alone, and have none: [`Outcome::smooth`] has their sum.
+/// Returns the covariance of the parameters of a set. It is empty for a set with a curve, whose single coefficients have no meaning:
+/// [`Outcome::smooth`] has their sum.
 fn covariance_of(candidates: &[Candidate], set: &Scored<Fit>) -> Vec<f64> {
     match set.set.iter().any(|c| is_smooth(candidates, *c)) {
         true => Vec::new(),
@@ -234,27 +236,27 @@ fn covariance_of(candidates: &[Candidate], set: &Scored<Fit>) -> Vec<f64> {
     }
 }
 
-/// A set with what its checks need.
+/// Set of effects with the data for its checks.
 struct Judged<'a> {
     proofs: &'a Proofs<'a>,
     candidates: &'a [Candidate],
     best: &'a Scored<Fit>,
     attempt: &'a [NamedEffect],
     rivals: &'a [RivalSet],
-    /// Log evidence under its own covariance.
+    /// Log evidence of the set under its own covariance.
     level: f64,
-    /// Log evidence that was lost with the names that were taken out.
+    /// Log evidence lost with the removed effects.
     lost: f64,
-    /// What is said of them.
+    /// Message on the removed effects.
     taken_out: Option<String>,
     standing: &'a Standing,
     gap: &'a Gap,
     noise: f64,
-    /// Whether it reaches its own floor.
+    /// Whether the set reaches its own floor.
     reached: bool,
 }
 
-/// The checks that a set must pass to be named.
+/// Returns the checks that a set must pass to be named.
 fn checks_of(set: &Judged<'_>) -> [Check; 10] {
     let (frame, gap, noise) = (set.proofs.frame, set.gap, set.noise);
     let rules = &frame.rules;
@@ -314,7 +316,7 @@ fn implausible(attempt: &[NamedEffect]) -> String {
     words.collect::<Vec<String>>().join(", ")
 }
 
-/// Whether the analyst's model, with the noise that `best` takes, leaves no more than its expected residual.
+/// Returns whether the residual of the analyst's model, with the noise of `best`, does not exceed its expected size.
 fn agrees_without(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -335,7 +337,8 @@ fn agrees_without(
     })
 }
 
-/// A set without the zeros of it that do not drift, where it reaches the floor without them and has another name; what is said of them.
+/// Returns the set without its zeros that do not drift, and a message on them. `None` if it has no such zero, or if the smaller set does not reach
+/// the floor or contains no identified effect.
 fn without_false_zeros(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -361,9 +364,9 @@ fn without_false_zeros(
     (!told.is_empty() && reaches()).then(|| (set, told.join("; ")))
 }
 
-/// What to measure where no effect of the library comes near: is it the gauges or the runs?
+/// Returns the measurement that separates faults of gauges from faults of runs, for a gap that no effect of the library explains.
 fn look_again(after: &Adequacy) -> String {
-    /// As many gauges as one shunts in an hour.
+    /// Number of gauges that can be shunted in an hour.
     const MOST: usize = 4;
     let names = |parts: &[Misfit]| -> Vec<String> {
         let worst = worst_first(parts, 0.0);

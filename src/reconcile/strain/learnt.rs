@@ -1,4 +1,4 @@
-//! What a calibrated S leaves in doubt, and what repeats of one loading scatter by, as covariance of readings.
+//! Covariance of readings from the uncertainty of a calibrated S and the scatter between repeats of one loading.
 
 use super::frame::StrainFrame;
 use super::prediction::read_all;
@@ -7,13 +7,13 @@ use crate::linalg::spd::dot;
 use crate::reconcile::effect::Member;
 use crate::sensitivity::Uncertainty;
 
-/// A gauge's share in what a channel reads.
+/// Gauges with their shares in the reading of a channel.
 pub(super) type Shares = Vec<(usize, f64)>;
 
-/// Covariance of the readings of `selection` (run, gauge), `n x n` by rows, microstrain^2, `None` where S was not calibrated:
+/// Returns the covariance of the readings of `selection` (run, gauge), `n x n` by rows, microstrain^2; `None` if S was not calibrated:
 ///
-/// `Cov(y_rg, y_sh) = scale^2 (sum_jk f_rj f_sk Cov(S_gj, S_hk) + [r = s] q(f_r)^2 C_gh)`, gauges as read with `members` on (a channel with a
-/// turned sign turns its share).
+/// `Cov(y_rg, y_sh) = scale^2 (sum_jk f_rj f_sk Cov(S_gj, S_hk) + [r = s] q(f_r)^2 C_gh)`, with gauges as read under `members`. A channel with
+/// reversed polarity reverses the sign of its share.
 pub(super) fn learnt(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -55,8 +55,8 @@ pub(super) fn learnt(
     Some(out)
 }
 
-/// Log density that a residual has more than a Gaussian one where its covariance was estimated with `v` degrees of freedom:
-/// `chi^2 / 2 - (v + n) / 2 ln(1 + chi^2 / v)`, a multivariate Student's t; 0 where the covariance is stated. Constants are left out.
+/// Returns the log density of a multivariate Student's t minus the log density of a Gaussian, `chi^2 / 2 - (v + n) / 2 ln(1 + chi^2 / v)`, without
+/// constants. `v` is the number of degrees of freedom of an estimated covariance. 0 if the covariance is stated.
 pub(super) fn heavier_tail(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
     match &frame.learnt {
         Some(u) if u.dof.is_finite() => {
@@ -77,7 +77,7 @@ pub(super) fn expected_precision(frame: &StrainFrame, chi2: f64, n: usize) -> f6
     }
 }
 
-/// The readings of a run: places in the selection, and what gauges share in each.
+/// Readings of a run: place of each in the selection, and the shares of gauges in it.
 struct Run {
     run: usize,
     entries: Vec<(usize, Shares)>,
@@ -105,7 +105,7 @@ fn runs_of(
     out
 }
 
-/// By channel: what each gauge's strain shares in it.
+/// Returns the share of each gauge's strain in the reading of each channel, by channel.
 pub(super) fn shares(
     frame: &StrainFrame,
     members: &[Member<'_>],

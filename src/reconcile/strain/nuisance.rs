@@ -1,11 +1,11 @@
-//! Loads that are found anew in every run: nuisance loads of the model, and ground that is not flat.
+//! Loads that are estimated separately in every run: nuisance loads of the model, and ground that is not flat.
 
 use super::frame::StrainFrame;
 use crate::reconcile::effect::{Amplitudes, SizedAmplitudes};
 
 impl StrainFrame {
-    /// The nuisance loads of the model, and its ground, as amplitudes of their stated sizes: as much may repeat in all runs as differs from run
-    /// to run.
+    /// Returns the nuisance loads and the ground of the model as amplitudes of their stated sizes. The part that repeats in all runs may be as large
+    /// as the part that differs from run to run.
     pub fn nuisance_amplitudes(&self) -> Option<SizedAmplitudes> {
         let mut sizes: Vec<f64> = self.nuisance.iter().map(|n| n.size).collect();
         let mut patterns: Vec<Vec<f64>> =
@@ -37,7 +37,7 @@ impl StrainFrame {
     }
 }
 
-/// What a change of wheel forces can't alter: their sum and moments, as far as the wheels' places are known.
+/// Returns the constraints on a change of wheel forces: it leaves their sum unchanged, and their moments as far as the wheel positions are known.
 fn constraints(frame: &StrainFrame) -> Vec<Vec<f64>> {
     let n = frame.n_loads();
     let mut out = vec![vec![1.0; n]];
@@ -61,9 +61,9 @@ fn constraints(frame: &StrainFrame) -> Vec<Vec<f64>> {
     out
 }
 
-/// An orthonormal basis of the forces that satisfy the constraints (Gram-Schmidt).
+/// Returns an orthonormal basis of the forces that satisfy the constraints (Gram-Schmidt).
 fn warps(frame: &StrainFrame) -> Vec<Vec<f64>> {
-    /// Below this length a vector is what the basis already holds.
+    /// Length below which a vector depends linearly on the basis, relative to the larger of its original length and 1.
     const NEGLIGIBLE: f64 = 1e-9;
     let n = frame.n_loads();
     let mut basis: Vec<Vec<f64>> = Vec::new();
@@ -91,7 +91,7 @@ fn warps(frame: &StrainFrame) -> Vec<Vec<f64>> {
     basis.split_off(n_fixed)
 }
 
-/// Strain of a self-balanced change of the wheel forces of 1 kN, microstrain by gauge: one for each that their sum and moments leave free.
+/// Returns the strain of each independent self-balanced change of the wheel forces of 1 kN, microstrain by gauge.
 pub fn ground_patterns(frame: &StrainFrame) -> Vec<Vec<f64>> {
     let pattern = |w: &Vec<f64>| {
         let rows = frame.influence.chunks_exact(frame.n_columns());

@@ -1,4 +1,4 @@
-//! A name needs a gap that falls by it on runs that it was not fitted on.
+//! Test that each identified effect reduces the gap on runs that were not fitted.
 
 use super::explanation::{ids, is_unmodelled, named_part};
 use super::likelihood::Fit;
@@ -10,15 +10,15 @@ use crate::reconcile::proven::{Useless, Without, without_useless};
 use crate::reconcile::search::Scored;
 use rayon::prelude::*;
 
-/// A set without those of its names that the runs which judge don't bear out.
+/// Set of effects without the ones that do not reduce the gap on the validation runs.
 pub(super) struct Proven {
-    /// The set that is left, at least one name in it.
+    /// Smaller set, with at least one identified effect.
     pub set: Scored<Fit>,
-    /// What is said of the names that were taken out.
+    /// Message on the removed effects.
     pub doubt: String,
 }
 
-/// `best` without names that prove nothing ([`without_useless`]); `None` where the gap falls by every name.
+/// Returns `best` without effects that do not reduce the gap ([`without_useless`]); `None` if no effect is removed or `best` has a general form.
 pub(super) fn proven(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

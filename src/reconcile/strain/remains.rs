@@ -1,4 +1,4 @@
-//! What remains after the best explanation, in words: which gauges, which runs, how it grows with load.
+//! Description of the residual after the best explanation: its gauges, its runs, its growth with the load.
 
 use super::adequacy::Adequacy;
 use super::bias::model_bias;
@@ -9,7 +9,7 @@ use crate::estimate::rms;
 use crate::reconcile::effect::Member;
 use crate::reconcile::outcome::{ChannelGap, Misfit};
 
-/// A sentence or two on what `members` leave of the fit runs.
+/// Returns one or two sentences on the residual of the fit runs under `members`.
 pub fn remains(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -25,11 +25,11 @@ pub fn remains(
     }
 }
 
-/// Which gauges make the gap, by their share of its square, and which of them lie above their own floor.
+/// Returns a text with the gauges that contribute most to the squared gap, and the gauges above their own floor.
 pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
-    /// As many gauges as a sentence holds.
+    /// Largest number of gauges in a sentence.
     const MOST: usize = 5;
-    /// Shares below this are not worth a name.
+    /// Smallest share of the squared gap for which a gauge is listed.
     const SHARE: f64 = 0.05;
     let total: f64 = channels.iter().map(|c| c.before * c.before).sum();
     if total <= 0.0 {
@@ -56,7 +56,8 @@ pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
     }
 }
 
-/// What is said where no single gauge or run lies above its floor; `withheld`, the reasons against the set, where there is a gap all the same.
+/// Returns the text for a residual without a single gauge or run above its floor. `withheld` contains the reasons against the set if a gap is
+/// present nevertheless.
 fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
     match withheld {
         None => format!(
@@ -72,7 +73,7 @@ fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
     }
 }
 
-/// What is left above the floor.
+/// Returns a text on the residual above the floor: its gauges, its runs and its growth with the load.
 fn beyond(
     frame: &StrainFrame,
     members: &[Member<'_>],
@@ -126,7 +127,7 @@ fn beyond(
     }
 }
 
-/// Pearson's correlation; `None` for constant data.
+/// Returns Pearson's correlation; `None` for constant data.
 fn correlation(points: &[(f64, f64)]) -> Option<f64> {
     let n = points.len() as f64;
     let (mx, my) = (
@@ -143,7 +144,7 @@ fn correlation(points: &[(f64, f64)]) -> Option<f64> {
 mod tests {
     use super::none_alone;
 
-    /// Beside a gap it is never said that nothing is above the floor, whatever keeps the set from being named.
+    /// Tests that the text never reports nothing above the floor if a gap is present, for any reason against the set.
     #[test]
     fn nothing_above_the_floor_is_said_only_where_there_is_no_gap() {
         let reasons = ["three neighbours".to_owned()];

@@ -1,4 +1,4 @@
-//! How often a set of effects wins when the runs are drawn anew.
+//! Number of resampled run sets in which a set of effects wins.
 
 use super::covariance::Selection;
 use super::explanation::Explanation;
@@ -11,14 +11,14 @@ use crate::linalg::spd::dot;
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
-/// Drawings: a share of wins is then known to five in a hundred.
+/// Number of resampled run sets. It determines a share of wins to five in a hundred.
 pub(super) const DRAWINGS: usize = 100;
 
-/// Of 100 drawings of as many runs with replacement, by set those in which it is ahead of all others; where one is ahead that no drawing could
-/// tell from the first (their densities differ by less than odds of twenty to one over all runs together), the first is. The log evidence of a
-/// set is then that of all runs, each run's own log density counted as often as the run is drawn. Parameters and sizes stay as fitted; correlation
-/// between runs is left out, but for what the full evidence holds of it. Runs that the effects of any set alone touch are in every drawing, since
-/// without them nothing is to be seen of these effects.
+/// Returns, by set, the number of 100 resampled run sets in which it has the highest log evidence. Each contains as many runs, drawn with
+/// replacement. If the densities of the winner and the first set differ by less than odds of twenty to one over all runs, the win counts for the
+/// first set. The log evidence on a resampled run set is the full log evidence, with the log density of each run counted as often as the run is
+/// drawn. Parameters and sizes stay as fitted. Only the full evidence contains the correlation between runs. Runs that an effect of single runs
+/// changes are in every resampled run set, since no other run shows this effect.
 pub(super) fn drawings_won(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -76,8 +76,8 @@ pub(super) fn drawings_won(
     won
 }
 
-/// By run: log density of its readings with the set on, less constants; with a covariance that was estimated, at the precision that the residual of
-/// all runs makes most likely.
+/// Returns the log density of the readings of each run under the set, without constants. If the covariance was estimated, the precision has the
+/// factor that is expected from the residual of all runs.
 fn densities(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -104,7 +104,7 @@ fn densities(
     by_run.into_iter().map(density).collect()
 }
 
-/// Numbers that repeat from call to call (a linear congruential generator, Knuth's constants), so that an answer does too.
+/// Linear congruential generator with Knuth's constants. Its numbers repeat from call to call, so results are reproducible.
 struct Numbers(u64);
 
 impl Numbers {

@@ -11,13 +11,13 @@ use crate::reconcile::outcome::Rival;
 use crate::reconcile::search::Scored;
 use rayon::prelude::*;
 
-/// Rivals beyond this log evidence are not worth naming.
+/// Difference in log evidence from the best set beyond which alternative explanations are not reported.
 pub(super) const WORTH_NAMING: f64 = 25.0;
 
-/// Another set with its ids.
+/// Alternative set of effects with its ids.
 pub(super) type RivalSet = (Vec<String>, Scored<Fit>);
 
-/// Rivals of a set of log evidence `level`, in words and numbers.
+/// Returns the alternative explanations of a set of log evidence `level`, with their gaps.
 pub(super) fn rivals_told(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -33,8 +33,8 @@ pub(super) fn rivals_told(
     rivals.par_iter().map(one).collect()
 }
 
-/// Other sets of at most the same number of effects, nearest first, that do not contain the best one; each under its own covariance, as the
-/// best one is.
+/// Returns alternative sets with at most as many identified effects as the best set, nearest first. The number is not limited if the best set
+/// contains a curve. Each set has its own covariance, like the best set.
 pub(super) fn rival_sets(
     frame: &StrainFrame,
     candidates: &[Candidate],
@@ -42,7 +42,7 @@ pub(super) fn rival_sets(
     best: &Scored<Fit>,
 ) -> Vec<RivalSet> {
     const MOST: usize = 5;
-    /// Of twice as many, since under their own covariance they come in another order.
+    /// Number of sets tried: twice as many, since sets change their order under their own covariance.
     const TRIED: usize = 2 * MOST;
     let own = named_part(candidates, &best.set);
     // Beside a curve, which can take many shapes, sets of any number of names stand.
@@ -79,7 +79,8 @@ pub(super) fn rival_sets(
     out.into_iter().map(with_ids).collect()
 }
 
-/// Drops what has the names of the judged set from its rivals, and all but the first of those of equal names: other starts and forms of one effect.
+/// Removes alternatives with the same ids as `best`, and all but the first of alternatives with equal ids. They are other starts or forms of one
+/// effect.
 pub(super) fn without_own(
     candidates: &[Candidate],
     best: &Scored<Fit>,

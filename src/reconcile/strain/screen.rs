@@ -1,4 +1,4 @@
-//! Candidates tried on top of a fitted set, approximately: which are worth an exact fit.
+//! Approximate test of candidates on top of a fitted set, which selects candidates for an exact fit.
 
 use super::likelihood::{Fit, Likelihood};
 use super::prediction::predict;
@@ -11,13 +11,13 @@ use crate::reconcile::search::{Addition, Scored};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// A fitted set that candidates are tried on top of.
+/// Fitted set to which candidates are added.
 struct Base<'b> {
     scored: &'b Scored<Fit>,
     members: Vec<Member<'b>>,
     /// Members with amplitudes.
     families: Vec<usize>,
-    /// Its prediction of all readings.
+    /// Prediction of all readings by the set.
     predicted: Vec<f64>,
     precision: &'b Precision,
     /// Precision times residual.
@@ -25,7 +25,7 @@ struct Base<'b> {
 }
 
 impl Likelihood<'_> {
-    /// Candidates that may join `base`, by their approximate gain, best first.
+    /// Returns the candidates that may be added to `base`, by their approximate gain, best first.
     pub(super) fn additions_to(&mut self, base: &Scored<Fit>) -> Vec<Addition> {
         let Some(precision) = self.precision(&base.fit.sizes) else {
             return Vec::new();

@@ -7,7 +7,7 @@ use crate::linalg::precision::Precision;
 use crate::linalg::spd::dot;
 use crate::reconcile::effect::{Amplitudes, Member, SizedAmplitudes};
 
-/// The covariance of each run by itself, without unknown amplitudes.
+/// Covariance of each run separately, without unknown amplitudes.
 pub struct RunBlocks {
     blocks: Vec<RunBlock>,
     n_gauges: usize,
@@ -21,18 +21,18 @@ struct RunBlock {
     covariance: Vec<f64>,
 }
 
-/// A run with its precision, amplitudes in: what quick sums need.
+/// Run with its precision, scatter of amplitudes included, for fast sums.
 pub struct RunPrecision<'a> {
-    /// Places of its readings in the selection.
+    /// Places of the readings in the selection.
     pub at: &'a [usize],
-    /// Their gauges.
+    /// Gauges of the readings.
     pub gauges: &'a [usize],
-    /// Precision of these readings, scatter of amplitudes in, correlation with other runs left out.
+    /// Precision of the readings, with the scatter of amplitudes and without the correlation with other runs.
     pub precision: Precision,
 }
 
 impl RunBlocks {
-    /// The blocks of `selection` with the prediction of `members`.
+    /// Computes the blocks of `selection` with the prediction of `members`.
     pub fn of(frame: &StrainFrame, members: &[Member<'_>], selection: &Selection) -> Self {
         let mut runs: Vec<usize> = selection.0.iter().map(|e| e.0).collect();
         runs.dedup();
@@ -53,7 +53,7 @@ impl RunBlocks {
         }
     }
 
-    /// Precisions run by run with the scatter of `unknown`; those that can't be made are left out.
+    /// Returns the precision of each run with the scatter of `unknown`. Runs without a valid factor are omitted.
     pub fn precisions(&self, unknown: &[SizedAmplitudes]) -> Vec<RunPrecision<'_>> {
         let added = self.added(unknown);
         let one = |b: &'_ RunBlock| b.precision(&added, self.n_gauges);
@@ -66,7 +66,7 @@ impl RunBlocks {
         .collect()
     }
 
-    /// What the scatter of unknown amplitudes adds to the covariance of a run, `n_gauges x n_gauges`.
+    /// Returns the covariance that unknown amplitudes add to a run, `n_gauges x n_gauges`: their scatter, and the uncertainty of their patterns.
     fn added(&self, unknown: &[SizedAmplitudes]) -> Vec<f64> {
         let n = self.n_gauges;
         let mut out = vec![0.0; n * n];
@@ -97,7 +97,7 @@ impl RunBlock {
     }
 }
 
-/// A pattern with its family, its kind, and the variance of what repeats of it.
+/// Pattern with its family, its kind, and the variance of its part that repeats in all runs.
 struct Pattern<'a> {
     family: usize,
     kind: usize,

@@ -1,4 +1,4 @@
-//! Which names of a set stand when the runs are drawn anew.
+//! Effects of a set that recur in resampled run sets.
 
 use super::explanation::{ids, is_unmodelled, named_part};
 use super::frame::StrainFrame;
@@ -8,18 +8,18 @@ use super::resampled::{DRAWINGS, drawings_won};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::search::Scored;
 
-/// The names of the best set before the drawings of the runs.
+/// Result of the resampled run sets for the effects of the best set.
 pub(super) struct Standing {
-    /// Names that enough resampled run sets hold.
+    /// Effects that recur: enough resampled run sets contain them.
     names: Vec<usize>,
-    /// What speaks against the others, in words; `None` where all stand.
+    /// Message on the effects that do not recur; `None` if all recur.
     pub doubt: Option<String>,
-    /// By set of the contest: its members, and the drawings that it wins.
+    /// Members of each compared set, and the number of resampled run sets that it wins.
     contest: Vec<(Vec<usize>, usize)>,
 }
 
 impl Standing {
-    /// Of the names of `best`, against its rivals, no effect at all, and what noise alone it takes besides.
+    /// Compares `best` in resampled run sets with its alternatives, with no effect at all, and with `best` without its identified effects.
     pub fn of(
         frame: &StrainFrame,
         candidates: &[Candidate],
@@ -71,7 +71,7 @@ impl Standing {
         }
     }
 
-    /// The set of those of its names that stand, where these are some and not all; a general form has no names to stand.
+    /// Returns `best` without the effects that do not recur. `None` if all effects or no effect recurs, or if `best` contains a general form.
     pub fn fewer(
         &self,
         frame: &StrainFrame,
@@ -88,14 +88,14 @@ impl Standing {
         under_own_covariance(frame, candidates, &kept, best)
     }
 
-    /// Of 100 drawings, those whose best set holds all of these names.
+    /// Returns the number of 100 resampled run sets whose best set contains all of these effects.
     pub fn wins(&self, names: &[usize]) -> usize {
         let holding = |s: &&(Vec<usize>, usize)| names.iter().all(|c| s.0.contains(c));
         self.contest.iter().filter(holding).map(|s| s.1).sum()
     }
 }
 
-/// That the first set is ahead in few of the drawings, and what is ahead in the others, in words.
+/// Returns a message that the first set wins in few resampled run sets, with the sets that win in the rest.
 fn seldom_ahead(candidates: &[Candidate], contest: &[&Scored<Fit>], won: &[usize]) -> String {
     let mut sets = contest.iter().zip(won);
     let (names, first) = sets.next().map_or((String::new(), 0), |(s, w)| {

@@ -1,4 +1,4 @@
-//! The gap of a set of effects on runs that were not fitted: those that are held out, else every run in turn.
+//! Gap of a set of effects on runs that were not fitted: the held-out runs or, without held-out runs, every run in turn.
 
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
@@ -9,16 +9,16 @@ use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis};
 use crate::reconcile::search::{Scored, Scorer};
 use rayon::prelude::*;
 
-/// Groups of runs that are left out in turn where no run is held out: each set is fitted as many times.
+/// Number of groups of runs that are left out in turn if no run is held out. Each set is fitted as many times.
 const FOLDS: usize = 6;
 
-/// Residuals judged with amplitudes found anew, and with the loads besides.
+/// Residuals with amplitudes estimated again in each run, then residuals with amplitudes and errors of the recorded loads estimated again.
 pub(super) type Both = [Judged; 2];
 
-/// Runs to be judged, with their residuals by the analyst's model.
+/// Validation runs, with their residuals under the analyst's model.
 struct Proven {
     frame: StrainFrame,
-    /// Amplitudes found anew; with the loads besides. Empty where the covariance has no factor.
+    /// Residuals under the analyst's model in the order of [`Both`]. Empty if the covariance has no factor.
     ways: Vec<(FoundAnew, Vec<f64>)>,
 }
 
@@ -39,16 +39,16 @@ impl Proven {
     }
 }
 
-/// The runs by which sets of effects are judged: those that are held out, else every run in turn. Made once for all sets; none where the
-/// work is to stop.
+/// Validation runs for sets of effects: the held-out runs or, without held-out runs, every run in turn. They are prepared once for all sets, and
+/// empty if a stop is requested.
 pub struct Proofs<'a> {
-    /// What is judged.
+    /// Static problem with all runs.
     pub frame: &'a StrainFrame,
     parts: Vec<Proven>,
 }
 
 impl<'a> Proofs<'a> {
-    /// Of the runs of `frame`.
+    /// Prepares the validation runs of `frame`.
     pub fn of(frame: &'a StrainFrame) -> Self {
         let going = |_: &usize| !frame.stop.is_asked();
         if frame.observations.held_out.iter().any(|h| *h) {
@@ -87,8 +87,8 @@ fn refitted(
     Likelihood::new(frame, candidates, &runs, &reference).score(&scored.set, Some((scored, None)))
 }
 
-/// The gap over all and by gauge: on held-out runs, else every run in turn. Effects of single runs (two exchanged, a wrong note) can't show
-/// on runs that they don't touch: those they touch are judged besides, half of the gauges by what was fitted without it.
+/// Returns the gap over all gauges and by gauge, on held-out runs or, without held-out runs, on every run in turn. Effects of single runs (two
+/// exchanged, a wrong record) change only those runs. These runs are therefore tested in addition, each half of the gauges with a fit without it.
 pub fn validated(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -103,7 +103,7 @@ pub fn validated(
     plain.gap(frame, basis, &loads_found)
 }
 
-/// Returns the residuals of `scored` on the readings that the set `of` is compared on: those of the runs that its effects touch as well.
+/// Returns the residuals of `scored` on the readings that the set `of` is compared on. They include the runs that single-run effects of `of` change.
 pub(super) fn residuals_on(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -156,7 +156,7 @@ fn in_turn(parts: &[Proven], candidates: &[Candidate], scored: &Scored<Fit>) -> 
     out
 }
 
-/// The gauges of one half in the runs `touched`, judged by what all other readings tell.
+/// Returns the residuals of one half of the gauges in the runs `touched`, with `scored` refitted to all other readings.
 fn judged_by_halves(
     frame: &StrainFrame,
     candidates: &[Candidate],
