@@ -50,7 +50,7 @@ pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
 /// Examines `frame` with `candidates`, which may include effects outside the library.
 ///
 /// The stated uncertainty of the model is first an error of the strain predicted at a gauge. If no effect explains the gap beyond it, each influence
-/// coefficient may have an error of this size as well: errors of coefficients do not cancel if the strains of loads do.
+/// coefficient may have an error of this size as well. Errors of coefficients do not cancel if the strains of loads do.
 pub fn examine_with(frame: &StrainFrame, candidates: &[Candidate]) -> Outcome {
     let outcome = examined(frame, candidates);
     let is_open = outcome.verdict == Verdict::Unknown && !frame.stop.is_asked();

@@ -43,7 +43,7 @@ pub enum StiffnessOf {
     Joint,
     /// Small region (a crack, a missing patch): natural log of its stiffness times 100.
     Local,
-    /// Change that the user described, in the unit of the description.
+    /// Change that the user described; the described change has size one.
     Described,
 }
 

@@ -112,8 +112,8 @@ fn best_of_names<'a>(candidates: &[Candidate], all: &'a [Scored<Fit>]) -> Option
         .max_by(|a, b| a.log_evidence.total_cmp(&b.log_evidence))
 }
 
-/// Tests the best set and returns the outcome. Effects that do not recur in resampled run sets, or that do not reduce the gap on runs that were
-/// not fitted, are removed from fit and gap. The smaller set is tested against its own expected residual.
+/// Tests the best set and returns the outcome. Effects are removed from fit and gap if they do not recur in resampled run sets, or do not reduce
+/// the gap on validation runs. The smaller set is tested against its own expected residual.
 pub(super) fn judge(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

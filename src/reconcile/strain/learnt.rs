@@ -55,8 +55,8 @@ pub(super) fn learnt(
     Some(out)
 }
 
-/// Returns the log density of a multivariate Student's t minus the log density of a Gaussian, `chi^2 / 2 - (v + n) / 2 ln(1 + chi^2 / v)`, without
-/// constants. `v` is the number of degrees of freedom of an estimated covariance. 0 if the covariance is stated.
+/// Returns the log density of a multivariate Student's t minus the log density of a Gaussian, without constants:
+/// `chi^2 / 2 - (v + n) / 2 ln(1 + chi^2 / v)`. `v` is the number of degrees of freedom of an estimated covariance. 0 if the covariance is stated.
 pub(super) fn heavier_tail(frame: &StrainFrame, chi2: f64, n: usize) -> f64 {
     match &frame.learnt {
         Some(u) if u.dof.is_finite() => {

@@ -107,9 +107,9 @@ impl View {
 
 /// Forms the equations of motion of a further drive.
 ///
-/// The starting point is the present motion with the same filter at every channel. Its residual in one explanation is subtracted from it, which
-/// gives a motion that obeys this explanation ([`super::obeying`]). This is correct to first order in the difference of two explanations. The
-/// residual of the other explanation is the difference of the forces of both at that motion.
+/// The motion is the present one with the same filter at every channel, less the channel errors that explain its residual under one explanation
+/// ([`super::obeying`]). It obeys that explanation to first order in the difference of two explanations. The residual of the other explanation is
+/// the difference of the forces of both at that motion.
 fn driven(
     frame: &MotionFrame,
     measurement: &Measurement,
