@@ -220,7 +220,7 @@ pub struct Outcome {
     pub effects: Vec<NamedEffect>,
     /// Effects of the best set, even if the set is not decisive, not at the floor or not plausible.
     pub best_attempt: Vec<NamedEffect>,
-    /// Effects replaced by a smooth model error that explains the data as well; empty if there is no such error.
+    /// Effects replaced by a smooth model error that explains the data as well; empty if no such error exists.
     pub replaced: Vec<NamedEffect>,
     /// Alternative explanations, nearest first.
     pub rivals: Vec<Rival>,
@@ -232,7 +232,7 @@ pub struct Outcome {
     pub covariance: Vec<f64>,
     /// Noise that the readings show over the stated noise; 1 if the stated noise is right.
     pub noise_factor: f64,
-    /// Curve of a smooth model error that explains these data as well as any identified effects; empty if there is none.
+    /// Curve of a smooth model error if it explains these data as well as any identified effects; otherwise empty.
     pub smooth: Vec<SmoothAt>,
     /// Gap.
     pub gap: Gap,

@@ -1,6 +1,6 @@
 //! Thresholds for identifying an effect. A job has no keys for them; a program that tests another value sets it in a frame.
 
-/// Name of a threshold, and the function that returns its value in the thresholds `R`.
+/// Name of a threshold, and the function that returns a mutable reference to its value in the thresholds `R`.
 pub type Rule<R> = (&'static str, fn(&mut R) -> &mut f64);
 
 /// Thresholds for strain.
@@ -26,8 +26,8 @@ pub struct StrainRules {
     /// Share of the resampled run sets that must contain an effect, and the whole set. Below 60 of 100, the lead of a set depends on which runs were
     /// driven. The limit is half of the run sets plus twice the uncertainty of the share, which is five in a hundred.
     pub drawings: f64,
-    /// Largest root mean square of a side load, in usual sizes of its kind. Shares of the wheel force are FX .25, FY .6, MX .3, MY .1 and MZ .1
-    /// (moments per metre). At the limit, FY is near the friction of a tyre. The other components are brake and aligning moments that a stationary
+    /// Largest root mean square of a side load, in usual sizes of its kind. As shares of the wheel force, these limits are FX .25, FY .6, MX .3, MY
+    /// .1 and MZ .1 (moments per metre). FY is then near the friction of a tyre. The other limits are brake and aligning moments that a stationary
     /// vehicle can bear.
     pub side_load: f64,
     /// Largest distance between neighbouring gauges, in usual distances from a gauge to its nearest gauge. Wrong gains and angles of several
@@ -84,33 +84,33 @@ pub struct MotionRules {
     pub indistinguishable: f64,
     /// Factor by which declared noise may be wrong: it comes from a data sheet, or from an estimate at standstill.
     pub noise_factor: f64,
-    /// Factor on squared tolerances in a limit, for effects that no job declares (a weak coupling to the other side or axle, a rate that wanders).
-    /// They are assumed to be as large as the declared tolerances, so the squared tolerances count twice.
+    /// Factor on squared tolerances in a limit, for undeclared effects (a weak coupling to the other side or axle, a rate that varies). They are
+    /// assumed to be as large as the declared tolerances, so the squared tolerances count twice.
     pub undeclared: f64,
     /// Rate at which a job with healthy channels may have a channel above its limit, and a complete model a gap above its limit.
     pub false_rate: f64,
     /// Share of the power of an effect that its form may leave as residual. Stretch is integrated from noisy accelerations, and nonlinear terms are
-    /// computed from it, to about a fifth of their amplitude at the worst (the lower band edge). A second function of the stretch of one spring must
-    /// remove at least this share in addition to the first, since both are one force law.
+    /// computed from it. They are accurate to about a fifth of their amplitude at the worst (the lower band edge). A second function of the stretch
+    /// of one spring must remove this share in addition to the first. Both are one force law.
     pub form: f64,
     /// Share of the power removed by the other vehicle effects that a further effect must remove in addition. Forms are computed from noisy stretch
-    /// to about a twentieth of their amplitude within the band, and the residual of one form resembles another form.
+    /// to about a twentieth of their amplitude within the band. The residual of one form resembles another form.
     pub next_form: f64,
     /// Standard deviation of the logarithm of faulty gains: some per cent are usual, and larger errors are less and less likely.
     pub gain: f64,
     /// Standard deviation of faulty delays, s: some samples at the rates of vehicle records.
     pub delay_s: f64,
-    /// Standard deviation of the zero of a load cell, as a share of the weight on it: 1 % remains after a balance on the vehicle.
+    /// Standard deviation of the zero of a load cell, as a share of the weight on it. 1 % remains after a balance on the vehicle.
     pub zero_force: f64,
     /// Standard deviation of the zero of an accelerometer, in g: data sheets of capacitive sensors state 50 mg.
     pub zero_g: f64,
     /// Stiffness within a gap over the stiffness beyond it that separates free play from an end stop. Both have the same force law with two slopes.
     pub play: f64,
-    /// Ratio of the gap on the data of the proof to the largest gap of a complete model there, above which only the verdict `unknown` is possible.
-    /// Three tolerances that are stated too small by half add up to as much.
+    /// Ratio of the gap on the proof data to its largest value for a complete model. Above this ratio, only the verdict `unknown` is possible. Three
+    /// tolerances that are stated too small by half add up to as much.
     pub limits: f64,
-    /// Residual, as a share of the measured quantity, above which a fit is invalid: its parameters describe no vehicle and are no start for other
-    /// fits.
+    /// Residual, as a share of the measured quantity, above which a fit is invalid. Its parameters then describe no vehicle and are no start for
+    /// other fits.
     pub lost: f64,
 }
 

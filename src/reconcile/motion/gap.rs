@@ -50,8 +50,9 @@ pub struct RecordGap {
 impl RecordGap {
     /// Returns the fall of the squared gap from `without` an effect to this one.
     ///
-    /// White noise of gap g leaves `s^2 = g^2 / (2 N)` in each part, real or imaginary, of N frequencies. A fall d has the standard error `2 s
-    /// sqrt(d)`. If an effect removes only noise, d is about 2 s^2. With the effective number n of frequencies of the residual, N = 2 n.
+    /// White noise of gap g leaves `s^2 = g^2 / (2 N)` in each part, real or imaginary, of N frequencies.
+    /// A fall d has the standard error `2 s sqrt(d)`. If an effect removes only noise, d is about 2 s^2. With the effective number n of frequencies
+    /// of the residual, N = 2 n.
     pub(super) fn fall_from(&self, without: &Self) -> Fall {
         let by = without.gap.powi(2) - self.gap.powi(2);
         let part = self.gap.powi(2) / (4.0 * self.frequencies.max(1.0));
@@ -131,11 +132,10 @@ fn quiet(fit: &MotionFit) -> Option<Design> {
     (!lines.is_empty()).then(|| fit.design.silenced(&lines))
 }
 
-/// Returns the gap of a record with the model of a fit. The parameters are estimated again on the fitted record without nuisance, so that it is the
-/// gap that `identify` would leave.
+/// Returns the gap of a record with the model of a fit. The parameters are estimated again on the fitted record, without nuisance. The gap is then
+/// the gap that `identify` would leave.
 ///
-/// A mass or spring that changed during the fitted record has either its former or its later value in another record, whichever gives the smaller
-/// gap.
+/// If a mass or spring changed during the fitted record, another record has its former or its later value. The value with the smaller gap is used.
 pub fn record_gap(frame: &MotionFrame, fit: &MotionFit, record: &Channels) -> Option<RecordGap> {
     let quiet = quiet(fit);
     let learnt = quiet.as_ref().unwrap_or(&fit.design);

@@ -11,8 +11,8 @@ use crate::reconcile::checks::Fall;
 use crate::reconcile::effect::{Member, SizedAmplitudes};
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis, GapNumbers};
 
-/// Unknowns of a run that are estimated from one half of its gauges (odd or even number in file order) and tested on the other half. The gap before,
-/// the gap after and the floor use the same split.
+/// Unknowns of a run that are estimated from one half of its gauges (odd or even number in file order). The other half tests them, in the gap before,
+/// the gap after and the floor alike.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FoundAnew {
     /// Amplitudes of the active effects and of the nuisance loads. The gap before has no effect amplitudes, since an effect of size zero has none.
@@ -217,9 +217,9 @@ impl<'a> Told<'a> {
         })
     }
 
-    /// Returns the patterns to be estimated. Amplitudes that repeat in all runs are learned from the fit runs: m = T B P r, M = T - T B P B' T. B
-    /// contains the patterns over the readings of the fit runs, T the variances of the repeating amplitudes, P the precision and r the residual of
-    /// the fit runs.
+    /// Returns the patterns whose amplitudes are estimated. The fit runs determine amplitudes that repeat: m = T B P r, M = T - T B P B' T. B
+    /// contains the patterns over the readings of the fit runs, and T the variances of the repeating amplitudes. P is the precision of the fit runs
+    /// and r their residual.
     fn patterns(&self, anew: FoundAnew) -> Patterns {
         let mut values = Vec::new();
         let (mut steady, mut scatter) = (Vec::new(), Vec::new());
@@ -405,11 +405,10 @@ impl ProofRun<'_> {
 
 /// Returns the residuals of the proof runs by the analyst's model and with `members`, and their floor.
 ///
-/// Each reading j of the tested half is predicted from the readings u of the other half of its run. K i_u is subtracted from its residual, with K =
-/// J_j V J_u' G_uu^-1. i is the innovation (the residual less its mean given the fit runs), G its covariance, and J V J' the part of G from the
-/// patterns. A right model leaves the mean square (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj, given i_u. m contains the model errors
-/// that the fit runs show. The residual before has no effects: its only patterns are the nuisance loads and, if `anew` includes them, the wheel
-/// loads.
+/// Each tested reading j is predicted from the readings u of the other half of its run. K i_u is subtracted, with K = J_j V J_u' G_uu^-1. The
+/// innovation i is the residual less its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a
+/// right model leaves the mean square (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj. The vector m contains the model errors that the
+/// fit runs show. The residual before has no effects. Its only patterns are the nuisance loads and, if `anew` includes them, the wheel loads.
 pub fn judged(
     finer: &StrainFrame,
     members: &[Member<'_>],

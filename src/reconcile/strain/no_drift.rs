@@ -15,7 +15,7 @@ use crate::reconcile::search::Scored;
 const CHANCE: f64 = 1e-3;
 /// Probability that a zero which only scatters about its former value is taken for one that moved.
 const MOVED: f64 = 0.01;
-/// Limit of a slope, in standard deviations of the influence of a gauge. One gauge in a thousand exceeds it by an error of the model.
+/// Limit of a slope, in standard deviations of the stated uncertainty of a gauge's influence. A model error exceeds it at one gauge in a thousand.
 const DOUBTS: f64 = 3.3;
 
 /// Zero that a set identifies as drifting and that does not drift.
@@ -28,8 +28,8 @@ pub(super) struct NoDrift {
 
 /// Returns the first zero of `scored` that is identified as drifting and scattering but fails a test, with the reason; `None` if all zeros pass.
 ///
-/// The reading less the contribution of the other effects is compared with `a + b p`, p the predicted strain of the gauge. By F tests, its residual
-/// must not follow `p |p|`, and `b` must not exceed both its scatter and the model uncertainty. A zero that moved has a constant, a line or a
+/// The reading less the contribution of the other effects is compared with `a + b p`, p the predicted strain of the gauge. The zero passes if F tests
+/// find no dependence on `p |p|` and no `b` beyond its scatter and the model uncertainty. A zero that moved also shows a constant, a line or a
 /// parabola beyond its scatter, over the runs in their order.
 pub(super) fn no_drift(
     frame: &StrainFrame,
