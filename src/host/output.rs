@@ -441,7 +441,7 @@ mod tests {
             summary: "Done by place.".to_owned(),
             has_errors: false,
         };
-        assert_eq!(run("recover"), [of_place.clone()]);
+        assert_eq!(run("recover"), std::slice::from_ref(&of_place));
         assert_eq!(run("recover"), [of_place]);
         assert_eq!(text("report.html").as_deref(), Some("recover"));
         assert_eq!(text("place.report.html").as_deref(), Some("place"));

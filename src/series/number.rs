@@ -225,8 +225,8 @@ mod tests {
     /// Finite numbers of every exponent and sign: random bits.
     fn finite_numbers(count: usize) -> impl Iterator<Item = (f64, usize)> {
         let mut rng = StdRng::seed_from_u64(1);
-        let mut draw = move || (f64::from_bits(rng.random()), rng.random_range(0..12));
-        let drawn = std::iter::repeat_with(move || draw());
+        let draw = move || (f64::from_bits(rng.random()), rng.random_range(0..12));
+        let drawn = std::iter::repeat_with(draw);
         drawn.filter(|d| d.0.is_finite()).take(count)
     }
 

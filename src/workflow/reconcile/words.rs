@@ -139,7 +139,7 @@ impl Reconciled {
 
     /// The gauges that the effects explain, in words: those beyond their own floor before and not after, worst first.
     fn gauges_closed(&self) -> String {
-        /// As many gauges as a sentence holds.
+        /// Gauges that one sentence names at most.
         const MOST: usize = 4;
         let Some(strain) = &self.strain else {
             return String::new();
