@@ -174,7 +174,9 @@ impl Parquet {
     pub(super) fn texts(&self, name: &str) -> Result<Option<Vec<String>>, SeriesError> {
         let schema = self.metadata.file_metadata().schema_descr();
         let is_it = |c: &ColumnDescPtr| {
-            c.name() == name && c.max_rep_level() == 0 && c.physical_type() == Kind::BYTE_ARRAY
+            c.name().eq_ignore_ascii_case(name)
+                && c.max_rep_level() == 0
+                && c.physical_type() == Kind::BYTE_ARRAY
         };
         let Some(leaf) = schema.columns().iter().position(is_it) else {
             return Ok(None);

@@ -15,7 +15,7 @@ const MOST_NUMBERS: usize = 20_000_000;
 /// The column that names the runs.
 const RUN: &str = "run";
 
-/// Returns the table of a Parquet or Feather file that has a column `run`, as CSV with the names of the file; `None` for any other file.
+/// Returns the table of a Parquet or Feather file that has a column `run` in upper or lower case, as CSV with the names of the file; `None` for any other file.
 ///
 /// # Errors
 /// A file that is damaged, or larger than tables are.
@@ -38,7 +38,7 @@ fn as_csv(
     file: &dyn RecordReader,
     texts: impl Fn() -> Result<Option<Vec<String>>, SeriesError>,
 ) -> Result<Option<String>, SeriesError> {
-    let of_numbers = file.columns().iter().position(|c| c.name == RUN);
+    let of_numbers = file.columns().iter().position(Column::is_run);
     let Some(names) = (match of_numbers {
         Some(_) => Some(Vec::new()),
         None => texts()?,
@@ -112,10 +112,11 @@ mod tests {
     use std::sync::Arc;
 
     /// Three runs of two gauges, the second without a reading in the second run.
-    fn runs(compression: Compression) -> Vec<u8> {
-        let schema =
-            "message m { required binary run (STRING); required double P01; optional float P02; }";
-        let schema = Arc::new(parse_message_type(schema).unwrap());
+    fn runs(name: &str, compression: Compression) -> Vec<u8> {
+        let schema = format!(
+            "message m {{ required binary {name} (STRING); required double P01; optional float P02; }}"
+        );
+        let schema = Arc::new(parse_message_type(&schema).unwrap());
         let properties = WriterProperties::builder().set_compression(compression);
         let mut bytes = Vec::new();
         let mut file =
@@ -153,15 +154,23 @@ mod tests {
             Compression::LZ4,
             Compression::LZ4_RAW,
         ] {
-            let text = runs_as_csv(Arc::new(runs(compression))).unwrap();
+            let text = runs_as_csv(Arc::new(runs("run", compression))).unwrap();
             let expected = "run,P01,P02\nR1,1.5,10\n\"R2, again\",-2,\nR3,0.001,30\n";
             assert_eq!(text.as_deref(), Some(expected), "{compression:?}");
         }
     }
 
     #[test]
+    fn the_case_of_run_does_not_matter() {
+        for name in ["Run", "RUN"] {
+            let text = runs_as_csv(Arc::new(runs(name, Compression::SNAPPY))).unwrap();
+            assert!(text.is_some_and(|t| t.starts_with("run,P01,P02\nR1,1.5,10\n")));
+        }
+    }
+
+    #[test]
     fn damaged_files_of_runs_are_refused_or_read_without_a_panic() {
-        let bytes = runs(Compression::UNCOMPRESSED);
+        let bytes = runs("run", Compression::UNCOMPRESSED);
         for i in 0..bytes.len() {
             for bit in [1, 0x80, 0xff] {
                 let mut other = bytes.clone();

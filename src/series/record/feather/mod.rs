@@ -114,7 +114,7 @@ impl Feather {
     pub(super) fn texts(&self, name: &str) -> Result<Option<Vec<String>>, SeriesError> {
         let is_it = |f: &Field| {
             let is_text = matches!(f.values(), Stored::Text { .. } | Stored::TextView);
-            f.name == name && is_text
+            f.name.eq_ignore_ascii_case(name) && is_text
         };
         let Some(at) = self.fields.iter().position(is_it) else {
             return Ok(None);
