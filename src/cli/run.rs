@@ -6,6 +6,7 @@ use super::{CommonArguments, InitArguments};
 use crate::finding::Severity;
 use crate::host::context::{Context, Disk};
 use crate::host::fault::{Fault, Faults};
+use crate::host::other_results::INDEX;
 use crate::host::outcome::{Answer, Outcome};
 use crate::host::output::{Output, left_by_others};
 use crate::host::store::Folder;
@@ -220,8 +221,10 @@ impl Run {
         };
         let console = console_of(&outcome);
         let others = folder.and_then(|f| left_by_others(f, A::COMMAND));
-        let notes: Vec<String> = outcome.notes.iter().cloned().chain(others).collect();
-        let files = ["report.html"].into_iter().chain(console.file);
+        let notes = outcome.notes.iter().cloned().chain(others.clone());
+        let notes: Vec<String> = notes.collect();
+        let index = others.is_some().then_some(INDEX);
+        let files = ["report.html"].into_iter().chain(console.file).chain(index);
         let paths = files.filter_map(|file| {
             let path = folder?.join(file);
             path.is_file().then(|| path.display().to_string())

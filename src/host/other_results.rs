@@ -4,6 +4,9 @@ use crate::host::manifest::Manifest;
 use crate::host::whole_file::load;
 use std::path::Path;
 
+/// Page of a folder that lists the results of all commands.
+pub const INDEX: &str = "index.html";
+
 /// Result of another command in the folder of an output.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct OtherResult {

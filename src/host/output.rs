@@ -5,6 +5,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::files::sha256_hex;
 use crate::host::half_written;
 use crate::host::manifest::{self, Manifest};
+use crate::host::other_results::INDEX;
 use crate::host::outcome::Tables;
 use crate::host::whole_file::{FileBytes, load};
 use nastran::op2::WriteError;
@@ -208,6 +209,10 @@ impl Output {
         let mut written = Manifest::read(&self.folder);
         let before = written.clone();
         let gone = written.replace(command, &self.names());
+        if self.holds(INDEX) {
+            // The page depends on the results of other commands: it is not part of the answer.
+            written.add(&format!("{command} index"), &[INDEX.to_owned()]);
+        }
         for (other, kept) in self.keep_answers_of_others(command, &before)? {
             written.add(&other, &[kept]);
         }

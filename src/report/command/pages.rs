@@ -3,7 +3,7 @@
 use super::{Report, mistake};
 use crate::finding::Severity;
 use crate::host::fault::Faults;
-use crate::host::other_results::{OtherResult, other_results};
+use crate::host::other_results::{INDEX, OtherResult, other_results};
 use crate::host::outcome::{Answer, Outcome};
 use crate::host::output::Output;
 use crate::job::Job;
@@ -26,13 +26,11 @@ where
     };
     let page = page.with_summary(outcome.summary()).beside(out.folder());
     let others = other_results(out.folder(), A::COMMAND);
-    let mut first = first_screen(outcome);
     if !others.is_empty() {
         let index = index_of(&page, A::COMMAND, &others);
         out.write_bytes(INDEX, index.to_html().as_bytes())?;
-        first.index = Some(INDEX);
     }
-    let page = page.with_first(first);
+    let page = page.with_first(first_screen(outcome));
     out.write_bytes("report.html", page.to_html().as_bytes())?;
     #[cfg(feature = "pdf")]
     if page.paper != crate::report::page::Paper::None {
@@ -57,12 +55,8 @@ where
         title,
         table,
         file: outcome.console().file,
-        index: None,
     }
 }
-
-/// Page that lists the results of all commands in a folder.
-const INDEX: &str = "index.html";
 
 /// Returns the page that lists the result just computed and those of other commands, with a link to each report.
 fn index_of(page: &Page, command: &str, others: &[OtherResult]) -> Page {

@@ -107,8 +107,6 @@ pub struct FirstScreen {
     pub table: Table,
     /// File of the folder with all rows.
     pub file: Option<&'static str>,
-    /// Page that lists the results of other commands in the folder; `None` if there are none.
-    pub index: Option<&'static str>,
 }
 
 /// A titled part of a page.

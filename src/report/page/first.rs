@@ -32,7 +32,6 @@ pub(super) fn first_screen(page: &Page, findings: &Sorted) -> Markup {
                         @if !page.lead.is_empty() { " · " }
                         "strainbridge " (page.first.command) " " (env!("CARGO_PKG_VERSION"))
                     }
-                    @if let Some(index) = page.first.index { " · " a href=(index) { "other results in this folder" } }
                 }
             }
             div class={ "verdict " (class) } {

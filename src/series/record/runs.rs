@@ -15,7 +15,8 @@ const MOST_NUMBERS: usize = 20_000_000;
 /// The column that names the runs.
 const RUN: &str = "run";
 
-/// Returns the table of a Parquet or Feather file that has a column `run` in upper or lower case, as CSV with the names of the file; `None` for any other file.
+/// Returns the table of a Parquet or Feather file that has a column `run` in upper or lower case, as CSV with the names of the file; `None` for
+/// any other file.
 ///
 /// # Errors
 /// A file that is damaged, or larger than tables are.
