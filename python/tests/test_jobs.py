@@ -86,7 +86,7 @@ def test_an_outcome_has_numbers_findings_and_words(strip_folder, tmp_path):
     for f in plan.findings:
         assert f.severity in ("info", "warning", "error") and f.code and f.text
     html = plan._repr_html_()
-    assert "<table>" in html and gauge.name in html
+    assert "<table" in html and gauge.name in html
     with pytest.raises(AttributeError, match="log_det"):
         plan.log_dett
 
