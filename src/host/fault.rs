@@ -129,6 +129,12 @@ impl Faults {
         }
     }
 
+    /// Returns field and sentence of the first fault, for a message that gives it as a reason.
+    pub fn first_reason(&self) -> String {
+        let reason = |f: &Fault| format!("{}: {}", f.field, f.wrong);
+        self.0.first().map_or_else(String::new, reason)
+    }
+
     /// Returns the faults as a list.
     pub fn into_list(self) -> FaultList {
         self.0

@@ -292,6 +292,7 @@ fn read_results(
     work.findings.extend(supports);
     let contradiction = check_against_solver(work, job, &deck, &cases.collect::<Vec<_>>());
     work.findings.extend(contradiction);
+    work.go_on()?;
     work.findings.push(super::source_finding(
         &solutions
             .iter()

@@ -11,6 +11,7 @@ use super::specs::corrected_spec_of;
 use crate::fe::{CaseResult, ShellField, Solution};
 use crate::finding::{Finding, Severity, few};
 use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
+use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
 use crate::model::{Model, RefinedModel, ShellIx};
@@ -173,10 +174,7 @@ fn finer(
     deck: &DeckModel,
     (solution, at): (&Solution, WantedAt),
 ) -> Result<(Vec<CaseResult>, f64), String> {
-    let of_fault = |f: crate::host::fault::Faults| {
-        f.first()
-            .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong))
-    };
+    let of_fault = |faults: Faults| faults.first_reason();
     let refined = work.stage("refine", |_| {
         let gauges = (at == WantedAt::Gauges).then(|| gauges_of(job, &deck.model));
         refined_mesh(&deck.model, gauges.as_deref())

@@ -434,9 +434,7 @@ pub fn first_mode_of(work: &mut Work, job: &Job, read: &DeckModel) -> Option<f64
             Some(f) => return Some(*f),
             None => "it has no elastic mode".to_owned(),
         },
-        Err(faults) => faults
-            .first()
-            .map_or_else(String::new, |f| format!("{}: {}", f.field, f.wrong)),
+        Err(faults) => faults.first_reason(),
     };
     work.findings.push(Finding::new(
         Severity::Info,

@@ -8,6 +8,8 @@ use crate::model::ShellIx;
 pub struct StrainDifference {
     /// Sum of the absolute differences over the sum of the larger absolute values: 0 for equal fields, 2 for fields of opposite sign.
     pub share: f64,
+    /// Mean of the larger absolute values.
+    pub mean: f64,
     /// Factor of the solved field that fits the results best (least squares).
     pub factor: f64,
     /// Cosine of the angle between both fields: 1 if they differ by a positive factor alone.
@@ -32,6 +34,7 @@ impl StrainDifference {
         let ([rr, rs, ss], larger) = (sums.products, sums.larger);
         (larger > 0.0).then(|| Self {
             share: sums.differences / larger,
+            mean: larger / sums.count as f64,
             factor: rs / ss.max(f64::MIN_POSITIVE),
             cosine: rs / (rr * ss).sqrt().max(f64::MIN_POSITIVE),
             of_shells,
@@ -42,6 +45,7 @@ impl StrainDifference {
 /// Sums over the values of both fields.
 #[derive(Default)]
 struct Sums {
+    count: usize,
     differences: f64,
     larger: f64,
     /// Results times results, results times solved, solved times solved.
@@ -53,6 +57,7 @@ impl Sums {
         if !(result.is_finite() && solved.is_finite()) {
             return;
         }
+        self.count += 1;
         self.differences += (result - solved).abs();
         self.larger += result.abs().max(solved.abs());
         for (sum, product) in
@@ -65,6 +70,7 @@ impl Sums {
     }
 
     fn add_up(&mut self, other: &Self) {
+        self.count += other.count;
         self.differences += other.differences;
         self.larger += other.larger;
         for (sum, product) in self.products.iter_mut().zip(other.products) {

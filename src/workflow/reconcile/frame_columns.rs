@@ -84,7 +84,7 @@ impl FrameColumns {
     /// Returns the noise of the channels as the job states it; `None` where all have the same, independent of each other.
     ///
     /// # Errors
-    /// As [`stated_noise`].
+    /// Returns the faults of [`stated_noise`].
     pub(super) fn gauge_noise(&self, job: &Job) -> Result<Option<GaugeNoise>, Faults> {
         let stated = stated_noise(job, &self.sensitivity.gauges)?;
         Ok(stated.map(|noise| noise.of_gauges(&self.rows)))
