@@ -8,7 +8,7 @@ use crate::host::output::Output;
 use crate::host::words::counted;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::figure::{IntervalRow, intervals};
+use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{KeyNumber, Page, Section, figure_section, table_section};
 use crate::units::{half_width, number, percent, plus_minus};
 use crate::workflow::study::{Studied, StudiedLayout, StudiedLoad};
@@ -223,8 +223,13 @@ fn errors_by_layout(found: &Studied) -> Section {
     groups.extend(first.iter().filter(|l| l.wanted).map(of_load));
     figure_section(
         "Error by layout",
-        intervals(&groups, "rms error of the load, % of its size"),
-        "A shorter line is better: the root mean square error over all trials.",
+        intervals(
+            &groups,
+            "rms error of the load, % of its size",
+            Ends::Span,
+            "Root mean square error of a load over all trials, by layout and error: shorter bars are better.",
+        ),
+        "",
     )
 }
 

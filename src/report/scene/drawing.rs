@@ -34,12 +34,14 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
             p.pick aria-live="polite" { "Turn: drag. Zoom: two fingers, + and -, or the wheel once the picture was clicked. Point at a gauge, an arrow or the surface, or tap it." }
             (result(&scene.pointing))
             (data)
+            figcaption.muted { (scene.caption) }
         }
         (note(scene, &parts, data.0.len()))
     };
     lines.extend(rods);
     let view = SceneView {
         markup,
+        caption: scene.caption.clone(),
         still: still(scene),
         lines,
         marks: scene.marks.clone(),

@@ -21,6 +21,8 @@ pub struct Scene<'a> {
     pub length: &'static str,
     /// Planning by pointing that the scene allows.
     pub pointing: Pointing,
+    /// Caption: what the scene shows, and what would be better or worse.
+    pub caption: String,
 }
 
 /// Planning by pointing at a scene.

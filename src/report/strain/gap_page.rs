@@ -5,7 +5,7 @@ use crate::finding::Finding;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::{NamedEffect, Outcome, SmoothAt, Verdict};
 use crate::report::covariance::covariance_block;
-use crate::report::figure::{GaugePoints, IntervalRow, agreement, gap_by_channel, intervals};
+use crate::report::figure::{Ends, GaugePoints, IntervalRow, agreement, gap_by_channel, intervals};
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 
@@ -188,7 +188,7 @@ fn gap_section(outcome: &Outcome) -> Section {
         "Gap before and after",
         vec![
             Block::Text(gap_words(outcome)),
-            Block::Figure(gap_by_channel(&by_channel, "µε")),
+            Block::Figure(gap_by_channel(&by_channel, "µε rms")),
             Block::Note(format!(
                 "Root mean square over the {} runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave.",
                 outcome.gap.basis.words()
@@ -269,9 +269,14 @@ fn smooth_section(outcome: &Outcome) -> Option<Section> {
         Section::new(
             "The smooth error of the model",
             vec![
-                Block::Figure(intervals(&groups, "strain over what the model predicts")),
+                Block::Figure(intervals(
+                    &groups,
+                    "strain over what the model predicts",
+                    Ends::Interval,
+                    "Measured over predicted strain of each gauge with its 95 % interval: nearer to 1 is better.",
+                )),
                 Block::Note(format!(
-                    "Bars: 95 % interval. Gauges in the order of their {axis}; at 1 the model is right."
+                    "Gauges in the order of their {axis}."
                 )),
             ],
         )
