@@ -137,7 +137,10 @@ fn axes_of_a_scatter_plot_are_equal() {
     let picture = drawn(&cross(&[load]));
     // The line of equality rises as far as it goes to the right.
     let line = picture.shapes.iter().find_map(|s| match s {
-        Shape::Strokes { lines, colour, .. } if colour == "#9aa7b5" => lines.first().cloned(),
+        // Thinner than in the legend.
+        Shape::Strokes { lines, colour, pen } if colour == "#9aa7b5" && *pen < 0.5 => {
+            lines.first().cloned()
+        }
         _ => None,
     });
     let line = line.unwrap();
