@@ -257,6 +257,7 @@ function chart(figure, data) {
       return key === "x" && t.error_x ? list.concat(t.x.flatMap((_, k) => intervalAt(t, k)).filter((v) => v !== null)) : t.type === "bar" && key === "y" ? list.concat([0]) : list;
     });
     const equal = Boolean(data.layout.equal), band = data.layout.band;
+    if (zoom && equal) ay.range = zoom;
     const both = equal ? reach("x").concat(reach("y")) : null;
     const frame = frameOf(width, height, ax, ay, both || reach("y"), equal);
     const root = svg("svg", { width, height: frame.height, viewBox: `0 0 ${width} ${frame.height}`, role: "img", "aria-label": figure.getAttribute("aria-label") });
