@@ -34,6 +34,7 @@ const JOB: &str = r#"
 units = "mm-t-s"
 [model]
 deck = "strip.bdf"
+mesh_error = false
 [[load]]
 name = "left"
 grid = 1
