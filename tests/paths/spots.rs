@@ -514,6 +514,34 @@ fn a_table_corrected_by_hand_is_not_overwritten_by_place_or_study() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// The gauges that a search chose, listed as spots, have the same uncertainty and the same gluing sheet.
+#[test]
+fn spots_have_the_uncertainty_of_the_same_gauges_found_by_a_search() {
+    let errors = "gauges = 5\nnoise_microstrain = 0.5\nangle_tolerance_deg = 1.0\nposition_tolerance = 2.0\n\
+                  model_uncertainty_rel = 0.01\ngauge_factor_rel = 0.01\n";
+    let searched = files(&format!("{SIDE}[placement]\n{errors}"), "");
+    let searched = place(&job(&searched), &Context::new(&searched)).unwrap();
+    let mut table = Vec::new();
+    strainbridge::report::strain::gauges_csv(&mut table, &searched.gauges, 0.0).unwrap();
+    let listed = files(&format!("{SIDE}{SPOTS}{errors}"), "").with("spots.csv", table);
+    let listed = place(&job(&listed), &Context::new(&listed)).unwrap();
+    assert!((listed.log_det - searched.log_det).abs() < 1e-9);
+    for (a, b) in listed.load_sigma.iter().zip(&searched.load_sigma) {
+        let (glued, of_search) = (a.sigma_as_glued.unwrap(), b.sigma_as_glued.unwrap());
+        assert!((a.sigma / b.sigma - 1.0).abs() < 1e-9, "{}", a.name);
+        assert!((glued / of_search - 1.0).abs() < 1e-9, "{}", a.name);
+    }
+    for (a, b) in listed.gauges.iter().zip(&searched.gauges) {
+        assert_eq!((&a.name, a.element), (&b.name, b.element));
+        for (x, y) in [
+            (a.angle_budget_deg, b.angle_budget_deg),
+            (a.position_budget, b.position_budget),
+        ] {
+            assert!((x.unwrap() / y.unwrap() - 1.0).abs() < 1e-6, "{}", a.name);
+        }
+    }
+}
+
 fn scratch(name: &str) -> std::path::PathBuf {
     std::env::temp_dir().join(format!("strainbridge-spots-{name}-{}", std::process::id()))
 }
