@@ -148,7 +148,7 @@ fn planned(
     story: &mut Vec<Chapter>,
 ) -> Result<Vec<simulated_measurements::Glued>, Faults> {
     write(folder, "truck.bdf", DECK)?;
-    let plan = write(folder, "solve.toml", &jobs::plan(None))?;
+    let plan = write(folder, "solve.toml", &jobs::plan())?;
     let step = play(work, "solve", folder, "1-solve", &plan)?;
     story.push(Chapter {
         folder: "1-solve",
@@ -167,11 +167,7 @@ fn planned(
         command: "solve",
         step,
     });
-    let place = write(
-        folder,
-        "place.toml",
-        &jobs::plan(Some("1-solve/results.op2")),
-    )?;
+    let place = write(folder, "place.toml", &jobs::plan())?;
     let step = play(work, "place", folder, "2-place", &place)?;
     let gauges = simulated_measurements::Glued::of(&step.result);
     story.push(Chapter {

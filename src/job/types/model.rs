@@ -14,6 +14,6 @@ pub struct ModelFiles {
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,
-    /// Whether what the mesh makes is taken out of the strain of the built-in solver, and what is left of it weighed.
-    pub mesh_error: bool,
+    /// Whether the error of the mesh is subtracted from the strain of the built-in solver and weighed. `None`: where the deck is small.
+    pub mesh_error: Option<bool>,
 }
