@@ -320,7 +320,7 @@ fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
     let results = "results = [\"solved.out/results.op2\"]";
     let (code, errors) = run("recover", &job("there.toml", 6, results));
     assert!(code != 2, "{errors}");
-    // Line 10 of the job: the second [[load]].
+    // Line 11 of the job: the second [[load]].
     for (name, results) in [("with.toml", results), ("without.toml", "")] {
         let lacking = job(name, 999, results);
         for command in ["recover", "sensitivity", "place", "respond"] {
@@ -328,7 +328,7 @@ fn a_load_at_a_grid_that_the_deck_lacks_is_a_fault_with_results_too() {
             assert_eq!(code, 2, "{command}: {errors}");
             assert!(
                 errors.contains(&format!(
-                    "{name}:10: load.grid: load `middle`: the deck has no grid 999"
+                    "{name}:11: load.grid: load `middle`: the deck has no grid 999"
                 )) && errors.contains("correct the id, or name another deck"),
                 "{command}: {errors}"
             );
