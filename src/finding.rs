@@ -2,9 +2,11 @@
 
 mod bounded;
 pub mod explain;
+mod sentence;
 mod severity;
 
 pub use bounded::bounded;
+pub use sentence::capital;
 use serde::{Deserialize, Deserializer, Serialize};
 pub use severity::Severity;
 use std::fmt::Display;
@@ -22,7 +24,7 @@ pub struct Finding {
     pub code: CodeName,
     /// Subject: a gauge, a load, a file, an element.
     pub subject: String,
-    /// A plain sentence with the consequence.
+    /// Sentences with the consequence.
     pub message: String,
     /// The measured number, where there is one.
     pub measured: Option<f64>,
@@ -43,7 +45,7 @@ fn read_code<'de, D: Deserializer<'de>>(from: D) -> Result<CodeName, D::Error> {
 }
 
 impl Finding {
-    /// A finding without numbers, its words [`bounded`].
+    /// Creates a finding without numbers. Message and remedy become sentences, with a capital letter and a full stop, and are [`bounded`].
     pub fn new(
         severity: Severity,
         code: &'static str,
@@ -51,16 +53,22 @@ impl Finding {
         message: impl Into<String>,
         remedy: impl Into<String>,
     ) -> Self {
+        let subject = bounded(subject);
         Self {
             severity,
             code,
-            subject: bounded(subject),
-            message: bounded(message),
+            message: sentence::sentence(&bounded(message), &subject),
             measured: None,
             limit: None,
             chance: None,
-            remedy: bounded(remedy),
+            remedy: sentence::sentence(&bounded(remedy), ""),
+            subject,
         }
+    }
+
+    /// Returns the message without its full stop, for a text that continues it.
+    pub fn clause(&self) -> &str {
+        self.message.trim_end_matches('.')
     }
 
     /// Adds the probability that correct data produce a finding as large as this one.

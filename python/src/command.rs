@@ -110,7 +110,7 @@ pub(crate) fn ask(
 
 fn shard_of(py: Python, text: &str) -> PyResult<Shard> {
     Shard::of(text).ok_or_else(|| {
-        let said = format!("`{text}` is no part of a whole");
+        let said = format!("`{text}` is not a part such as 3/64");
         raise(
             py,
             wrong("fleet", "shard", &said, "write it as 3/64").into(),

@@ -1,4 +1,4 @@
-//! `verify` and `clean`: what is done to results and kept solutions that stand already.
+//! `verify` and `clean`: work on existing results and stored solutions.
 
 use super::arguments::{CleanArguments, VerifyArguments};
 use super::run::{Run, refuse};
@@ -107,7 +107,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             Some(true) => {}
             Some(false) => return print(b"nothing is removed\n"),
             None => {
-                let wrong = format!("{what}: there is no terminal to ask whether to remove them");
+                let wrong = format!("{what}: the command needs a terminal to ask for confirmation");
                 let fault = Fault::of(shown, "clean", wrong, "run the command with `--yes`");
                 return refuse(&fault.into(), &a.common);
             }
@@ -127,7 +127,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             &Fault::of(
                 shown,
                 "clean",
-                format!("can't be removed ({e})"),
+                format!("the file cannot be removed ({e})"),
                 "check the permissions",
             )
             .into(),

@@ -226,7 +226,7 @@ fn is_printed(text: &[u8]) -> bool {
         // A closed pipe (`| head`) is no fault of ours.
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             say(&format!(
-                "standard output can't be written ({e}): what was printed is not whole\n"
+                "standard output cannot be written ({e}): the printed text is incomplete\n"
             ));
             false
         }

@@ -83,7 +83,7 @@ impl RigidStructure<'_> {
         resisted
     }
 
-    /// Adds the rows of springs to ground, and to grids that stand for ground.
+    /// Adds the rows of springs to ground, and to grids that represent ground.
     fn add_springs(&self, resisted: &mut Matrix6<f64>) {
         for ground in self.springs() {
             match ground {

@@ -144,7 +144,7 @@ impl Arriving {
     }
 }
 
-/// A field without what stands at scalar points: a bimoment there is no force.
+/// A field without the values of scalar points: a bimoment there is no force.
 fn without_points(model: &Model, field: &[[f64; 6]]) -> Vec<[f64; 6]> {
     let pairs = model.grids.iter().zip(field);
     pairs

@@ -303,7 +303,7 @@ fn nothing_free(cases: &[&LoadCase]) -> Finding {
         Severity::Warning,
         "every-dof-held",
         format!("subcases {}", few(&ids)),
-        "supports hold every degree of freedom, so that loads strain nothing",
+        "supports hold every degree of freedom, so that loads cause no strain",
         "hold the structure only where its supports are",
     )
 }
@@ -314,8 +314,10 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
             Severity::Warning,
             "inaccurate-solution",
             format!("subcase {subcase}"),
-            "after a step of iterative refinement the equations are not satisfied to six digits: stiffnesses of very different size meet, or the structure is a long chain of elements",
-            "look for springs or bars that are many orders stiffer than what they join, and make them rigid elements; of a part a hundred times as long as wide, coarsen the mesh along it",
+            "after a step of iterative refinement the equations are not satisfied to six digits: stiffnesses of very different size are \
+             connected, or the structure is a long chain of elements",
+            "check for springs or bars that are many orders stiffer than the connected parts, and make them rigid elements; of a part a \
+             hundred times as long as wide, coarsen the mesh along it",
         )
         .with_numbers(epsilon, INACCURATE_ABOVE)
     })
@@ -362,7 +364,7 @@ pub(super) fn acting(
                 Severity::Warning,
                 "load-is-inertia-only",
                 format!("subcase {}", case.subcase),
-                "the loads only accelerate the free structure as a rigid body (gravity, say): its strain is zero",
+                "the loads only accelerate the free structure as a rigid body, as gravity does: its strain is zero",
                 "hold the structure by an SPC set, or apply the forces that carry the weight",
             ));
         }

@@ -392,7 +392,7 @@ fn relief_without_motion(spc: Option<u32>) -> Finding {
         format!(
             "PARAM,INREL,-2 is stated, and {held} leaves no rigid motion free: inertia balances no load, and the supports take all of it"
         ),
-        "leave PARAM,INREL out if the structure is held, or select no SPC set if it is free",
+        "delete PARAM,INREL if the structure is held, or select no SPC set if it is free",
     )
 }
 
@@ -446,7 +446,7 @@ fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Opt
             "tied-to-ground",
             format!("grid {}", prepared.model.grids[grid].id),
             format!("a rigid motion of the structure is resisted here (dof {}), and no support or spring to ground is the cause: strain depends on it", dof + 1),
-            "look for springs between grids that don't coincide, or MPC equations that forbid rigid motion",
+            "check for springs between grids that do not coincide, or MPC equations that forbid rigid motion",
         )
         .with_numbers(worst.0, limit)
     })

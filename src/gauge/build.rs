@@ -220,7 +220,7 @@ fn found(
             "gauge-off-structure",
             &spec.name,
             format!(
-                "gauge `{}` is stated {:.4} from the nearest shell, element {element}, which is farther than that is wide",
+                "gauge `{}` is stated {:.4} from the nearest shell, element {element}, which is more than the width of the element",
                 spec.name, f.distance
             ),
             "check the unit of the position, its coordinate system and the origin of the deck",

@@ -262,7 +262,7 @@ impl Site<'_> {
     }
 }
 
-/// Whether a point stands for itself or belongs to a grid of some length.
+/// Whether a point is a gauge without length or belongs to a grid of some length.
 #[derive(Clone, Copy, PartialEq)]
 enum Reach {
     Point,

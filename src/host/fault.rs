@@ -1,6 +1,6 @@
 //! Bad input: what is wrong, where, and what to do about it.
 
-use crate::finding::{bounded, few};
+use crate::finding::{Finding, bounded, few};
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -68,6 +68,16 @@ impl Fault {
             wrong: bounded(wrong),
             remedy: bounded(remedy),
         }
+    }
+
+    /// Creates a fault of a whole file from a finding that stops the command.
+    pub fn from_finding(
+        file: impl Into<String>,
+        field: impl Into<String>,
+        finding: &Finding,
+    ) -> Self {
+        let remedy = finding.remedy.trim_end_matches('.');
+        Self::of(file, field, finding.clause(), remedy)
     }
 }
 

@@ -112,7 +112,7 @@ impl<A: Answer> Outcome<A> {
                 counted(n, "warning")
             ),
             _ => format!(
-                "{} cannot be relied on: {}.",
+                "{} is not reliable: {}.",
                 A::RESULT,
                 reasons(&self.findings)
             ),
@@ -335,7 +335,7 @@ mod tests {
         );
         assert_eq!(
             said,
-            "The answer cannot be relied on: gauge silent (P1, P2); loads not separable."
+            "The answer is not reliable: gauge silent (P1, P2); loads not separable."
         );
         let refused = summary(2, &[(error, "gauge-silent", "P1")]);
         assert!(refused.starts_with("The input has 2 faults"), "{refused}");

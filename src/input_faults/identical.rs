@@ -45,9 +45,10 @@ pub fn identical_readings(gauges: &[String], columns: &[Vec<f64>]) -> Option<Fin
             Severity::Warning,
             "columns-identical",
             few(&names),
-            "These gauges have the same readings in every row, to the last digit. Two gauges never agree so far. One column is a copy, and its reading counts twice",
+            "these gauges have the same readings in every row, to the last digit. Two gauges never agree so far. One column is a copy, and \
+             its reading counts twice",
             format!(
-                "look the channels up in the logger's files. To leave a copy out: [[correction]] gauge = \"{}\", ignore = true",
+                "check the channels in the logger\'s files. To exclude a copy: [[correction]] gauge = \"{}\", ignore = true",
                 gauges[copy]
             ),
         )

@@ -1,7 +1,7 @@
 //! Channels of a vehicle record with the opposite sign, in another unit, or under each other's name.
 //!
-//! Three kinds of evidence are used in this order: gravity in the means of accelerometers, motion that the equations of the vehicle explain
-//! only once a channel is corrected, and the masses that the equations give.
+//! Three kinds of evidence are used in this order: gravity in the means of accelerometers, motion that the equations of the vehicle explain only with
+//! a corrected channel, and the masses from the equations.
 
 use crate::estimate::median;
 use crate::finding::{Finding, Severity, few};
@@ -94,7 +94,7 @@ pub struct MotionChannel<'a> {
     pub scatter: f64,
 }
 
-/// The channel that stands for another one, and the factor on its samples.
+/// The channel that replaces another one, and the factor on its samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelSource {
     /// Number of the channel whose samples are used.
@@ -187,10 +187,7 @@ impl MotionFault {
         };
         match self {
             Self::Sign(_) => {
-                format!(
-                    "{who} {} the opposite sign",
-                    if many { "have" } else { "has" }
-                )
+                format!("{who} {} reversed sign", if many { "have" } else { "has" })
             }
             Self::Unit(_, unit, _) => {
                 let read = own.first().map_or("", |c| channels[*c].unit.as_str());
@@ -393,7 +390,7 @@ pub fn finding_of_motion(record: &MotionRecord) -> Option<Finding> {
         ),
     };
     let message = format!(
-        "{}: the model leaves {} % of the motion unexplained as recorded, and {} % with that corrected.{others}",
+        "{}: the model leaves {} % of the motion unexplained as recorded, and {} % with the correction.{others}",
         found.fault.describe(&record.channels),
         percent(found.before),
         percent(found.after)

@@ -332,9 +332,9 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
         RecordFault::Sign(list) => {
             let what = match is_all(list.len()) {
                 true => {
-                    "all recorded loads or all readings have the opposite sign, or all gauges are on the other surface"
+                    "all recorded loads or all readings have reversed sign, or all gauges are on the opposite surface"
                 }
-                false => "these recorded loads have the opposite sign",
+                false => "these recorded loads have reversed sign",
             };
             Finding::new(
                 Severity::Error,
@@ -344,7 +344,8 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                     "the readings are about -1 times the strain that the model predicts from {file} (factors: {}): {what}",
                     factors(list)
                 ),
-                "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or write a [[correction]] with sign = -1 for each gauge",
+                "correct the sign of these columns of the runs file, or write a [[correction]] with sign = -1 for each gauge. ISO and SAE \
+                 axes differ in Y and Z",
             )
             .with_numbers(list.first().map_or(-1.0, |l| l.1), SIGN)
         }

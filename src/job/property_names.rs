@@ -44,7 +44,7 @@ fn ids_called(named: &[(u32, String)], is_meant: impl Fn(&str) -> bool) -> Vec<u
 
 fn unknown_remedy(name: &str, named: &[(u32, String)]) -> String {
     match named.is_empty() {
-        true => "state ids: the deck gives its properties no names".to_owned(),
+        true => "state ids: the deck has no names of properties".to_owned(),
         false => suggest::remedy(name, named.iter().map(|n| n.1.as_str())),
     }
 }

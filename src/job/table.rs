@@ -89,7 +89,11 @@ pub fn each_part(
                     continue;
                 }
                 if r.len() != part.header.len() {
-                    let wrong = format!("{} fields, the header has {}", r.len(), part.header.len());
+                    let wrong = format!(
+                        "the row has {} fields, the header has {}",
+                        r.len(),
+                        part.header.len()
+                    );
                     faults.push(Fault::at(
                         file,
                         line,
@@ -139,7 +143,7 @@ fn named_twice(file: &str, header: &[String]) -> Vec<Fault> {
     let mut seen = std::collections::HashSet::with_capacity(header.len());
     let twice = header.iter().filter(|name| !seen.insert(*name));
     let fault = |name: &String| {
-        let remedy = "give every column its own name";
+        let remedy = "give every column a separate name";
         Fault::at(file, 1, name, "column named twice", remedy)
     };
     twice.map(fault).collect()
@@ -176,7 +180,7 @@ impl Table {
                 &*self.file,
                 1,
                 "rows",
-                "a header and no rows",
+                "the file has a header and no rows",
                 remedy,
             )),
             false => Ok(()),
@@ -190,7 +194,7 @@ impl Table {
             .find_map(|n| self.header.iter().position(|h| h == n))
     }
 
-    /// Faults of names that stand in two rows of a column; `what` they are the names of.
+    /// Returns faults of names that occur in two rows of a column; `what` states their kind.
     pub fn rows_named_twice(&self, column: usize, what: &str) -> FaultList {
         let mut seen: HashMap<&str, u32> = HashMap::with_capacity(self.rows.len());
         let mut faults = FaultList::new();

@@ -32,8 +32,8 @@ pub fn unread_columns(
     });
     let renamed: Vec<String> = renamed.collect();
     let remedy = match renamed.is_empty() {
-        true => "drop these columns, or name them as the job does".to_owned(),
-        false => format!("rename {}, or drop the columns", few(&renamed)),
+        true => "delete these columns, or name them as in the job".to_owned(),
+        false => format!("rename {}, or delete the columns", few(&renamed)),
     };
     let named: Vec<String> = unread.iter().map(|c| format!("`{c}`")).collect();
     (!named.is_empty()).then(|| {

@@ -5,7 +5,7 @@ use crate::host::work::Work;
 use crate::job::{NamedFile, suggest};
 use std::collections::{HashMap, HashSet};
 
-/// Where a gauge's column stands; `None`: it has none.
+/// Position of a gauge's column; `None`: the file has no column of this gauge.
 pub(crate) fn columns_of(
     work: &mut Work,
     named: &NamedFile,

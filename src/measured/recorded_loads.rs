@@ -122,7 +122,7 @@ pub(crate) fn read_load_record(
     Faults::check(faults)?;
     if loads.is_empty() {
         let wrong = format!(
-            "no column is named after a load of the job; its columns are {}",
+            "no column has the name of a load of the job; the columns are {}",
             few(&table.header)
         );
         let remedy = match runs.section {

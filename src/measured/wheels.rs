@@ -1,4 +1,4 @@
-//! The wheels of a job: loads that carry the structure, and how it stands on them.
+//! The wheels of a job: loads that carry the structure, and its support on them.
 
 use crate::fe::FeError;
 use crate::fe::floor::FloorError;

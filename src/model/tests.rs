@@ -55,7 +55,9 @@ fn systems_in_a_circle_and_on_a_line_are_faults() {
         errors("CORD2R,1,2,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.");
     assert_eq!(found.len(), 2, "{found:?}");
     assert!(
-        found.iter().all(|f| f.1.contains("defined by itself")),
+        found
+            .iter()
+            .all(|f| f.1.contains("defined through others by its own id")),
         "{found:?}"
     );
     let found = errors("CORD2R,1,,0.,0.,0.,0.,0.,1.\n,0.,0.,3.");

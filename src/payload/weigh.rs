@@ -476,7 +476,7 @@ fn say_weak(v: &mut GaugeVerdict, g: usize, runs: &[WeighedRun]) {
         .fold(f64::INFINITY, f64::min);
     if v.used && share > WEAK_SHARE && share.is_finite() {
         v.reason = format!(
-            "too weak to tell: alone it leaves the payload uncertain by {:.0} %",
+            "too weak: this gauge alone leaves the payload uncertain by {:.0} %",
             100.0 * share
         );
     }

@@ -66,17 +66,19 @@ impl PlaceError {
     pub fn parts(&self) -> (String, String) {
         match self {
             Self::TooFewPlaces { gauges, places } => (
-                format!("{gauges} gauges are asked for and the candidates hold {places} places"),
+                format!("{gauges} gauges are asked for and the candidates contain {places} places"),
                 "ask for fewer, or widen [candidates]".to_owned(),
             ),
             Self::Singular { gauges, loads } => (
                 format!("no {gauges} gauges among these candidates separate the {loads} loads"),
                 format!(
-                    "ask for at least {loads} gauges, drop loads that act alike, or state `expected` for loads with role \"nuisance\""
+                    "ask for at least {loads} gauges, drop loads with the same effect, or state `expected` for loads with role \"nuisance\""
                 ),
             ),
             Self::TooTight { gauges, spacing } => (
-                format!("{gauges} gauges do not fit at least {spacing} apart among the candidates"),
+                format!(
+                    "{gauges} gauges with a spacing of at least {spacing} do not fit on the candidates"
+                ),
                 "reduce the spacing or the number".to_owned(),
             ),
         }

@@ -31,8 +31,8 @@ pub fn after_worst_loss(active: &Active, prior: &[f64], rows: &[usize]) -> Optio
     (worst < WHOLE).then(|| spd::log_det(&l, k) + (1.0 - worst).ln())
 }
 
-/// The best rows found from `start`, with what is left after their worst loss; `None` where every layout met has a gauge that may not fail.
-/// Asked to stop it gives the best met so far.
+/// The best rows found from `start`, with their criterion after the worst loss; `None` if every layout has a gauge that must not fail. Asked to stop
+/// it gives the best met so far.
 pub fn search(
     active: &Active,
     prior: &[f64],

@@ -49,8 +49,8 @@ pub(super) fn recover(
             Severity::Error,
             NOT_SOLVABLE,
             &r.estimate.run,
-            "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
-            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
+            "the gauges with readings in this run do not separate the loads: some values are arbitrary",
+            "repair the gauges without readings, drop loads, or state `expected` for loads with role \"nuisance\"",
         )
     }));
     (runs, findings)
@@ -62,7 +62,8 @@ pub fn untested() -> Finding {
         Severity::Error,
         "coverage-not-tested",
         "calibration",
-        "S was calibrated with runs of which each one was needed to determine it: nothing is known of the scatter of runs, and the intervals do not include it",
-        "calibrate with further runs; repeats of one loading are the cheapest",
+        "S was calibrated with runs of which each one was needed to determine it. The scatter of the runs is unknown, and the intervals do \
+         not include it",
+        "calibrate with further runs; repeats of one loading cost least",
     )
 }

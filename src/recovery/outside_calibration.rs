@@ -101,8 +101,8 @@ pub fn check_load(
     let shown = |v: f64| number(v * factor);
     let names: Vec<String> = beyond.iter().map(|b| format!("`{}`", b.1.run)).collect();
     let message = format!(
-        "load `{}` reaches {} {unit} in `{}`, {} times the largest of the calibration ({} to {} {unit}). Runs beyond the range: {}. \
-         The calibration does not show that the strain grows in proportion so far, and the interval does not include it",
+        "load `{}` reaches {} {unit} in `{}`, {} times the largest load of the calibration ({} to {} {unit}). Runs beyond the range: {}. \
+         The calibration does not confirm proportional strain up to this load, and the interval does not include the error",
         load.name,
         shown(farthest.value),
         farthest.run,
@@ -117,7 +117,7 @@ pub fn check_load(
             CODE,
             load.name,
             message,
-            "calibrate with known loads of this size, or use the loads within the range alone",
+            "calibrate with known loads of this size, or use only the loads within the range",
         )
         .with_numbers(
             ratio,
@@ -150,7 +150,8 @@ pub fn check_strain<'a>(
             CODE,
             few(&names),
             format!(
-                "gauge `{gauge}` reads up to {} times its largest strain of the calibration, as several loads act together: that their strains add up was not calibrated",
+                "gauge `{gauge}` reads up to {} times its largest strain of the calibration, because several loads act together. The \
+                 calibration did not test the sum of their strains",
                 number(most)
             ),
             "calibrate with a run in which the loads act together",

@@ -302,11 +302,11 @@ fn what_to_do_stays_whole_where_names_and_remedies_hold_colons() {
     let line = SeriesError::Line {
         line: 1,
         what: "no line names the columns".into(),
-        remedy: "begin with a header line: `time` and a name a channel",
+        remedy: "begin with a header line: `time` and one name for each channel",
     };
     assert_eq!(
         line.parts().1,
-        "begin with a header line: `time` and a name a channel"
+        "begin with a header line: `time` and one name for each channel"
     );
     assert_eq!(
         line.to_string(),

@@ -67,8 +67,8 @@ pub(super) fn check_deck_supports<'a>(
             Severity::Warning,
             "support",
             deck.given.as_str(),
-            format!("{wrong}: the strain of the results belongs to the support of the deck"),
-            "solve all unit loads on the support that the structure has while gauges are read",
+            format!("{wrong}: the strain of the results is valid for the support of the deck"),
+            "solve all unit loads on the support of the structure during the measurement",
         )
     })
 }

@@ -123,9 +123,8 @@ fn check_shared(
                     "name the file that contains the load: result = \"{}\"",
                     first.copied().unwrap_or_default()
                 ),
-                _ => {
-                    "name result files in `model.results` of which only one contains it".to_owned()
-                }
+                _ => "name result files in `model.results` of which only one contains the load"
+                    .to_owned(),
             };
             faults.push(taker.fault(job, &r.words(&names), remedy));
         }

@@ -105,7 +105,7 @@ pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedMo
         })?
     };
     model.refined_at(&divided).ok_or_else(|| {
-        "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in other displacement frames, or no shells)"
+        "the mesh cannot be refined (shells with mid-side grids, bars or solids along shells in other displacement frames, or no shells)"
             .to_owned()
     })
 }
@@ -300,12 +300,13 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
             "mesh-coarse-at-gauges",
             "model",
             format!(
-                "the deck's mesh is too coarse at {n} of {} gauges: the readings are off by {}. S is corrected for this error, and {:.0} % of it counts as uncertainty",
+                "the deck's mesh is too coarse at {n} of {} gauges: the readings have errors of {}. S is corrected for this error, and \
+                 {:.0} % of it is treated as uncertainty",
                 gauges.len(),
                 few(&named),
                 100.0 * left
             ),
-            "refine the deck around these elements (half the width leaves a quarter of the error), or move the gauges",
+            "refine the deck around these elements (half the width gives a quarter of the error), or move the gauges",
         )
         .with_numbers(worst, LARGE),
     )
@@ -327,7 +328,8 @@ pub(super) fn uncertainty(
     }
     if n * k > MOST_ENTRIES {
         let message = format!(
-            "S has {} entries, and above {MOST_ENTRIES} their covariance is not stored: S is corrected for the mesh error, but intervals do not include what may remain of it",
+            "S has {} entries, and above {MOST_ENTRIES} their covariance is not stored: S is corrected for the mesh error, but intervals \
+             do not include the remaining error",
             n * k
         );
         let remedy =

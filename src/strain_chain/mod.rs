@@ -154,7 +154,7 @@ pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults>
             c.line,
             "correction.angle_deg",
             format!(
-                "S is given, so the row of gauge `{}` can't be turned",
+                "the job gives S, so the row of gauge `{}` cannot be turned",
                 c.gauge
             ),
             "turn it in the table of [sensitivity], or give a [model]",

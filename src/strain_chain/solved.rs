@@ -33,7 +33,7 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
     let fault =
         |wrong: String, remedy: &str| Fault::at(&*job.file, line, "model.support", wrong, remedy);
     let support = support_of(model, wanted).map_err(|e| {
-        let remedy = "write support = \"free\", or the id of the SPC set that holds the structure while gauges are read";
+        let remedy = "write support = \"free\", or the id of the SPC set that supports the structure during the measurement";
         Faults::from(fault(e.to_string(), remedy))
     })?;
     match moved_by(model, support) {
@@ -42,7 +42,7 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
             format!(
                 "SPC set {sid} moves grid {grid} by {by}: the strain of this displacement belongs to no load, and would be in every column of S"
             ),
-            "hold it at 0, or name another set; `solve` on the deck uses displacements that its subcases enforce",
+            "set the displacement to 0, or name another set; `solve` on the deck uses displacements that its subcases enforce",
         ))),
     }
 }
@@ -76,7 +76,7 @@ pub fn support_finding(deck: &str, support: Support) -> Finding {
         "support",
         deck,
         format!("under unit loads the structure is {}", support.words()),
-        "state `support` in [model] if it is held otherwise while gauges are read",
+        "state `support` in [model] if the support during the measurement differs",
     )
 }
 
@@ -149,7 +149,7 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
         "the deck's subcases select different MPC sets ({}): unit loads need one",
         few(&words)
     );
-    let remedy = "select the MPC set of the structure above the subcases alone";
+    let remedy = "select the MPC set of the structure above the subcases only";
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
 }
 

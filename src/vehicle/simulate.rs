@@ -42,18 +42,18 @@ pub enum SimulationError {
     Inertia(String),
     /// The motion grew beyond bounds.
     #[error(
-        "the motion ran away at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
+        "the simulated motion diverged at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
     )]
     Diverged {
         /// When.
         at_s: f64,
     },
     /// A term that the simulation has no equation for.
-    #[error("link `{0}` has inertance, which is not simulated: leave the term out")]
+    #[error("link `{0}` has inertance, which cannot be simulated: delete the term")]
     Inertance(String),
     /// Histories of different length.
     #[error(
-        "histories that drive the simulation have {found} and {expected} samples: cut them to one length"
+        "the records that drive the simulation have {found} and {expected} samples: cut them to one length"
     )]
     Length {
         /// Length found.

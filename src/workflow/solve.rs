@@ -351,7 +351,7 @@ fn other_sequence(read: &DeckModel) -> Option<Finding> {
         "solution-sequence",
         &read.given,
         format!(
-            "SOL {sequence} has no static subcases: the loads that its subcases select are solved as linear statics"
+            "SOL {sequence} has no static subcases: the loads of its subcases are solved as linear statics"
         ),
         "write SOL 101 if statics is meant",
     ))

@@ -102,7 +102,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
             "deck-fault",
             given.as_str(),
             f.to_string(),
-            "see `check`; the mesh is used as it is",
+            "see `check`; the mesh is used unchanged",
         )
     };
     work.findings.extend(deck.faults.iter().map(warn));
@@ -133,12 +133,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
         return Err(cut.into());
     }
     if let Some(other) = other_element_types(&solution.findings) {
-        let fault = Fault::of(
-            other.subject.as_str(),
-            "results",
-            other.message.as_str(),
-            other.remedy.as_str(),
-        );
+        let fault = Fault::from_finding(&*other.subject, "results", other);
         return Err(fault.into());
     }
     work.findings.append(&mut solution.findings);

@@ -31,7 +31,7 @@ impl Answer for Verified {
 
     fn verdict(&self) -> String {
         format!(
-            "{} the same as the inputs give now, {}.",
+            "{} equal to the results of the present inputs, {}.",
             match self.same.len() {
                 1 => "1 file is".to_owned(),
                 n => format!("{n} files are"),
@@ -176,8 +176,8 @@ pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
         Fault::of(
             folder.display().to_string(),
             "inputs",
-            "the job or deck that it was made from isn't found",
-            "call `verify` from the folder that the command was called from",
+            "the job or deck of this folder is not found",
+            "call `verify` from the folder in which the command was called",
         )
     })
 }

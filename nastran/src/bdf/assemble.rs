@@ -241,7 +241,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         if self.before_name == Name::default() {
             let what = Wrong::Replication {
                 found: excerpt(trim(line.text)),
-                why: "no card stands before it",
+                why: "no card is above it",
             };
             let at = Place {
                 source: self.source,
@@ -317,7 +317,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         let Some(mut template) = self.template.take() else {
             let what = Wrong::Replication {
                 found: "=(n)".to_owned(),
-                why: "no line with increments stands before it",
+                why: "no line with increments is above it",
             };
             note_fault(
                 &mut self.part.faults,

@@ -127,7 +127,7 @@ fn refuse_several_defaults(deck: &mut Deck) {
                 field: None,
                 what: Wrong::Statement {
                     found: format!("{n} cards"),
-                    why: "a deck may have one card of this name",
+                    why: "a deck may contain one card of this name",
                 },
             });
         }

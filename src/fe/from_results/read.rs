@@ -124,7 +124,7 @@ pub fn solution_from_file(
         } else {
             list(&passed_over)
         };
-        let message = format!("no static subcase in the file; it holds: {what}");
+        let message = format!("the file has no static subcase; it contains: {what}");
         let remedy = "give the results of a static run (SOL 101)";
         solution.findings.push(Finding::new(
             Severity::Error,
@@ -143,7 +143,7 @@ pub fn solution_from_file(
             "not-static",
             name,
             message,
-            "nothing to do if the static subcases are meant",
+            "nothing, if only the static subcases are needed",
         ));
     }
     solution

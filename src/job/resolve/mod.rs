@@ -144,7 +144,7 @@ pub(super) fn check_names(job: &Job, faults: &mut FaultList) {
         let (wrong, remedy) = match first.name == g.name {
             true => (
                 format!("gauge `{}` is stated twice, first at {at}", g.name),
-                "give every gauge its own name",
+                "give every gauge a separate name",
             ),
             false => (
                 format!(

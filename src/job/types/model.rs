@@ -14,6 +14,6 @@ pub struct ModelFiles {
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,
-    /// Whether what the mesh makes is taken out of the strain of the built-in solver, and what is left of it weighed.
+    /// Whether the strain of the built-in solver is corrected for the mesh error, with the remaining error in the covariance.
     pub mesh_error: bool,
 }

@@ -81,7 +81,7 @@ impl Proof {
         match self {
             Self::HeldOut => "held-out data",
             Self::CrossValidated => {
-                "segments of the record, each under parameters of the others (cross-validated)"
+                "segments of the record, each with parameters from the other segments (cross-validated)"
             }
             Self::Fitted => "the fitted record itself",
         }

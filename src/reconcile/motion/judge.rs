@@ -102,13 +102,13 @@ pub(super) fn judged(
             "its evidence is not decisive".into()
         }),
         Check::of(stands_out(rules, &best.fit), || {
-            "a size of it does not stand out of its own scatter".into()
+            "the size of one of its effects does not exceed its own scatter".into()
         }),
         Check::of(after.at_floor(rules, excess), || {
-            "what it leaves lies above the floor".into()
+            "the residual with it exceeds the floor".into()
         }),
         Check::of(gap.falls && gap.is_above_floor(), || {
-            "the gap that judges does not fall by it from above the floor by more than its sampling error".into()
+            "with it, the gap of the proof does not fall from above the floor by more than its sampling error".into()
         }),
         Check::unless(ahead(
             (best.set.len(), best.log_evidence),
@@ -135,7 +135,7 @@ pub(super) fn judged(
             .map(|&c| scorer.candidates[c].id.as_str())
             .collect();
         told.push(format!(
-            "{} comes nearest and is not named: {}",
+            "{} is nearest and is not identified: {}",
             ids.join(" + "),
             reasons(&checks).join(", ")
         ));

@@ -24,7 +24,7 @@ pub fn within_tolerance(
     columns: &mut [PriorColumn],
     target: &[f64],
 ) -> Solved {
-    /// Narrowing settles in a few rounds; what is left beyond is small.
+    /// Narrowing settles in a few rounds; the remaining change is small.
     const ROUNDS: usize = 6;
     /// Beyond the limit by less than this share is at it.
     const SLACK: f64 = 1.05;

@@ -33,7 +33,7 @@ pub(super) fn proven(
     });
     let told = |u: &Useless| {
         format!(
-            "{} explains more of the fitted record, but the gap that judges does not fall by it ({:.2} % with it, {:.2} % without)",
+            "{} explains more of the fitted record, but does not reduce the gap of the proof ({:.2} % with it, {:.2} % without)",
             scorer.candidates[u.candidate].id,
             100.0 * u.with,
             100.0 * u.without

@@ -40,8 +40,8 @@ pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
     let remedies: Vec<&str> = wrong.iter().map(|f| f.remedy.as_str()).collect();
     Outcome {
         verdict: Verdict::Unknown,
-        remains: words.join("; "),
-        next_measurement: remedies.join("; "),
+        remains: words.join(" "),
+        next_measurement: remedies.join(" "),
         input_faults: wrong,
         ..examine_with(frame, &[])
     }
@@ -208,8 +208,7 @@ fn without_needless_noise(
         .unwrap_or(best)
 }
 
-/// The set without names that prove nothing: what is left reaches the floor without them, and runs that it was not fitted on are
-/// predicted no worse.
+/// The set without names that prove nothing: the other names reach the floor without them, and runs that it was not fitted on are predicted no worse.
 fn without_needless_names(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],

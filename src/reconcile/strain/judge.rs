@@ -283,8 +283,7 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
         }),
         Check::of(gap.falls && gap.is_above_floor(), || {
             format!(
-                "the gap on runs that were not fitted does not fall from above its floor by more than its sampling error ({:.2} % before, {:.2} % after, \
-                 floor {:.2} %)",
+                "on runs that were not fitted, the gap does not fall significantly from above its floor ({:.2} % before, {:.2} % after, floor {:.2} %)",
                 100.0 * gap.before,
                 100.0 * gap.after,
                 100.0 * gap.floor
@@ -295,7 +294,7 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
         }),
         Check::of(
             is_unmodelled(set.candidates, &set.best.set).is_none(),
-            || "the form that closes the gap is no effect of the library".into(),
+            || "the pattern that closes the gap is not an effect of the library".into(),
         ),
         Check::of(set.reached, || {
             "gauges or runs are above their floor".into()
@@ -374,7 +373,7 @@ fn look_again(after: &Adequacy) -> String {
     };
     let run = names(&after.runs).into_iter().next();
     format!(
-        "shunt gauges {} before and after {}, made twice: readings that do not repeat are no effect of the loads",
+        "shunt gauges {} before and after {}, made twice: readings that do not repeat are not an effect of the loads",
         names(&after.gauges).join(", "),
         run.map_or("a run".into(), |r| format!("run {r}"))
     )

@@ -172,7 +172,7 @@ fn page(modes: &Outcome<Modes>) -> Page {
     let head = [
         "mode",
         "Hz",
-        "error at most, share",
+        "largest error, share",
         "gap",
         "mass along x, %",
         "y, %",

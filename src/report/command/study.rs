@@ -188,12 +188,12 @@ fn page(found: &Outcome<Studied>) -> Page {
         &format!("{trials} trials each, seed {seed}: bias ± half width of the 95 % interval"),
         &header,
         &rows,
-        "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are dealt over 50 of them.",
+        "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are distributed over 50 layouts.",
     );
     let title = &found.job.title;
     Page::new(
         title,
-        "What errors do to recovered loads",
+        "Effect of errors on recovered loads",
         &found.findings,
         vec![errors_by_layout(found), section],
     )
@@ -224,7 +224,7 @@ fn errors_by_layout(found: &Studied) -> Section {
     figure_section(
         "Error by layout",
         intervals(&groups, "rms error of the load, % of its size"),
-        "A shorter line is better: the root mean square error over all trials.",
+        "Shorter lines are better: root mean square error over all trials.",
     )
 }
 

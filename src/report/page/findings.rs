@@ -75,9 +75,9 @@ fn finding(f: &Finding) -> Markup {
     };
     html! {
         div class=(class) {
-            b { (f.severity.word()) } " · " (subjects(&f.subject)) ": " (f.message.trim_end_matches('.')) "."
+            b { (f.severity.word()) } " · " (subjects(&f.subject)) ": " (f.message)
             @if let Some(words) = numbers_in_words(f) { small { " " (capital(&words)) "." } }
-            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy.trim_end_matches('.')) "." } } }
+            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy) } } }
         }
     }
 }

@@ -94,7 +94,7 @@ pub(super) fn notes_and_tests(page: &Page, findings: &Sorted) -> Markup {
                 @if !passed.is_empty() {
                     details.folded {
                         summary { (counted(passed.len(), "condition")) " tested and not found" }
-                        p.muted { "`" (page.first.command) "` reports each of these where it applies to the job. None is in this result." }
+                        p.muted { "`" (page.first.command) "` reports each of these if it applies to the job. This result contains none of them." }
                         ul.passed { @for c in &passed { li { b { (c.code.replace('-', " ")) } " (limit: " (c.limit.trim_end_matches('.')) ")" } } }
                     }
                 }

@@ -98,7 +98,7 @@ fn card(c: &Card) -> Markup {
     html! {
         article.card.bad[c.is_bad] {
             h3 { (c.title) }
-            @if c.is_bad { p { b { "This result cannot be relied on." } } }
+            @if c.is_bad { p { b { "This result is not reliable." } } }
             @if let Some(p) = &c.picture { (to_svg(p, &format!("Picture: {}", c.title))) }
             p { (c.text) }
             p.numbers { @for (value, what) in &c.numbers { span { b { (value) } " " (what) } } }

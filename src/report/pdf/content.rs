@@ -157,7 +157,7 @@ fn table(t: &Table) -> Vec<Value> {
     if t.rows.len() > MOST_ROWS {
         let n = t.rows.len();
         let text =
-            format!("The first {MOST_ROWS} of {n} rows; all are in the tables beside this file.");
+            format!("The first {MOST_ROWS} of {n} rows; all are in the tables in this folder.");
         out.push(json!({ "kind": "note", "text": text }));
     }
     out

@@ -198,11 +198,7 @@ impl Parquet {
 
     /// A reader of one column of a row group, its first `from` rows passed over.
     fn column(&self, group: usize, leaf: usize, from: usize) -> Result<ColumnReader, SeriesError> {
-        let cut = || {
-            broken(ParquetError::General(
-                "a column lies outside of the file".into(),
-            ))
-        };
+        let cut = || broken(ParquetError::General("a column is outside the file".into()));
         let group = self.metadata.row_groups().get(group).ok_or_else(cut)?;
         let chunk = group.columns().get(leaf).ok_or_else(cut)?;
         let places = [
@@ -382,7 +378,7 @@ fn type_words(c: &ColumnDescriptor) -> String {
         (_, Some(LogicalType::Date)) => "dates without a time of day".to_owned(),
         (_, Some(LogicalType::Decimal(_))) => "decimal numbers as bytes (DECIMAL)".to_owned(),
         (_, Some(LogicalType::String)) => "text".to_owned(),
-        (kind, _) => format!("values of the type {kind}, which are not read as numbers"),
+        (kind, _) => format!("values of the type {kind}, which are not supported as numbers"),
     }
 }
 

@@ -221,7 +221,7 @@ pub(super) fn of_half(bits: u16) -> f64 {
 /// Returns the error of a Parquet file, with its remedy.
 pub(super) fn broken(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
-        wrong: format!("it can't be read as Parquet ({e})"),
+        wrong: format!("it cannot be read as Parquet ({e})"),
         remedy: "write it again, columns of numbers and one `time` in seconds",
     }
 }

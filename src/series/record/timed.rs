@@ -36,7 +36,7 @@ pub(super) fn timed(
             wrong: format!(
                 "the file states its times in units of {stated} s, the job states `time_unit` of {of_job} s"
             ),
-            remedy: "correct whichever is wrong: the unit of the column of times, or `time_unit` of the job",
+            remedy: "correct the wrong one: the unit of the column of times, or `time_unit` of the job",
         });
     }
     let (rounding_s, epoch_s, unit_stated) = match reader.times() {

@@ -136,7 +136,7 @@ fn finds(task: &IdentifyTask, r: &Channels, code: &str, subject: &str, described
     assert!(named, "{subject}: {}: {}", wrong.subject, wrong.message);
     for text in found.unidentifiable.iter().chain([&wrong.message]) {
         assert!(!text.contains("NaN") && !text.contains("()"), "{text}");
-        assert!(!text.contains("Measure that force"), "{text}");
+        assert!(!text.contains("Measure this force"), "{text}");
     }
     assert!(found.fit.iter().all(|f| f.relative_rms.is_finite()));
 }

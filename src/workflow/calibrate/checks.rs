@@ -74,7 +74,8 @@ pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding>
             "check-loads-outside",
             few(&names),
             format!(
-                "{inside} of {of} check loads are within their 95 % intervals. Farthest is `{}` in run `{}`: {} {} applied, {} ± {} recovered",
+                "{inside} of {of} check loads are within their 95 % intervals. The largest deviation is that of `{}` in run `{}`: {} {} \
+                 applied, {} ± {} recovered",
                 worst.load,
                 worst.run,
                 number(worst.applied),
@@ -82,7 +83,7 @@ pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding>
                 number(worst.recovered),
                 number(0.5 * (worst.high - worst.low))
             ),
-            "check load, place and zero of these runs; if they are right, calibrate with runs like them",
+            "check load, place and zero of these runs; if they are right, calibrate with similar runs",
         )
         .with_numbers(most, 1.0),
     )

@@ -49,8 +49,8 @@ impl<'a> Sites<'a> {
                     &*job.file,
                     job.calibration.line,
                     "calibration.position_tolerance",
-                    "gauges can be moved and turned on a model alone, and S is given",
-                    "leave position_tolerance and angle_tolerance_deg out, or give a [model] and the gauges on it",
+                    "gauges can be moved and turned only on a model, and the job gives S",
+                    "delete position_tolerance and angle_tolerance_deg, or give a [model] and the gauges on it",
                 )
                 .into());
             }
@@ -237,10 +237,10 @@ pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
             "as-glued-untold",
             "calibration",
             format!(
-                "the runs leave more than half of the stated variance open: {}",
+                "the runs reduce the stated variance of these values by less than half: {}",
                 parts.join("; ")
             ),
-            "push where the strain under these gauges changes most over their length, or measure their place",
+            "apply loads for which the strain under these gauges changes most over their length, or measure their position",
         )
         .with_numbers(count as f64, 0.0)
     })

@@ -166,8 +166,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
             &*job.file,
             job.calibration.line,
             "calibration.scale_sd",
-            "an error that all known loads share is not carried together with terms = \"intercept\"",
-            "leave out one of the two",
+            "an error common to all known loads is not available together with terms = \"intercept\"",
+            "delete one of the two",
         )
         .into()),
         (Terms::Intercept, false) => Ok(CommonZero::Sought),
@@ -175,8 +175,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
             &*job.file,
             job.calibration.line,
             "calibration.terms",
-            "`intercept` needs an S that is learnt from the runs alone, and the job gives one by [model] or [sensitivity]",
-            "write terms = \"linear\" and take the zero of the runs from a run without load ([measured] zero or zero_runs), or leave [model] out",
+            "`intercept` needs an S that comes from the runs alone, and the job gives a [model] or a [sensitivity]",
+            "write terms = \"linear\" and take the zero from a run without load ([measured] zero or zero_runs), or delete [model]",
         )
         .into()),
     }
@@ -299,7 +299,7 @@ fn prior(
         return Err(Fault::of(
             &*job.file,
             "load",
-            "the job names no loads",
+            "the job contains no loads",
             "add [[load]] with a `name` for each load that acts",
         )
         .into());

@@ -48,7 +48,7 @@ impl Answer for Calibrated {
             _ => "without a model",
         };
         format!(
-            "Sensitivities of {} to {} from {} {prior}; the 95 % intervals contain {} of {} runs left out one by one.",
+            "Sensitivities of {} to {} from {} {prior}. In the leave-one-out test the 95 % intervals contain {} of {} runs.",
             counted(self.sensitivity.gauges.len(), "gauge"),
             counted(self.sensitivity.loads.len(), "load"),
             counted(c.runs, "run"),

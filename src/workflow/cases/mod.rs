@@ -148,7 +148,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     if read.deck.sources.is_empty() {
         return Err(fault(
             "model.deck",
-            "an OP2 is no deck that could be run again",
+            "an OP2 is not a deck, and cannot be run again",
             "name the deck",
         ));
     }
@@ -253,7 +253,7 @@ fn edits_of(
             Severity::Info,
             "suport-dropped",
             "SUPORT",
-            "the written deck has no SUPORT entries: neither its inertia relief nor a held structure needs them",
+            "the written deck has no SUPORT entries: neither its inertia relief nor a supported structure needs them",
             "",
         ));
     }
@@ -368,7 +368,7 @@ fn select_structure(
             "several-mpc-sets",
             "MPC",
             format!(
-                "the deck's subcases select several MPC sets: the unit loads take {}",
+                "the deck's subcases select several MPC sets: the unit loads use {}",
                 kept.first().copied().unwrap_or_default()
             ),
             "correct MPC in unit_loads.bdf if another set applies while gauges are read",

@@ -65,14 +65,16 @@ fn most_grids(job: &Job) -> usize {
 /// Returns the finding that the deck is not solved, with the checks that only the commands make.
 fn not_asked(job: &Job, grids: usize) -> Finding {
     let readings = match job.measured {
-        Some(_) => " and what the readings come to",
+        Some(_) => ", and the loads from the readings",
         None => "",
     };
     Finding::new(
         Severity::Info,
         "solution-not-checked",
         job.model.as_ref().map_or("model", |m| &m.deck.given),
-        format!("the deck is not solved here: whether it can be, where gauges may go{readings} is not checked"),
+        format!(
+            "the deck is not solved here. Not checked: the solution, the places of gauges{readings}"
+        ),
         "run `sensitivity` or `place` on the job: later commands use the stored solution",
     )
     .with_numbers(grids as f64, most_grids(job) as f64)

@@ -133,7 +133,9 @@ fn without_influence(
     for (name, n) in cards {
         let (reason, n) = match effect_of_card(name) {
             Some(Effect::None(reason)) => (reason, n - acting(name).min(*n)),
-            Some(Effect::ActsWith(_)) => ("acts on nothing in this deck", n - acting(name).min(*n)),
+            Some(Effect::ActsWith(_)) => {
+                ("acts on no element of this deck", n - acting(name).min(*n))
+            }
             _ => continue,
         };
         if n > 0 {
@@ -204,7 +206,7 @@ impl DeckEntry {
         // The mass must be finite in kilogrammes, too.
         let scale = self.shown.map_or(1.0, |u| u.system.mass_kg());
         if !(self.mass * scale).is_finite() || self.cg.iter().any(|v| !v.is_finite()) {
-            return "more than numbers can be".to_owned();
+            return "beyond the range of numbers".to_owned();
         }
         let wtmass = match self.wtmass == 1.0 {
             true => String::new(),

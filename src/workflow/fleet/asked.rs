@@ -59,12 +59,12 @@ impl Asked {
                 "fleet-records-missing",
                 few(&paths),
                 format!(
-                    "of {} records that were to be done {} have no kept result{in_parts}: their hours and damage are not in this merge",
+                    "of {} requested records {} have no stored result{in_parts}: their hours and damage are not in this merge",
                     self.files.len(),
                     missing.len()
                 ),
                 format!(
-                    "run them into this folder; where they are no longer wanted, remove `{}`",
+                    "run them into this folder; if they are no longer wanted, delete `{}`",
                     self.place
                 ),
             )

@@ -32,9 +32,10 @@ impl Exchange {
             "inputs-exchanged",
             format!("{a}, {b}"),
             format!(
-                "`{a}` and `{b}` read each other's strain: with their readings exchanged the loads leave {after:.1} microstrain unexplained instead of {before:.1}"
+                "`{a}` and `{b}` have each other's strain: with their readings exchanged the residual is {after:.1} microstrain instead of \
+                 {before:.1} microstrain"
             ),
-            "exchange their columns, or their plugs: [[correction]] exchanged_with; loads of these days are wrong until then",
+            "exchange their columns, or their plugs: [[correction]] exchanged_with; until then loads of these days are wrong",
         )
         .with_numbers(after, before / BETTER)
     }

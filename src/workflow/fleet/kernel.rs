@@ -272,7 +272,7 @@ impl Kernel {
         if !record.is_time_unit_stated() {
             let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
             if let Some(f) = wrong {
-                return Err(Fault::of("record", "time", f.message, f.remedy).into());
+                return Err(Fault::from_finding("record", "time", &f).into());
             }
         }
         let n = found.len();
@@ -351,7 +351,7 @@ impl Kernel {
             return Err(Fault::of(
                 "record",
                 "gauge",
-                "no column is named after a gauge of the job, or none of them reads",
+                "no column has the name of a gauge of the job, or none of these has readings",
                 "name the columns after the gauges, and check the export of the record",
             ));
         }
@@ -371,7 +371,7 @@ impl Kernel {
             .map(|g| self.zero.get(*g).copied().unwrap_or(0.0))
             .collect();
         let singular = || {
-            let wrong = "S holds numbers that are not finite";
+            let wrong = "S contains numbers that are not finite";
             Fault::of("record", "sensitivity", wrong, "check the table of S")
         };
         let plain = Filter::new(
@@ -386,7 +386,7 @@ impl Kernel {
         if plain.whole().rank < k {
             let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
             let wrong = format!(
-                "its gauges don't separate the loads: only {} read",
+                "the gauges do not separate the loads: only {} have readings",
                 few(&names)
             );
             return Err(Fault::of(
@@ -418,7 +418,7 @@ impl Kernel {
             return Err(Fault::of(
                 "record",
                 "readings-below-noise",
-                "every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?",
+                "every reading is less than a thousandth of the stated noise: the unit may be strain, not microstrain",
                 "state readings in microstrain (strain times 1e6)",
             ));
         }

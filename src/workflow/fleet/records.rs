@@ -20,8 +20,8 @@ pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
         true => Err(Fault::of(
             shown,
             "--files",
-            "the list names no record",
-            "write one path in each line, or leave --files out to merge the stored results",
+            "the list contains no record",
+            "write one path in each line, or omit --files to merge the stored results",
         )),
         false => Ok(paths),
     }
@@ -77,7 +77,7 @@ fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
     };
     Err((
         format!(
-            "no file below the folder has the form that [fleet] file_name states: the folder {held}"
+            "no file below the folder matches the form of [fleet] file_name: the folder {held}"
         ),
         "name another folder, or change file_name",
     ))

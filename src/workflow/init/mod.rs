@@ -80,7 +80,7 @@ impl Answer for Proposal {
             n => format!(", leaves out {n}"),
         };
         let places = match (self.placeable, self.purpose) {
-            (false, None) => ", and cannot place gauges as it is: the findings state why",
+            (false, None) => ", and cannot place gauges yet: the findings state why",
             _ => "",
         };
         format!(
@@ -134,7 +134,7 @@ pub fn init(
         let none = Fault::of(
             &*given,
             "GRID",
-            "no grid in it",
+            "the deck contains no grid",
             "give a deck, or an OP2 that contains the mesh",
         );
         return Err(Faults::or(deck.faults, none));
@@ -154,7 +154,7 @@ pub fn init(
         system,
         from: found.first().map_or(StrainFrom::Solver, |p| p.from),
         without_results: match strained.iter().all(|s| s.1.is_empty()) {
-            true => "no static subcase of them has strain of shells",
+            true => "no static subcase in them has strain of shells",
             false => "`place` finds no gauges with them",
         },
         loads: found.first().map_or(&[], |p| &p.loads),
@@ -211,7 +211,7 @@ fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
         return Err(Fault::of(
             target.display().to_string(),
             JOB,
-            "there is one already, and it is not overwritten",
+            "a file of this name exists, and it is not overwritten",
             "move it away, or name another folder with `--out`",
         ));
     }
@@ -237,11 +237,11 @@ fn obstacle(deck: &DeckModel, given: &str, units_open: bool) -> Option<Finding> 
     }
     if m.shells.is_empty() {
         let message = format!(
-            "there is nothing to glue gauges on: no shell among {} solids and {} bars and beams",
+            "there is no surface for gauges: no shell among {} solids and {} bars and beams",
             m.solids.len(),
             m.beams.len()
         );
-        let remedy = "coat the solids' faces with thin shells (membranes of a thousandth of the thickness) and solve again";
+        let remedy = "cover the faces of the solids with thin shells (membranes of a thousandth of the thickness) and solve again";
         return stop("nothing-to-glue-on", message, remedy);
     }
     if units_open {

@@ -59,7 +59,7 @@ impl Answer for Weighed {
         let half = |p: &WeighedPayload| p.half_width();
         let widest = weighed().max_by(|a, b| half(a).total_cmp(&half(b)));
         match (weighed().count(), widest) {
-            (_, None) => "No run gives a payload.".to_owned(),
+            (_, None) => "No run determines a payload.".to_owned(),
             (1, Some(one)) => format!("Payload of {}: {}{refused}.", one.run, words(one)),
             (n, Some(widest)) => format!(
                 "{} weighed, least certain {}: {}{refused}.",
@@ -180,9 +180,9 @@ pub(super) fn weighed(
                 sigma: r.estimate_sigma.get(g).copied().and_then(finite),
                 used: verdict.is_some_and(|v| v.used) && estimate.is_finite() && carries,
                 reason: match verdict {
-                    None => "no gauge says a possible payload".to_owned(),
+                    None => "no gauge gives a possible payload".to_owned(),
                     Some(v) if v.used && estimate.is_finite() && !carries => {
-                        "too weak: the gauge carries less than a thousandth of the answer"
+                        "too weak: the gauge has less than a thousandth of the weight in the answer"
                             .to_owned()
                     }
                     Some(v) => v.reason.clone(),

@@ -242,10 +242,10 @@ fn held(
         "payload-on-supports",
         "payload",
         format!(
-            "the structure is {}: its supports carry the payload, and strain alone weighs it",
+            "the structure is {}: its supports carry the payload, and only strain determines it",
             support.words()
         ),
-        "write support = \"free\" where wheels carry it",
+        "write support = \"free\" if wheels carry it",
     ));
     let columns = direct((job, fields.model()), prepared, place, &solution.cases);
     let own = own_columns(job, fields.model(), place);
@@ -390,7 +390,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
                     &*job.file,
                     tables.line,
                     "sensitivity.signatures.payload",
-                    "the job gives S without the payload's signature",
+                    "the job gives S, and not the payload's signature",
                     "name its table: signatures = { payload = \"B_payload.csv\" } with columns gauge, b0, b_dx, b_dy; or calibrate with payloads of \
                      known mass and a [[load]] name = \"payload\"",
                 )));
@@ -470,7 +470,7 @@ fn signature(
                 &*file.given,
                 "gauge",
                 format!("no row for gauge `{name}`"),
-                "give every gauge a row",
+                "add a row for every gauge",
             ));
             continue;
         };

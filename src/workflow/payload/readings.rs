@@ -117,7 +117,7 @@ pub(super) fn runs_of(
                 &*job.file,
                 job.runs.as_ref().map_or(0, |r| r.line),
                 "runs",
-                format!("no wheel forces of every wheel for {}", few(&without)),
+                format!("no force of some wheel for {}", few(&without)),
                 "add their rows and columns",
             )));
         }
@@ -125,7 +125,7 @@ pub(super) fn runs_of(
             Severity::Warning,
             "run-without-wheel-forces",
             few(&without),
-            "not every wheel was measured in these runs: all runs are weighed by strain on a flat floor",
+            "these runs do not contain the force of every wheel: all runs are weighed by strain on a flat floor",
             "add their rows and columns to the runs file",
         ));
     } else if !reactions && model.floor.is_none() {
@@ -133,7 +133,7 @@ pub(super) fn runs_of(
             &*job.file,
             task.payload.line,
             "payload",
-            "a given S has no floor: without measured wheel forces the payload is not determined",
+            "a given S contains no floor: without measured wheel forces the payload is not determined",
             "give a [model], or measured wheel forces with `use = [\"strain\", \"reactions\"]`",
         )));
     }
@@ -141,7 +141,7 @@ pub(super) fn runs_of(
         return Err(Faults::from(Fault::of(
             &*job.file,
             "run",
-            "no run to be weighed",
+            "there is no run with a payload",
             "add rows to the strain or runs file",
         )));
     }
@@ -192,7 +192,7 @@ fn same_runs(
                 Severity::Warning,
                 "payload-place-assumed",
                 names(&mut unplaced.iter().copied()),
-                "the runs file gives no place of the payload in these runs: it is taken at its nominal place",
+                "the runs file gives no place of the payload in these runs: the nominal place is used",
                 "give payload_x and payload_y of every run",
             )
             .with_numbers(unplaced.len() as f64, 0.0),
@@ -259,7 +259,7 @@ fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
                 Severity::Info,
                 "reaction-noise-assumed",
                 "runs.noise.force",
-                "the job does not state the noise of the wheel forces: 1 % of the largest is assumed",
+                "the job does not state the noise of the wheel forces: 1 % of the largest force is assumed",
                 "state [runs] noise = { force = 0.06 }",
             ));
         }
@@ -270,8 +270,8 @@ fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
             Severity::Info,
             "wheel-forces-computed",
             "runs.wheel_forces",
-            "the wheel forces were computed for flat ground, not measured: they are no evidence of the payload and are left out",
-            "measure them, or weigh by strain",
+            "the wheel forces were computed for flat ground, not measured. They are not evidence of the payload and are left out",
+            "measure them, or use strain",
         ));
     }
     false
@@ -473,7 +473,7 @@ fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String
                 "gauges-too-weak",
                 few(&weak),
                 "the net reading does not exceed the noise in any run: these gauges do not measure the payload",
-                "leave them out, or glue gauges where the payload strains the structure (`place`)",
+                "leave them out, or add gauges where the payload strains the structure (`place`)",
             )
             .with_numbers(best, WEAK),
         );

@@ -33,7 +33,7 @@ pub(super) fn installed(
                 Severity::Warning,
                 "installed-gauges-without-strain",
                 few(&missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>()),
-                "installed gauges are at places where a subcase has no strain: the installed layout is not evaluated",
+                "a subcase has no strain at the installed gauges: the installed layout is not evaluated",
                 "ask for STRAIN of their elements in every subcase",
             ));
             return Ok(None);

@@ -248,7 +248,10 @@ fn reserved(
             &*task.job.file,
             task.job.placement.line,
             "placement.reserve",
-            format!("{} gauges less {n} do not separate the loads", rows.len()),
+            format!(
+                "{} gauges without {n} validation gauges do not separate the loads",
+                rows.len()
+            ),
             "reserve fewer, or place more",
         )));
     };

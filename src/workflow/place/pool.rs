@@ -155,8 +155,8 @@ pub(crate) fn scales(work: &mut Work, cases: &[LoadCaseOf], common: &[ShellIx]) 
             Severity::Info,
             "expected-assumed",
             assumed.join(", "),
-            format!("loads without `expected` are taken as large as strains the candidates by {ASSUMED_STRAIN} microstrain rms"),
-            "state `expected`: it weighs the angle tolerance and the scaled condition number",
+            format!("the expected size of loads without `expected` is the size that strains the candidates by {ASSUMED_STRAIN} microstrain rms"),
+            "state `expected`: the angle tolerance and the scaled condition number depend on it",
         ));
     }
     scales

@@ -241,10 +241,10 @@ pub(super) fn know_the_loads(work: &mut Work, spec: &mut Spec, gauges: usize, lo
             "loads-not-separable",
             "placement",
             format!(
-                "no {gauges} gauges among these candidates separate the {loads} loads: the layout is the best for loads known \
-                 beforehand to their expected size, and so are its sigmas"
+                "no {gauges} gauges among these candidates separate the {loads} loads: layout and sigmas assume that loads are known \
+                 beforehand to their expected size"
             ),
-            format!("ask for at least {loads} gauges, drop loads that act alike, or widen [candidates]"),
+            format!("ask for at least {loads} gauges, drop loads with the same effect, or widen [candidates]"),
         )
         .with_numbers(gauges as f64, loads as f64),
     );

@@ -116,7 +116,7 @@ impl Held<'_> {
                 ..
             } => {
                 let size = e.size.first().copied().unwrap_or(0.0);
-                let found = format!("{} kN rms, found anew in every run", number(size));
+                let found = format!("{} kN rms, estimated in every run", number(size));
                 vec![self.in_job("[runs] ground", "none", found)]
             }
             Extension::NuisanceLoads { source, loads, .. } => {
@@ -152,7 +152,7 @@ impl Held<'_> {
                 at(
                     format!("{STRAIN}: column {gauge}"),
                     "as read",
-                    format!("put right by {key} {new}"),
+                    format!("corrected by {key} {new}"),
                 )
             }
             _ => self.entry(gauge, correction),
@@ -230,7 +230,7 @@ impl Held<'_> {
             | Correction::Offset(_)
             | Correction::AngleDeg(_)
             | Correction::PositionMm(_) => {
-                let why = format!("as it was: {found} is undone by another effect");
+                let why = format!("unchanged: another effect cancels {found}");
                 return self.in_job(&format!("[[correction]] of {gauge}"), "as it is", why);
             }
         };
@@ -276,7 +276,7 @@ impl Held<'_> {
             ),
             None => {
                 let key = "[[correction]] of every gauge, offset_microstrain";
-                self.in_job(key, "as it is", format!("more by the {of_mass}"))
+                self.in_job(key, "as it is", format!("plus the {of_mass}"))
             }
         };
         let card = self

@@ -51,7 +51,7 @@ pub(super) fn frame(
     }
     if let Some(first) = without_row.first() {
         let of_file = rows.iter().map(|r| r.run.as_str());
-        let general = "give every run of the strain file a row";
+        let general = "add a row for every run of the strain file";
         faults.push(Fault::of(
             &*runs.file.given,
             "run",
@@ -71,7 +71,7 @@ pub(super) fn frame(
                     first.line,
                     name.clone(),
                     format!("load `{name}` has no value in {}", few(&names)),
-                    "give the load in every run, 0 where it does not act",
+                    "state the load in every run, 0 if it does not act",
                 ))
             }
             None => None,

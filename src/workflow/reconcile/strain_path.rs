@@ -50,7 +50,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             return Err(Faults::from(Fault::of(
                 &*job.file,
                 "model",
-                "neither `[model]` nor `[sensitivity]`",
+                "the job has neither `[model]` nor `[sensitivity]`",
                 "name the deck, or the CSV file with S",
             )));
         }
@@ -215,8 +215,8 @@ fn strain_part(
 fn gap_found(outcome: &Outcome) -> GapFound {
     let gap = &outcome.gap;
     GapFound {
-        metric: "RMS(reading - model) / RMS(reading); amplitudes of the named effects that differ from run to run are found from one \
-                 half of the gauges and judged on the other; nothing else is found anew, before, after or in the floor"
+        metric: "RMS(reading - model) / RMS(reading). Amplitudes that differ from run to run are estimated from one half of the gauges and tested \
+         on the other half. Before, after and floor use the same other parameters"
             .to_owned(),
         before: gap.before,
         after: gap.after,

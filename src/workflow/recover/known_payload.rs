@@ -193,7 +193,7 @@ fn signature(
                 &*file.given,
                 "gauge",
                 format!("no row for gauge `{gauge}`"),
-                "give every gauge a row",
+                "add a row for every gauge",
             )),
             Some(row) => {
                 for ((b, column), scale) in b.iter_mut().zip(COLUMNS).zip(scale) {

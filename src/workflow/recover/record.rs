@@ -277,7 +277,7 @@ fn unusable(task: &Task) -> Fault {
     Fault::of(
         file,
         "sensitivity",
-        "S holds numbers that are not finite, or too large to reckon with",
+        "S contains numbers that are not finite, or too large to compute with",
         "check the table of S, or the results of the unit loads",
     )
 }

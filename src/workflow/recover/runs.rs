@@ -98,8 +98,8 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
                 Severity::Warning,
                 "readings-missing",
                 few(&blank),
-                format!("{n} readings of `{}` are blank: the loads of these runs are those of the other gauges, with wider intervals", table.file),
-                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+                format!("{n} readings of `{}` are blank. Loads of these runs are computed from the other gauges, with wider intervals", table.file),
+                "repair the channel, or exclude its gauge: [[correction]] ignore = true",
             )
             .with_numbers(n as f64, 0.0),
         );
@@ -110,8 +110,8 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
                 Severity::Warning,
                 "readings-repeated",
                 few(&repeated),
-                "these runs have the same readings at all gauges, to the last digit, as no two measurements have: one is a copy",
-                "look the runs up in the logger's files",
+                "the readings of these runs agree at all gauges to the last digit. Two measurements never agree so far. One run is a copy",
+                "check the runs in the files of the logger",
             )
             .with_numbers(repeated.len() as f64, 0.0),
         );
@@ -122,8 +122,8 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
                 Severity::Warning,
                 "readings-all-alike",
                 few(&alike),
-                "in these runs all gauges give one and the same number, as loggers do that measure nothing: it counts as read",
-                "leave the run out if nothing was measured; blank fields are no readings",
+                "in these runs all gauges have one common reading, as a logger without signal gives. The readings are used",
+                "leave the run out if nothing was measured; leave missing readings blank",
             )
             .with_numbers(alike.len() as f64, 0.0),
         );
@@ -292,7 +292,7 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
                     None => String::new(),
                 };
                 worst.push(format!(
-                    "{} {component} {:+.3} +- {:.3} {}{expected}",
+                    "{} {component} {:+.3} ± {:.3} {}{expected}",
                     r.estimate.run,
                     sum * u.factor,
                     half * u.factor,
@@ -311,11 +311,11 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
             "loads-not-in-balance",
             "equilibrium",
             format!(
-                "the recovered forces do not add up to {}: {}. Under inertia relief acceleration takes the rest",
+                "the recovered forces do not add up to {}: {}. Under inertia relief acceleration balances the rest",
                 if carried.is_some() { "the weight of the model" } else { "zero" },
                 few(&worst)
             ),
-            "at a standstill they must: then a load is missing, or a sign or an `applied` is wrong",
+            "if the vehicle was at standstill, check for a missing load, a wrong sign or a wrong `applied`",
         )
         .with_numbers(largest, 0.1),
     ]

@@ -59,7 +59,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
         return Err(Faults::from(Fault::of(
             file,
             "gauge",
-            "no gauge gives a single reading",
+            "no gauge has a single reading",
             "check the export of the record",
         )));
     }
@@ -74,8 +74,8 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
 pub(crate) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding> {
     let what = match gives {
         Gives::Signal => return None,
-        Gives::Nothing => "nothing",
-        Gives::OneValue => "one and the same value",
+        Gives::Nothing => "no reading",
+        Gives::OneValue => "a constant reading",
     };
     (!names.is_empty()).then(|| {
         Finding::new(
@@ -83,9 +83,9 @@ pub(crate) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding>
             "gauge-silent",
             few(names),
             format!(
-                "these gauges give {what}: the loads are those of the others, with wider intervals"
+                "these gauges have {what}. The loads are computed from the other gauges, with wider intervals"
             ),
-            "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            "repair the channel, or exclude its gauge: [[correction]] ignore = true",
         )
     })
 }

@@ -69,8 +69,8 @@ pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
             "prediction-poor",
             few(&names),
             format!(
-                "these validation gauges differ from their prediction by up to {largest:.1} times what stated errors explain: either they \
-                 or the recovered loads are wrong by more than the intervals state"
+                "these validation gauges differ from their prediction by up to {largest:.1} times the stated errors: either they or the \
+                 recovered loads are wrong by more than their intervals"
             ),
             "check these gauges and their place in the model, then run `reconcile`",
         )
@@ -221,8 +221,9 @@ impl<'a> Channels<'a> {
             Severity::Info,
             "gauges-not-compared",
             few(&names),
-            "these validation gauges are not compared with their prediction: their readings contain the vibration that [dynamic] takes out of the loads",
-            "drop [dynamic] to compare them",
+            "these validation gauges are not compared with their prediction: their readings contain the vibration that [dynamic] subtracts \
+             from the loads",
+            "delete [dynamic] to compare them",
         )
     }
 

@@ -174,8 +174,8 @@ fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
             Severity::Error,
             "prediction-poor",
             few(&missed),
-            "the loads leave more than half of what most gauges measured: they are in another unit, of other runs, or of another model, and so \
-             is the stress",
+            "the loads explain less than half of the strain at most gauges: they are in another unit, of other runs, or of another model, \
+             and the stress is wrong too",
             "check the unit of the table of loads against `report_units`, and the names of its runs; then run `reconcile`",
         );
         return Some(finding.with_numbers(missed.len() as f64, rows.len() as f64 / 2.0));
@@ -186,7 +186,7 @@ fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
             Severity::Warning,
             "prediction-poor",
             few(&poor),
-            "the recovered loads do not reproduce what these gauges measured to 10 %: stress near them is as uncertain",
+            "the recovered loads do not reproduce the strain of these gauges to 10 %: stress near them is uncertain by as much",
             "run `reconcile`",
         )
         .with_numbers(poor.len() as f64, 0.0)

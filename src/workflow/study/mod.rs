@@ -175,7 +175,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
             &*job.file,
             "load.expected",
             format!("nuisance load `{}` has no size", l.name),
-            "state `expected`, its standard deviation: it is drawn in every trial",
+            "state `expected`, its standard deviation: every trial draws a random value",
         )));
     }
     let layouts = layouts::of(&mut work, job, study, &prepared)?;
@@ -233,7 +233,7 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
                 &*job.file,
                 study.line,
                 "study.errors.kind",
-                format!("`{word}` is no kind of error"),
+                format!("`{word}` is not a kind of error"),
                 format!("write one of {}", known.join(", ")),
             )),
         }
@@ -279,7 +279,7 @@ fn truth(
                 Severity::Info,
                 "true-loads",
                 &run,
-                format!("the loads of run `{run}` are taken as true"),
+                format!("the loads of run `{run}` are used as true loads"),
                 "",
             ));
             let known = loads.iter().zip(values).map(|(l, f)| match l.wanted {
@@ -334,7 +334,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
                 "layout-singular",
                 format!("{} {}", line.layout, line.gauges),
                 format!(
-                    "none of these layouts separates the {} loads: there is no answer to study",
+                    "none of these layouts separates the {} loads: the study has no result",
                     loads.len()
                 ),
                 "ask for more gauges than loads",
@@ -361,7 +361,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
             Severity::Warning,
             "place-without-effect",
             "position",
-            "S is given, or the gauges are on bars: the change of strain with position is unknown, and position errors have no effect here",
+            "the job gives S, or the gauges are on bars. The gradient of the strain is unknown, and position errors have no effect here",
             "give a [model] with shells",
         ));
     }

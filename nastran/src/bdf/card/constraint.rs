@@ -5,7 +5,7 @@ use super::ids::id_lists;
 use crate::cards::{Cards, IdList, Mpc, SetSum, Spc, Spc1, Suport};
 use crate::place::Placed;
 
-/// Terms stand in fields 3-5 and 6-8 of every line.
+/// Terms are in fields 3-5 and 6-8 of every line.
 pub(super) fn mpc(f: &mut Fields) -> Mpc {
     let sid = f.id(0, "SID");
     let mut terms = Vec::new();

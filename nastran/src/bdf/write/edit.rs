@@ -16,8 +16,8 @@ pub enum EditError {
     /// The card is made by replication, or others are made from it.
     #[error("the card at line {} is part of a replication: write the cards out first", .0.line)]
     Replicated(Place),
-    /// Continuation lines stand elsewhere in the deck.
-    #[error("the continuations of the card at line {} stand elsewhere: put them below it first", .0.line)]
+    /// Continuation lines are elsewhere in the deck.
+    #[error("the continuations of the card at line {} are elsewhere: put them below it first", .0.line)]
     ContinuationsApart(Place),
 }
 
@@ -129,7 +129,7 @@ impl Edits {
     ///
     /// # Errors
     ///
-    /// The card is replicated, or its lines do not stand together.
+    /// The card is replicated, or its lines are not consecutive.
     pub fn replace_card(&mut self, deck: &Deck, at: Place, text: &str) -> Result<(), EditError> {
         let mut text = Some(text);
         for (start, end) in card_lines(deck, at)? {

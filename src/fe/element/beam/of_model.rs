@@ -52,7 +52,7 @@ pub(super) fn local<'a>(
     let Some(MaterialKind::Isotropic { e, g, .. }) = material.map(|m| m.kind) else {
         return Err(refuse(
             beam,
-            "its material is no MAT1".to_owned(),
+            "its material is not a MAT1".to_owned(),
             "beams need a MAT1",
         ));
     };

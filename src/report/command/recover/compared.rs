@@ -184,8 +184,8 @@ fn comparison_section(comparison: &Comparison) -> Section {
     ));
     blocks.push(Block::Figure(cross(&plots)));
     blocks.push(Block::Note(
-        "Bias and rms: mean and root mean square of recovered less recorded load. Damage ratio: pseudo-damage of the recovered over that of the \
-         recorded load between the same times. The plot shows some of the points."
+        "Bias and rms: mean and root mean square of recovered minus recorded load. Damage ratio: pseudo-damage of the recovered over that \
+         of the recorded load between the same times. The plot shows some of the points."
             .to_owned(),
     ));
     Section::new("Recovered against recorded loads", blocks)
@@ -223,7 +223,7 @@ fn section_table(sections: &Sections) -> Section {
         "Loads by section",
         &head,
         &rows,
-        "Damage: of the section once.",
+        "Damage: of one pass of the section.",
     )
 }
 
@@ -239,6 +239,6 @@ fn duty_cycle(sections: &Sections) -> Section {
     });
     let head = ["load", "unit", "duration, s", "damage", "95 % interval"];
     let rows: Vec<Vec<String>> = rows.collect();
-    let note = "The sum of repeats times damage over the sections.";
+    let note = "Sum of repeats times damage over the sections.";
     table_section("Duty cycle", &head, &rows, note)
 }

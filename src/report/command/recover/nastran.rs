@@ -127,7 +127,7 @@ pub(super) fn write_runs(
         bulk.push_str(&format!("$ Run {label}\n{}", format_card("LOAD", &fields)));
         next += 1;
     }
-    let head = heading(recovered, "1 of each load, then a LOAD a run");
+    let head = heading(recovered, "1 of each load, then one LOAD for each run");
     out.write_bytes(NAME, [head, case, cards, bulk].concat().as_bytes())?;
     Ok(())
 }

@@ -157,7 +157,7 @@ impl Layout {
             return Err(SeriesError::Line {
                 line: 1,
                 what: format!("time: {}", clashing.clash_words()),
-                remedy: "correct whichever is wrong",
+                remedy: "correct the wrong one",
             });
         }
         let unit = column.map_or("", |c| c.unit.as_str());
@@ -371,7 +371,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
         .ok_or_else(|| SeriesError::Line {
             line: 1,
             what: "no line names the columns".into(),
-            remedy: "begin with a header line: `time` and a name a channel",
+            remedy: "begin with a header line: `time` and one name for each channel",
         })
 }
 

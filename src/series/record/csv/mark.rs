@@ -23,7 +23,7 @@ pub fn settled(rows: &[Vec<&[u8]>], mark: DecimalMark) -> Result<DecimalMark, (u
     let (comma, point) = (first(b','), first(b'.'));
     if let (Some(a), Some(b)) = (comma, point) {
         let what = format!(
-            "`{}` has a decimal comma and `{}` a decimal point, or one of them a mark between thousands",
+            "`{}` has a decimal comma and `{}` a decimal point, or one of them has a mark between thousands",
             shown(a.2),
             shown(b.2)
         );

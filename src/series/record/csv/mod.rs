@@ -228,7 +228,10 @@ fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wr
         Some(s) => Ok((s, used)),
         None if shown.is_empty() => Ok((f64::NAN, used)),
         None => Err((
-            format!("`{}` is no date and time", String::from_utf8_lossy(shown)),
+            format!(
+                "`{}` is not a date and time",
+                String::from_utf8_lossy(shown)
+            ),
             "write it as in the first row, such as 2026-05-01 12:00:00.002",
         )),
     }
@@ -288,8 +291,8 @@ impl Parser<'_> {
             Ok(at)
         } else {
             Err((
-                format!("{field} fields, the header has {n}"),
-                "give every row as many fields as the header; is the file cut off?",
+                format!("the row has {field} fields, the header has {n}"),
+                "give every row as many fields as the header, and check whether the file is cut off",
             ))
         }
     }
@@ -354,7 +357,7 @@ impl Parser<'_> {
                 if ambiguous {
                     return Err((
                         format!(
-                            "`{shown}` in column `{name}` is a date whose day and month could be exchanged"
+                            "`{shown}` in column `{name}` is a date with an ambiguous order of day and month"
                         ),
                         "write dates as 2026-03-01 10:00:00.002, or give times in seconds",
                     ));

@@ -194,7 +194,7 @@ fn take(field: &Field, rows: Option<usize>, parts: &mut Parts) -> Option<Vec<Ran
 
 pub(super) fn broken(what: &str) -> SeriesError {
     SeriesError::Broken {
-        wrong: format!("it can't be read as Feather ({what})"),
+        wrong: format!("it cannot be read as Feather ({what})"),
         remedy: "write it again, columns of numbers and one `time` in seconds",
     }
 }

@@ -182,7 +182,7 @@ impl Feather {
         };
         for i in 0..batch.rows {
             let text = match is_valid(validity, i) {
-                true => text(i).ok_or_else(|| broken("a text lies outside of its column"))?,
+                true => text(i).ok_or_else(|| broken("a text is outside its column"))?,
                 false => String::new(),
             };
             out.push(text);

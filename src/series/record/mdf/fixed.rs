@@ -68,7 +68,7 @@ impl Group {
             let stated = stated_cycles((**bytes).as_ref(), group.block_offset());
             if stated.is_some_and(|n| n > group.sample_count) {
                 return Err(broken(format!(
-                    "the file is cut off: it holds {} of {} samples",
+                    "the file is cut off: it contains {} of {} samples",
                     group.sample_count,
                     stated.unwrap_or(0)
                 )));
@@ -171,7 +171,7 @@ impl Group {
             let content = content(file, block)?;
             let low = begin.saturating_sub(*at) as usize;
             let high = (end - at).min(block.original_size) as usize;
-            let short = || broken("a block is shorter than it says");
+            let short = || broken("a block is shorter than its stated length");
             match content {
                 Cow::Borrowed(b) if *at <= begin && at + block.original_size >= end => {
                     return b.get(low..high).map(Cow::Borrowed).ok_or_else(short);
@@ -231,7 +231,7 @@ fn content<'a>(file: &'a [u8], block: &DataBlockInfo) -> Result<Cow<'a, [u8]>, S
         .read_to_end(&mut out)
         .map_err(broken)?;
     if out.len() as u64 != block.original_size {
-        return Err(broken("a block expands to another size than it says"));
+        return Err(broken("a block expands to another size than stated"));
     }
     if c.algorithm == CompressionType::TransposedDeflate {
         out = Mf4File::un_transpose(&out, c.parameter as usize).map_err(broken)?;

@@ -62,7 +62,7 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
         )
     };
     let Some(main) = groups.iter().copied().max_by_key(|g| weight(g)) else {
-        return Err(broken("it holds no channels"));
+        return Err(broken("it contains no channels"));
     };
     let finished = file.unfinalized().is_none();
     let mut plain: Vec<Option<Group>> = Vec::new();

@@ -129,8 +129,8 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
         let ends = restart.first as f64 * step_s;
         if (begins - ends).abs() > step_s.max(COMPUTER_CLOCK_S) {
             return Err(broken(format!(
-                "`{}` has two parts that do not follow each other: the second begins {begins} s after the first sample, and the first \
-                 part of {} samples ends after {ends} s",
+                "`{}` has two parts with a time step between them: the second begins {begins} s after the first sample, and the first part \
+                 of {} samples ends after {ends} s",
                 c.name, restart.first
             )));
         }

@@ -218,7 +218,9 @@ impl<'a> Cursor<'a> {
                 let b = self.take(kind.size())?;
                 Ok(Value::Number(kind.value(b, self.big)))
             }
-            None => Err(broken(format!("a property is of kind {code:#x}"))),
+            None => Err(broken(format!(
+                "a property has the unsupported type {code:#x}"
+            ))),
         }
     }
 }
@@ -321,7 +323,7 @@ fn segment(
         return Ok(end);
     }
     if flags & DAQMX != 0 {
-        return Err(broken("it holds DAQmx raw data"));
+        return Err(broken("it contains DAQmx raw data"));
     }
     let data = usize::try_from(raw)
         .ok()
@@ -346,11 +348,11 @@ fn object(
     match c.u32()? {
         u32::MAX => object.index = None,
         0 => {}
-        0x1269 | 0x1369 => return Err(broken("it holds DAQmx raw data")),
+        0x1269 | 0x1369 => return Err(broken("it contains DAQmx raw data")),
         _ => {
             let code = c.u32()?;
-            let kind =
-                Kind::of(code).ok_or_else(|| broken(format!("`{path}` is of kind {code:#x}")))?;
+            let kind = Kind::of(code)
+                .ok_or_else(|| broken(format!("`{path}` has the unsupported type {code:#x}")))?;
             c.u32()?;
             let values = usize::try_from(c.u64()?).map_err(broken)?;
             let size = if kind == Kind::Text {
@@ -420,7 +422,7 @@ fn samples(
                 continue;
             };
             if object.kind.is_some_and(|k| k != index.kind) {
-                return Err(broken(format!("`{path}` changes its kind")));
+                return Err(broken(format!("`{path}` changes its type")));
             }
             object.kind = Some(index.kind);
             if index.kind.is_number() {

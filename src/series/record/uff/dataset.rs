@@ -189,7 +189,7 @@ fn history(
         _ => return Err(bad("its numbers are not real")),
     };
     let samples = whole(6, 10, 20).and_then(|n| usize::try_from(n).ok());
-    let samples = samples.ok_or_else(|| bad("no number of samples"))?;
+    let samples = samples.ok_or_else(|| bad("the number of samples is missing"))?;
     if whole(6, 20, 30) != Some(1) {
         return Err(bad("its steps are uneven"));
     }
@@ -202,13 +202,13 @@ fn history(
     })?;
     let start_s = second * real(6, 30, 43).unwrap_or(0.0);
     let step_s = real(6, 43, 56).filter(|s| *s > 0.0);
-    let step_s = second * step_s.ok_or_else(|| bad("no time between samples"))?;
+    let step_s = second * step_s.ok_or_else(|| bad("the time between samples is missing"))?;
     let data = match (binary, bytes_of_data) {
         (Some(layout), Some(n)) => {
             let big = match layout.first() {
                 Some(1) => false,
                 Some(2) => true,
-                _ => return Err(bad("its order of bytes is not told")),
+                _ => return Err(bad("its byte order is not stated")),
             };
             if layout.get(1) != Some(&2) {
                 return Err(bad("its numbers are not IEEE 754"));

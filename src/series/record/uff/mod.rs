@@ -47,7 +47,7 @@ impl Uff {
         let named_twice = |w: &&String| all.iter().filter(|d| d.twice.as_ref() == Some(*w)).count();
         if let Some(name) = wanted.iter().find(|w| named_twice(w) > 0) {
             return Err(broken(format!(
-                "`{name}` is there {} times, which of the data sets is meant is not known",
+                "the file contains `{name}` {} times, and the intended data set is ambiguous",
                 named_twice(&name)
             )));
         }
@@ -62,7 +62,7 @@ impl Uff {
         let found = sampled_together(&channels.collect::<Vec<_>>(), wanted)?;
         let Some((main, together)) = found else {
             return Err(match all.is_empty() {
-                true => broken("it holds no time histories"),
+                true => broken("it contains no time histories"),
                 false => SeriesError::Empty,
             });
         };
