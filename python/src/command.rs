@@ -165,7 +165,7 @@ fn answer(
 /// The command that wrote a folder, the job or deck that it was given, and the results it names.
 #[pyfunction]
 pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Vec<String>)> {
-    let made = verify::made(&folder).map_err(|f| raise(py, f.into()))?;
+    let made = verify::read_made(&folder).map_err(|f| raise(py, f.into()))?;
     let main = verify::main_input(&folder, &made).map_err(|f| raise(py, f.into()))?;
     let results = made.results().iter().map(|r| (*r).to_owned()).collect();
     Ok((made.command, main, results))

@@ -1,6 +1,6 @@
 //! Two runs whose labels were exchanged: the fit goes between both, so that each hides the other and all the scatter seems to be chance.
 
-use super::held_out::{REFUSE, SUSPECT, against, chance};
+use super::held_out::{REFUSE, SUSPECT, chance, recover_left_out};
 use super::start::is_known;
 use super::state::State;
 use super::types::{LeftOut, Task};
@@ -63,8 +63,8 @@ fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool 
     let mut own = 1.0;
     for (me, other) in [(0, 1), (1, 0)] {
         let beside = [at[other]];
-        let stated = against(task, state, at[me], &beside, loads[me]);
-        let turned = against(task, state, at[me], &beside, loads[other]);
+        let stated = recover_left_out(task, state, at[me], &beside, loads[me]);
+        let turned = recover_left_out(task, state, at[me], &beside, loads[other]);
         let (Some(stated), Some(turned)) = (stated, turned) else {
             return false;
         };

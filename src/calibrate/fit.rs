@@ -1,6 +1,6 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
-use super::common_zero::{extended, reduced, zero_of};
+use super::common_zero::{add_zero_column, remove_zero_column, zero_of};
 use super::exchanged::Exchanged;
 use super::state::State;
 use super::types::{CalibratedRange, Calibration, CommonZero, Coverage, LeftOut, ModelError, Task};
@@ -31,8 +31,8 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     }
     match task.common_zero {
         CommonZero::Sought => {
-            let found = calibrate_columns(&extended(task))?;
-            Ok(reduced(found, task.loads.len()))
+            let found = calibrate_columns(&add_zero_column(task))?;
+            Ok(remove_zero_column(found, task.loads.len()))
         }
         CommonZero::None | CommonZero::Column => calibrate_columns(task),
     }

@@ -6,7 +6,7 @@ use super::state::State;
 use super::types::{KnownRun, Task, Undetermined};
 use super::unknown::Unknown;
 use crate::estimate::LoadEstimate;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, estimate};
 use crate::sensitivity::Sensitivity;
@@ -196,7 +196,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
             Severity::Warning
         },
         "loads-not-determined",
-        few(&names),
+        list_few(&names),
         format!(
             "with this S the gauges do not determine these loads. The half width of the 95 % interval in percent of the largest load is: {}{why}{}",
             each.join("; "),

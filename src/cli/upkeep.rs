@@ -5,7 +5,7 @@ use super::run::{Run, refuse};
 use super::voice::print;
 use crate::host::fault::{Fault, Faults};
 use crate::host::store::Folder;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::workflow::verify::Made;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -100,7 +100,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
     let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
     let shown = folder.path().display().to_string();
     let (n, bytes) = folder.size();
-    let solutions = counted(n, "stored solution");
+    let solutions = count_of(n, "stored solution");
     let what = format!("{solutions} in `{shown}`, {:.1} MB", bytes as f64 / 1e6);
     if !a.yes {
         match agrees(&format!("Remove {what}?")) {
@@ -119,7 +119,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             print(format!("{json:#}\n").as_bytes())
         }
         Ok((n, bytes)) => {
-            let solutions = counted(n, "stored solution");
+            let solutions = count_of(n, "stored solution");
             let megabytes = bytes as f64 / 1e6;
             print(format!("{solutions} removed from `{shown}`, {megabytes:.1} MB\n").as_bytes())
         }

@@ -1,7 +1,7 @@
 //! Dofs without stiffness at single grids (PARAM,AUTOSPC), and the loads along them.
 
 use super::assembly::{Assembled, Numbering};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::{DMatrix, sparse::BlockMatrix};
 use crate::model::Model;
 use rayon::prelude::*;
@@ -130,7 +130,7 @@ fn named(model: &Model, numbering: &Numbering, start: &[usize], unknowns: &[usiz
             format!("{}/{}", model.grids[g].id, dof + 1)
         })
         .collect();
-    format!("grid/dof {}", few(&names))
+    format!("grid/dof {}", list_few(&names))
 }
 
 /// That directions were held.

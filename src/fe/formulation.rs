@@ -1,6 +1,6 @@
 //! Elements that are solved as another element than their card, or in one of the states that their card allows.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Joint, JointCard, Model, Rigid, RigidKind};
 use nastran::cards::ShellShape;
 
@@ -71,7 +71,7 @@ fn halved_diameters(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "connector-halved",
-            format!("CWELD, CFAST {}", few(&ids)),
+            format!("CWELD, CFAST {}", list_few(&ids)),
             format!(
                 "{} connectors are wider than their patch: the square of their auxiliary points has a diameter halved up to {most} times",
                 ids.len()
@@ -97,7 +97,7 @@ fn connectors_at_an_angle(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "connector-angle",
-            format!("CWELD, CFAST {}", few(&ids)),
+            format!("CWELD, CFAST {}", list_few(&ids)),
             format!(
                 "{} connectors join sheets at up to {largest:.0} degrees to each other; Nastran makes none beyond {GSPROJ_DEG:.0} (GSPROJ of SWLDPRM)",
                 ids.len()
@@ -132,7 +132,7 @@ fn idle_warping_points(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "formulation",
-            format!("CBEAM {}", few(&ids)),
+            format!("CBEAM {}", list_few(&ids)),
             format!(
                 "{} beams state SA and SB, and their property has no warping constant: they twist without warping (Saint-Venant)",
                 ids.len()
@@ -184,7 +184,7 @@ fn gaps(model: &Model) -> Option<Finding> {
                 "; the forces of {} ({}) are not along the line between their grids, and their moment is not balanced. KT acts across this \
                  line, KA along a CID off the line",
                 unbalanced.len(),
-                few(&unbalanced)
+                list_few(&unbalanced)
             )
         };
         Finding::new(
@@ -194,9 +194,9 @@ fn gaps(model: &Model) -> Option<Finding> {
             format!(
                 "{n} gaps remain in their initial state under every load: {} closed ({}), {} open ({}){preload}{friction}",
                 closed.len(),
-                few(&closed),
+                list_few(&closed),
                 open.len(),
-                few(&open),
+                list_few(&open),
             ),
             "check that each gap remains in this state under the loads of the job: a closed one must be in compression; else solve with \
              Nastran, nonlinear",
@@ -254,7 +254,7 @@ fn of_bushes(ids: &[u32], code: &'static str, what: &str, remedy: &'static str) 
         Finding::new(
             Severity::Warning,
             code,
-            format!("CBUSH {}", few(ids)),
+            format!("CBUSH {}", list_few(ids)),
             format!("{} bushes {what}", ids.len()),
             remedy,
         )

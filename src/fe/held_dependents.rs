@@ -1,6 +1,6 @@
 //! Degrees of freedom that a support holds and that also follow others.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, Rigid};
 use std::collections::BTreeMap;
 
@@ -53,7 +53,7 @@ pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Opt
             format!(
                 "{} degrees of freedom are held and dependent at once ({}): no solver accepts this set",
                 both.len(),
-                few(&named)
+                list_few(&named)
             ),
             "remove them from the support, or from the dependent list of the rigid element or equation",
         )

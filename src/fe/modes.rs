@@ -9,7 +9,7 @@ use super::prepared::Prepared;
 use super::strain_of_cases::with_strain;
 use super::system::System;
 use super::{Solution, SolveReport, Solved};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::sparse::Factor;
 use crate::model::{Model, Vec3};
 use crate::stop::Stop;
@@ -274,7 +274,7 @@ fn close_modes(pairs: &[Pair]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "close-modes",
-            format!("modes {}", few(&close)),
+            format!("modes {}", list_few(&close)),
             "these frequencies coincide: each shape is one of many with this frequency",
             "compare the space of these shapes, not single shapes",
         )

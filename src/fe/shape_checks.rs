@@ -1,7 +1,7 @@
 //! Elements whose shape makes their strain doubtful: inverted solids, re-entrant and folded quadrilaterals.
 
 use super::element::solid::is_inverted;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, Shell, Vec3};
 
 /// Distance of the corners from the mean plane over the mean diagonal above which a quadrilateral counts as folded: the default limit of
@@ -61,7 +61,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             let finding = Finding::new(
                 Severity::Warning,
                 code,
-                format!("elements {}", few(&ids)),
+                format!("elements {}", list_few(&ids)),
                 format!("{} elements {what}", ids.len()),
                 remedy,
             );

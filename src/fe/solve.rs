@@ -1,6 +1,6 @@
 //! Linear statics: load cases in, strain fields out.
 
-use super::applied::{applied_forces, check_sets, enforced_of, largest};
+use super::applied::{applied_forces, check_sets, enforced_of, largest_component};
 use super::error::FeError;
 use super::formulation::formulations;
 use super::load_case::{LoadCase, Relief};
@@ -18,7 +18,7 @@ use super::strain_of_cases::with_strain;
 use super::support::{Support, contradictions};
 use super::system::System;
 use super::{Solution, UnitLoad};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::sparse::TreeWork;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -302,7 +302,7 @@ fn nothing_free(cases: &[&LoadCase]) -> Finding {
     Finding::new(
         Severity::Warning,
         "every-dof-held",
-        format!("subcases {}", few(&ids)),
+        format!("subcases {}", list_few(&ids)),
         "supports hold every degree of freedom, so that loads cause no strain",
         "hold the structure only where its supports are",
     )
@@ -357,9 +357,9 @@ pub(super) fn acting(
     let mut balance = None;
     if let Some(body) = body {
         check_free_points(model, &system.reduction, case.subcase, &f)?;
-        let before = largest(&f);
+        let before = largest_component(&f);
         balance = Some(body.balance(case.subcase, mass, &mut f));
-        if largest(&f) <= 1e-9 * before && before > 0.0 {
+        if largest_component(&f) <= 1e-9 * before && before > 0.0 {
             findings.push(Finding::new(
                 Severity::Warning,
                 "load-is-inertia-only",

@@ -3,7 +3,7 @@
 use super::UnitLoad;
 use super::free_motions::{held_motions, springs_in_words};
 use super::load_case::{LoadCase, Relief, unit_cases};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::Model;
 
 /// Which support is wanted.
@@ -258,7 +258,7 @@ pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
             format!(
                 "the set holds {} dofs at two different values ({}): the answer uses one of them",
                 twice.len(),
-                few(&named)
+                list_few(&named)
             ),
             "let only one card give each of these dofs its value",
         )

@@ -1,11 +1,11 @@
 //! The constrained stiffness of a model, ready to be factored: what statics and free modes share.
 
-use super::applied::largest;
+use super::applied::largest_component;
 use super::assembly::{Assembled, Numbering, assemble};
 use super::autospc::{EPZERO, Weak, autospc_finding, held_loads, load_sizes, weak_unknowns};
 use super::constraint::{Reduction, Sets, State, reduce};
 use super::error::{FeError, FreeDof};
-use super::free_motions::touched;
+use super::free_motions::find_structure_grids;
 use super::grid_frames::{to_basic, to_local};
 use super::load_case::Relief;
 use super::mass::Mass;
@@ -318,7 +318,7 @@ impl System {
             softer,
             at: model.grids[g].at,
         };
-        let limit = 1e-9 * largest(f);
+        let limit = 1e-9 * largest_component(f);
         // What rigid elements and averages hand on counts where it arrives.
         let mut arrives = f.to_vec();
         for (f, axes) in arrives.iter_mut().zip(axes) {
@@ -378,7 +378,7 @@ fn body(
     if relief == Relief::None {
         return Ok(None);
     }
-    let touched = touched(prepared.model, reduction);
+    let touched = find_structure_grids(prepared.model, reduction);
     RigidBody::new(prepared.model, &prepared.axes, mass, reduction, &touched)
 }
 

@@ -55,7 +55,7 @@ impl Left {
 ///
 /// # Errors
 /// Elements that can't be formed.
-pub(super) fn unbalanced(
+pub(super) fn check_balance(
     prepared: &Prepared<'_>,
     elements: &[ElementRef],
     (subcase, mpc): (u32, bool),

@@ -2,7 +2,7 @@
 
 use super::arms::{Gauge, Spot};
 use super::surface::to_side;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, ShellKind};
 use crate::units::number;
 
@@ -38,7 +38,7 @@ pub fn off_skin(model: &Model, gauges: &[Gauge]) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "fibre-off-skin",
-            few(&names),
+            list_few(&names),
             format!(
                 "gauge `{name}` on the {} of element {element} reads the strain at {field} = {}. The skin is at {} from the middle surface (units of the deck), and has another bending strain. Gauges concerned: {}",
                 surface.word(),

@@ -1,7 +1,7 @@
 //! Outcome of a command: the answer of its type, with units, inputs, findings and seconds. `result.json` is its serialised form.
 
-use super::words::counted;
-use crate::finding::{Finding, Severity, few, worst};
+use super::words::count_of;
+use crate::finding::{Finding, Severity, list_few, worst_severity};
 use crate::host::fault::Fault;
 use crate::host::files::Input;
 use crate::units::{ReportUnits, UnitSystem};
@@ -102,14 +102,14 @@ impl<A: Answer> Outcome<A> {
         match (count(Severity::Error), count(Severity::Warning)) {
             _ if faults > 0 => format!(
                 "The input has {}: nothing can be computed from it before {} corrected.",
-                counted(faults, "fault"),
+                count_of(faults, "fault"),
                 if faults == 1 { "it is" } else { "they are" }
             ),
             (0, 0) => self.answer.verdict(),
             (0, n) => format!(
                 "{} The result is usable, with {}.",
                 self.answer.verdict(),
-                counted(n, "warning")
+                count_of(n, "warning")
             ),
             _ => format!(
                 "{} is not reliable: {}.",
@@ -137,7 +137,7 @@ fn reasons(findings: &[Finding]) -> String {
     }
     let reason = |(code, subjects): &(&str, Vec<&str>)| {
         let words = code.replace('-', " ");
-        let subjects = few(subjects);
+        let subjects = list_few(subjects);
         match subjects.chars().count() <= ROOM {
             true => format!("{words} ({subjects})"),
             false => words,
@@ -157,7 +157,7 @@ pub struct Findings(pub Vec<Finding>);
 impl Findings {
     /// Returns the worst severity; `None` without findings.
     pub fn worst(&self) -> Option<Severity> {
-        worst(&self.0)
+        worst_severity(&self.0)
     }
 }
 

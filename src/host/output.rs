@@ -1,6 +1,6 @@
 //! Writing: files appear under their names only when all of them are complete, and never in place of a file that no command wrote.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::sha256_hex;
 use crate::host::half_written;
@@ -313,7 +313,7 @@ pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
     let of = |(by, names): (&str, Vec<&str>)| {
         let stands = |n: &&str| folder.join(n).is_file();
         let names: Vec<&str> = names.into_iter().filter(stands).collect();
-        (!names.is_empty()).then(|| format!("`{by}` ({})", few(&names)))
+        (!names.is_empty()).then(|| format!("`{by}` ({})", list_few(&names)))
     };
     let list: Vec<String> = written
         .of_others(command)

@@ -6,7 +6,7 @@ use crate::finding::explain::code;
 
 /// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
 pub fn finding_text(f: &Finding) -> String {
-    let (place, message) = placed(&f.message);
+    let (place, message) = split_place(&f.message);
     let numbers = numbers_in_words(f).map_or_else(String::new, |words| format!(" ({words})"));
     let remedy = if f.remedy.is_empty() {
         String::new()
@@ -38,7 +38,7 @@ pub fn numbers_in_words(f: &Finding) -> Option<String> {
 }
 
 /// The place that a message begins with, as `file:line: `, and what follows; editors go there.
-fn placed(message: &str) -> (String, &str) {
+fn split_place(message: &str) -> (String, &str) {
     let place = || {
         let (file, rest) = message.strip_prefix('`')?.split_once("` line ")?;
         let (line, rest) = rest.split_once(": ")?;
@@ -49,7 +49,7 @@ fn placed(message: &str) -> (String, &str) {
 }
 
 /// Returns a number with what it counts, in the plural where it is not 1.
-pub fn counted(n: usize, what: &str) -> String {
+pub fn count_of(n: usize, what: &str) -> String {
     match (n, what.strip_suffix('y')) {
         (1, _) => format!("1 {what}"),
         (_, Some(stem)) => format!("{n} {stem}ies"),

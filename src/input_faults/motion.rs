@@ -4,7 +4,7 @@
 //! a corrected channel, and the masses from the equations.
 
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::{Quantity, STANDARD_GRAVITY_M_S2, find_unit, number};
 use rayon::prelude::*;
 
@@ -169,7 +169,7 @@ impl MotionFault {
     fn subject(&self, channels: &[MotionChannel]) -> String {
         let own = self.channels();
         match (self, kind_of_all(own, channels)) {
-            (Self::Exchanged(_), _) | (_, None) => few(&names(own, channels)),
+            (Self::Exchanged(_), _) | (_, None) => list_few(&names(own, channels)),
             _ => "all".to_owned(),
         }
     }
@@ -183,7 +183,7 @@ impl MotionFault {
             .collect();
         let (who, many) = match kind_of_all(own, channels) {
             Some(kind) => (format!("all {}", kind.plural()), true),
-            None => (few(&quoted), own.len() > 1),
+            None => (list_few(&quoted), own.len() > 1),
         };
         match self {
             Self::Sign(_) => {

@@ -3,7 +3,7 @@
 use super::shapes::PropertyIds;
 use super::suggest;
 use super::types::Job;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 
 impl PropertyIds {
@@ -27,7 +27,7 @@ impl PropertyIds {
                 )),
                 several => {
                     wrong.push((
-                        format!("properties {} are all called `{name}`", few(several)),
+                        format!("properties {} are all called `{name}`", list_few(several)),
                         "state the ids that are meant".to_owned(),
                     ));
                 }

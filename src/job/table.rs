@@ -1,7 +1,7 @@
 //! A CSV file with the line of every row.
 
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::series::cell::unguarded;
+use crate::series::cell::remove_guard;
 use crate::series::number::{DecimalMark, number};
 use crate::units::{Quantity, largest_size, number as in_words};
 use std::collections::HashMap;
@@ -60,7 +60,7 @@ pub fn each_part(
         .from_reader(text.as_bytes());
     let mut faults = FaultList::new();
     let header: Vec<String> = match reader.headers() {
-        Ok(h) => h.iter().map(|s| unguarded(s).to_owned()).collect(),
+        Ok(h) => h.iter().map(|s| remove_guard(s).to_owned()).collect(),
         Err(e) => {
             return Err(Faults::from(Fault::of(
                 file,
@@ -113,7 +113,9 @@ pub fn each_part(
                 }
                 part.rows.push((
                     line,
-                    r.iter().map(|s| with_point(unguarded(s), mark)).collect(),
+                    r.iter()
+                        .map(|s| with_point(remove_guard(s), mark))
+                        .collect(),
                 ));
             }
             Err(e) => faults.push(Fault::of(file, "row", e.to_string(), "write a CSV file")),

@@ -1,6 +1,6 @@
 //! Faults of files of measured strain.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Fault;
 use crate::job::Job;
 use crate::job::same_name::is_same_name;
@@ -41,13 +41,13 @@ pub(crate) fn no_gauge_column(
     if !alike.is_empty() {
         let wrong = format!(
             "{wrong}; columns and gauges differ by case or separators: {}",
-            few(&alike)
+            list_few(&alike)
         );
         return Fault::at(file, 1, "gauge", wrong, "use the same names in both tables");
     }
     let wrong = match columns.is_empty() {
         true => format!("{wrong}; the file has no column of numbers"),
-        false => format!("{wrong}; its columns are {}", few(columns)),
+        false => format!("{wrong}; its columns are {}", list_few(columns)),
     };
     Fault::at(file, 1, "gauge", wrong, remedy)
 }

@@ -127,7 +127,7 @@ pub(crate) fn note_columns(
 
 /// Returns readings less their zero, tested as `recover` tests its own: a reading that is not strain becomes missing. Findings report it, once for
 /// the same gauges.
-pub(crate) fn judged(
+pub(crate) fn subtract_and_test_zero(
     work: &mut Work,
     measured: &Measured,
     gauges: &[String],
@@ -152,7 +152,7 @@ pub(crate) fn reads_strain(job: &Job) -> bool {
     job.model.is_some() || job.sensitivity.is_some()
 }
 
-/// Tests readings like [`judged`], for a job that may have no S yet: its readings are then tested against their noise alone.
+/// Tests readings like [`subtract_and_test_zero`], for a job that may have no S yet: its readings are then tested against their noise alone.
 pub(crate) fn judged_to_learn(
     work: &mut Work,
     job: &Job,
@@ -161,7 +161,7 @@ pub(crate) fn judged_to_learn(
     readings: Vec<Readings>,
 ) -> Vec<Readings> {
     if reads_strain(job) {
-        return judged(work, measured, gauges, &readings);
+        return subtract_and_test_zero(work, measured, gauges, &readings);
     }
     let errors = ErrorModel {
         noise: measured.noise_microstrain * MICROSTRAIN,

@@ -123,7 +123,7 @@ fn calibrated(
     };
     for (w, run) in weighing.runs.iter_mut().zip(runs) {
         let answered = matches!(w.refused, None | Some(Refusal::OutsideRegion { .. }));
-        let found = by_calibration::found(model, known, run, spec.place, |g| used[g]);
+        let found = by_calibration::estimate_payload(model, known, run, spec.place, |g| used[g]);
         let Some(found) = found.filter(|_| answered) else {
             continue;
         };

@@ -4,7 +4,7 @@
 
 use super::coordinate_exchange::LEAST_GAIN;
 use super::exchange::Effort;
-use super::perturbation::moved;
+use super::perturbation::move_gauges;
 use super::relaxed::Active;
 use crate::linalg::spd;
 use crate::stop::Stop;
@@ -57,7 +57,7 @@ pub fn search(
             let first = if n == 0 {
                 start.to_vec()
             } else {
-                moved(start, start.len(), active.len(), excludes, &mut rng)
+                move_gauges(start, start.len(), active.len(), excludes, &mut rng)
             };
             let mut best = improve(active, prior, first, excludes, stop);
             for _ in 0..perturbations {
@@ -66,7 +66,7 @@ pub fn search(
                 }
                 let from = best.as_ref().map_or(start, |b| &b.0);
                 let count = 1 + rng.random_range(0..2);
-                let rows = moved(from, count, active.len(), excludes, &mut rng);
+                let rows = move_gauges(from, count, active.len(), excludes, &mut rng);
                 let next = improve(active, prior, rows, excludes, stop);
                 best = better(best, next);
             }

@@ -28,7 +28,7 @@ pub(super) fn recover(
     // Without an estimated scatter there is no limit for the deviation of a gauge.
     let (mut findings, readings) = match known.is_tested {
         true => misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives)),
-        false => (vec![untested()], readings.to_vec()),
+        false => (vec![report_untested_intervals()], readings.to_vec()),
     };
     let mut runs: Vec<RunEstimate> = readings
         .par_iter()
@@ -57,7 +57,7 @@ pub(super) fn recover(
 }
 
 /// The finding on a calibration whose intervals no run tested.
-pub fn untested() -> Finding {
+pub fn report_untested_intervals() -> Finding {
     Finding::new(
         Severity::Error,
         "coverage-not-tested",

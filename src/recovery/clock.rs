@@ -21,7 +21,7 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
     out.extend(
         clock
             .unit
-            .map(|unit| recognised(subject, unit, clock.rate_hz)),
+            .map(|unit| report_assumed_unit(subject, unit, clock.rate_hz)),
     );
     if let Evenness::Resampled { largest, .. } = clock.evenness {
         let rate = clock.rate_hz;
@@ -60,7 +60,7 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
 }
 
 /// Returns the note that times are taken in a unit that the file does not state.
-pub fn recognised(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
+pub fn report_assumed_unit(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
     let words = unit.words();
     Finding::new(
         Severity::Info,

@@ -1,7 +1,7 @@
 //! Tests whether the readings determine the loads: interval widths against the loads, and loads against their expected size.
 
 use super::types::RunEstimate;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::sensitivity::Sensitivity;
 use crate::units::number;
 
@@ -59,7 +59,7 @@ fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> 
         true => (Severity::Error, "all".to_owned()),
         false => {
             let names: Vec<&str> = small.iter().map(|s| s.0).collect();
-            (Severity::Warning, few(&names))
+            (Severity::Warning, list_few(&names))
         }
     };
     let whose = if all {
@@ -107,7 +107,7 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
         Finding::new(
             Severity::Error,
             "loads-not-determined",
-            few(&names),
+            list_few(&names),
             format!(
                 "the gauges do not determine these loads: the 95 % interval exceeds half of the largest load in every run (condition \
                  number {:.0}). The values are mostly noise and model error",
@@ -145,7 +145,7 @@ pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
         Finding::new(
             severity,
             "loads-not-determined",
-            few(&names),
+            list_few(&names),
             "the gauges do not determine these loads: the planned standard deviation exceeds half of the largest `expected` load",
             "place more gauges, state the actual noise of the gauges, or drop loads",
         )

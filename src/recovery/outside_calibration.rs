@@ -1,7 +1,7 @@
 //! Loads that exceed the loads of the calibration. A straight line through the applied loads is not valid beyond them.
 
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -109,7 +109,7 @@ pub fn check_load(
         number(ratio),
         shown(load.range[0]),
         shown(load.range[1]),
-        few(&names)
+        list_few(&names)
     );
     Some(
         Finding::new(
@@ -148,7 +148,7 @@ pub fn check_strain<'a>(
         Finding::new(
             Severity::Info,
             CODE,
-            few(&names),
+            list_few(&names),
             format!(
                 "gauge `{gauge}` reads up to {} times its largest strain of the calibration, because several loads act together. The \
                  calibration did not test the sum of their strains",

@@ -3,7 +3,7 @@
 use super::errors::ErrorModel;
 use super::types::Readings;
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::{MICROSTRAIN, number};
 
 /// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
@@ -90,7 +90,7 @@ fn beyond_gauges(gauges: &[&str], largest: f64, median_size: f64) -> Option<Find
         Finding::new(
             severity,
             "reading-beyond-gauges",
-            few(gauges),
+            list_few(gauges),
             format!("readings of up to {} microstrain {what}", number(largest / MICROSTRAIN)),
             "state readings in microstrain (strain times 1e6); exclude an overloaded channel: [[correction]] ignore = true",
         )
@@ -104,7 +104,7 @@ pub fn impossible(gauges: &[&str], largest: f64) -> Option<Finding> {
         Finding::new(
             Severity::Error,
             "reading-impossible",
-            few(gauges),
+            list_few(gauges),
             format!(
                 "readings of up to {:.1e} microstrain cannot be strain: they are treated as missing",
                 largest / MICROSTRAIN

@@ -9,7 +9,7 @@ use super::plausible;
 use super::runs::{Order, recover_beyond};
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::input_faults::Handling;
 use crate::sensitivity::Sensitivity;
 
@@ -92,7 +92,7 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Find
         out.push(Finding::new(
             Severity::Error,
             "loads-without-values",
-            few(&unknown),
+            list_few(&unknown),
             "in no sample do the gauges with readings determine these loads",
             "repair the gauges without readings, or drop these loads",
         ));

@@ -8,7 +8,7 @@ use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::estimate::chi_square_tail;
 use crate::estimate::{NORMAL_95, student_95};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::{MICROSTRAIN, number};
@@ -154,7 +154,7 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
         out.push(Finding::new(
             Severity::Error,
             NOT_SOLVABLE,
-            few(&names),
+            list_few(&names),
             format!("{why} {}: these loads are blank", unseen.join(", ")),
             "repair the gauges without readings, drop loads, or state `expected` for loads with role \"nuisance\"",
         ));
@@ -332,7 +332,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
         let subject = if sizes.bad.is_empty() || sizes.bad.len() == sizes.n {
             "all runs".to_owned()
         } else {
-            few(&sizes.bad)
+            list_few(&sizes.bad)
         };
         return Some(
             Finding::new(

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 /// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a
 /// sinc under a Lanczos window; beyond the ends the end samples stand.
-pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
+pub fn remove_lateness(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
     /// Samples to either side: signals up to three quarters of half the rate pass to better than a per mille.
     const SIDE: isize = 12;
     let last = x.len() as isize - 1;
@@ -49,13 +49,13 @@ pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64>
 ///
 /// let pulse = |t: f64| (-0.5 * ((t - 50.0) / 4.0).powi(2)).exp();
 /// let x: Vec<f64> = (0..128).map(|i| pulse(f64::from(i))).collect();
-/// let late = delayed(&x, 100.0, 0.034);
+/// let late = delay(&x, 100.0, 0.034);
 /// assert_eq!(late.len(), x.len());
 /// for (i, v) in (20..100).zip(&late[20..100]) {
 ///     assert!((v - pulse(f64::from(i) - 3.4)).abs() < 2e-3);
 /// }
 /// ```
-pub fn delayed(x: &[f64], rate_hz: f64, seconds: f64) -> Vec<f64> {
+pub fn delay(x: &[f64], rate_hz: f64, seconds: f64) -> Vec<f64> {
     let offset = super::detrend::mean(x);
     let zero_mean: Vec<f64> = x.iter().map(|v| v - offset).collect();
     let mut fourier = Fourier::default();

@@ -1,7 +1,7 @@
 //! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
 
 use crate::fe::mass_moved;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList};
 use crate::host::files::{Inputs, why_unreadable};
 use crate::host::what_is::binary_kind;
@@ -182,7 +182,7 @@ fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
         .iter()
         .map(|n| format!("`{}` line {}: {}", deck.path(n.at), n.at.line, n.text))
         .collect();
-    let message = few(&shown);
+    let message = list_few(&shown);
     let remedy = "check how these lines were read, and whether the deck is complete";
     let finding = Finding::new(Severity::Info, "deck-note", given, message, remedy);
     vec![finding.with_numbers(deck.notes.len() as f64, 0.0)]

@@ -1,7 +1,7 @@
 //! Loads of a job compared with the loads of the subcases whose results they name.
 
 use crate::fe::{CaseResult, UnitLoad};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::short;
 use crate::job::{Job, JobLoad, LoadActs};
@@ -155,7 +155,7 @@ impl Compared<'_> {
         let wrong = format!(
             "{} of the deck also contains {}, so its strain is not the strain of the load alone",
             self.subcase_in_words(),
-            few(&words)
+            list_few(&words)
         );
         let remedy = match set {
             Some(sid) => format!(

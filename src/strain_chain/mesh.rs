@@ -9,7 +9,7 @@
 
 use super::specs::corrected_spec_of;
 use crate::fe::{CaseResult, ShellField, Solution};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
@@ -303,7 +303,7 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
                 "the deck's mesh is too coarse at {n} of {} gauges: the readings have errors of {}. S is corrected for this error, and \
                  {:.0} % of it is treated as uncertainty",
                 gauges.len(),
-                few(&named),
+                list_few(&named),
                 100.0 * left
             ),
             "refine the deck around these elements (half the width gives a quarter of the error), or move the gauges",

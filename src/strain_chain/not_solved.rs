@@ -1,7 +1,7 @@
 //! Finding about cards and statements of a deck that the built-in solver does not carry.
 
 use crate::fe::{LoadCase, UnitLoad, unsupported_cards};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::Model;
 use nastran::bdf::{Deck, Subcase};
 use nastran::place::Place;
@@ -57,7 +57,7 @@ fn refused_in(
         place(first.at),
         first.card,
         refused.len(),
-        few(&counted)
+        list_few(&counted)
     );
     let remedy =
         "give results of Nastran in the job; the built-in solver does not solve this model";

@@ -6,10 +6,10 @@ use crate::fe::{
     SupportChoice, UnitLoad, relief_finding, solution_of, solve_displacements, solve_modes,
     support_of,
 };
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::store::{Key, read_solution, write_solution};
-use crate::host::work::{Work, stopped};
+use crate::host::work::{Work, cancelled_fault};
 use crate::job::Job;
 use crate::model::Model;
 use crate::strain_chain::deck::DeckModel;
@@ -147,7 +147,7 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     let words: Vec<String> = sets.iter().map(word).collect();
     let wrong = format!(
         "the deck's subcases select different MPC sets ({}): unit loads need one",
-        few(&words)
+        list_few(&words)
     );
     let remedy = "select the MPC set of the structure above the subcases only";
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
@@ -471,7 +471,7 @@ fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -
 /// The solver's faults with file and line; that the work was stopped is no fault of the deck.
 pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
     if *error == FeError::Stopped {
-        return stopped().into();
+        return cancelled_fault().into();
     }
     let list: FaultList = error
         .faults()

@@ -125,7 +125,7 @@ impl Motion {
 ///
 /// # Errors
 /// As [`motion`].
-pub fn resolved(
+pub fn resolve_constants(
     vehicle: &Vehicle,
     record: &Channels,
     treatment: &Treatment,

@@ -3,7 +3,7 @@
 use super::layout::Vehicle;
 use super::term::Term;
 use crate::linalg::tall::left_inverse;
-use crate::series::resample::upsampled;
+use crate::series::resample::upsample;
 use thiserror::Error;
 
 /// Inputs of a simulation, at the sample rate of the record.
@@ -239,7 +239,7 @@ fn machine<'a>(
             out.given.extend(
                 given
                     .iter()
-                    .map(|[d, v]| [upsampled(d, dense), upsampled(v, dense)]),
+                    .map(|[d, v]| [upsample(d, dense), upsample(v, dense)]),
             );
             continue;
         }
@@ -304,7 +304,7 @@ fn machine<'a>(
                 .enumerate()
                 .map(|(j, p)| (first + j, *p))
                 .collect();
-            out.wheels.push((phi, upsampled(force, dense)));
+            out.wheels.push((phi, upsample(force, dense)));
         }
     }
     Ok(out)

@@ -8,7 +8,7 @@ use super::super::shapes::{NumberOrNumbers, NumberOrWord, Texts};
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
-use super::units::{stated, units};
+use super::units::{stated_quantities, units};
 use crate::payload::Place;
 use crate::reconcile::strain::WheelForces;
 use crate::series::record::seconds_in;
@@ -20,7 +20,7 @@ const DEFAULT_HOTTEST: usize = 20;
 const DEFAULT_SLOPE: f64 = 5.0;
 
 /// `[measured]`; where there is a `[fleet]`, its records replace the strain file.
-pub(super) fn measured(
+pub(super) fn resolve_measured(
     c: &mut Collector,
     raw: Option<&Spanned<RawMeasured>>,
     fleet: Option<&Spanned<RawFleet>>,
@@ -189,7 +189,7 @@ pub(super) fn runs(
             .map(|(k, v)| (k.value().clone(), v.value().clone()))
             .collect(),
         units: units(c, raw.units.as_ref(), default, "runs.units"),
-        stated_units: stated(raw.units.as_ref()),
+        stated_units: stated_quantities(raw.units.as_ref()),
         noise,
         wheel_forces,
         ground: c.positive(&raw.ground, "runs.ground"),

@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::channel_check::BrokenChannel;
-use super::corrections::stated;
+use super::corrections::state_corrections;
 use super::detectable::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
@@ -13,7 +13,7 @@ use super::limits::{beyond_tolerance, stands_out};
 use super::next::next_measurement;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
-use super::proven::proven;
+use super::proven::remove_unproven;
 use super::scorer::MotionScorer;
 use super::sentences::remains;
 use crate::reconcile::checks::{Check, ahead, reasons, verdict};
@@ -69,7 +69,7 @@ fn refit_under_noise(scorer: &MotionScorer, old: &MotionFit) -> MotionFit {
 }
 
 /// The verdict with everything that belongs to it.
-pub(super) fn judged(
+pub(super) fn conclude(
     scorer: &mut MotionScorer,
     found: Found,
 ) -> Result<MotionOutcome, VehicleError> {
@@ -84,7 +84,7 @@ pub(super) fn judged(
     let empty = all.iter().find(|s| s.set.is_empty()).cloned();
     let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
     let best = nameable(scorer, &all, best);
-    let (best, mut told) = proven(scorer, &all, best);
+    let (best, mut told) = remove_unproven(scorer, &all, best);
     let before = Gaps::of(scorer, &null);
     let after = if best.set.is_empty() {
         Gaps::of(scorer, null_under_background)
@@ -161,7 +161,7 @@ pub(super) fn judged(
         },
         best_attempt: attempt,
         covariance,
-        corrections: stated(frame, &best.fit.parts),
+        corrections: state_corrections(frame, &best.fit.parts),
         remains: remains(
             rules,
             verdict,

@@ -7,7 +7,7 @@ use crate::reconcile::proven::{Useless, Without, without_useless};
 use crate::reconcile::search::{Scored, Scorer};
 
 /// Returns `best` without members that do not reduce the gap ([`without_useless`]), and a message on each of these members.
-pub(super) fn proven(
+pub(super) fn remove_unproven(
     scorer: &mut MotionScorer,
     all: &[Scored<MotionFit>],
     best: Scored<MotionFit>,

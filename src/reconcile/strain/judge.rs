@@ -12,15 +12,15 @@ use super::no_drift::no_drift;
 use super::outlier::but_for_one;
 use super::own_covariance::{own_evidence, under_own_covariance};
 use super::prediction::predict;
-use super::proven::proven;
+use super::proven::remove_unproven;
 use super::recovered::loads_before_after;
 use super::remains::{remains, sits};
 use super::resampled::DRAWINGS;
 use super::rivals::{RivalSet, WORTH_NAMING, rival_sets, rivals_told, without_own};
-use super::sizes_found::named;
+use super::sizes_found::effects_with_sizes;
 use super::smooth::{curve, is_smooth};
 use super::standing::Standing;
-use super::validation::{Proofs, validated};
+use super::validation::{Proofs, validate_set};
 use crate::reconcile::checks::{Check, ahead, reasons, verdict};
 use crate::reconcile::effect::{Candidate, Discrepancy};
 use crate::reconcile::outcome::{Gap, Misfit, NamedEffect, Outcome, Verdict};
@@ -135,7 +135,7 @@ pub(super) fn judge(
     };
     let standing = Standing::of(frame, candidates, all, &alike, &rivals);
     let stands = standing.fewer(frame, candidates, best);
-    let proven = proven(proofs, candidates, stands.as_ref().unwrap_or(best));
+    let proven = remove_unproven(proofs, candidates, stands.as_ref().unwrap_or(best));
     let few = standing.doubt.clone().filter(|_| stands.is_some());
     let (taken_out, fewer) = match proven {
         Some(p) => (Some(p.doubt), Some(p.set)),
@@ -154,8 +154,8 @@ pub(super) fn judge(
         .collect();
     without_own(candidates, best, &mut rivals);
     let names = named_part(candidates, &best.set);
-    let attempt = named(frame, candidates, best);
-    let (gap, channels) = validated(proofs, candidates, best);
+    let attempt = effects_with_sizes(frame, candidates, best);
+    let (gap, channels) = validate_set(proofs, candidates, best);
     let null_evidence = (all.iter().find(|s| s.set.is_empty())).map_or(0.0, |s| s.log_evidence);
     let hint = best_of_names(candidates, all);
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));

@@ -19,7 +19,7 @@ pub(super) struct Proven {
 }
 
 /// Returns `best` without effects that do not reduce the gap ([`without_useless`]); `None` if no effect is removed or `best` has a general form.
-pub(super) fn proven(
+pub(super) fn remove_unproven(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
     best: &Scored<Fit>,

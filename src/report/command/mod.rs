@@ -113,7 +113,7 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
 ///
 /// # Errors
 /// An answer without a JSON form, which is a mistake of the program.
-pub fn unsaved<A: Answer>(outcome: &Outcome<A>) -> Result<String, Faults> {
+pub fn result_text<A: Answer>(outcome: &Outcome<A>) -> Result<String, Faults> {
     let json = outcome.to_json(&Tables::new());
     Ok(json.map_err(|e| mistake("result.json", &e))?)
 }

@@ -1,7 +1,7 @@
 //! Files and words of `strains`.
 
 use super::{Report, write_page};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
@@ -38,7 +38,7 @@ impl Report for Outcome<Strains> {
 
     fn console(&self) -> Console {
         let fields = [
-            ("subcases", few(&self.subcase_ids)),
+            ("subcases", list_few(&self.subcase_ids)),
             ("rows of strains.csv", self.rows.to_string()),
         ];
         Console::new(ConsoleTable::of_fields("", &fields), Some("strains.csv"))

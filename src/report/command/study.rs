@@ -5,7 +5,7 @@ use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{IntervalRow, intervals};
@@ -104,7 +104,7 @@ impl Report for Outcome<Studied> {
             vec![load.name.clone(), format!("{range} {}", load.unit)]
         };
         let rows = loads.iter().filter(|l| l.wanted).map(of_load).collect();
-        let layouts = counted(self.study.len(), "layout");
+        let layouts = count_of(self.study.len(), "layout");
         let title = format!("Error of each load in {layouts}: half width of the 95 % interval");
         let by_load = ConsoleTable::new(title, &["load", "± 95 %"], rows);
         let next = format!(

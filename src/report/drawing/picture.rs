@@ -105,7 +105,7 @@ impl Picture {
         self.shapes.push(Shape::Word(Word {
             at,
             anchor,
-            text: shortened(text, LONGEST),
+            text: shorten_to(text, LONGEST),
             size: 7.0,
             upwards: false,
         }));
@@ -121,7 +121,7 @@ impl Picture {
 }
 
 /// At most `most` characters on one line, marked where some are left out.
-pub(in crate::report) fn shortened(text: &str, most: usize) -> String {
+pub(in crate::report) fn shorten_to(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
     }

@@ -14,7 +14,7 @@ mod script;
 
 pub use agreement::{GaugePoints, agreement};
 pub use chart::Figure;
-pub(in crate::report) use chart::embedded;
+pub(in crate::report) use chart::embed_data;
 pub use cross::{CrossPlot, cross};
 pub use curve::{CountPoint, curve};
 pub use gap::gap_by_channel;

@@ -34,7 +34,7 @@ pub(super) struct Fitted {
 }
 
 /// Returns the table in one piece if a size of type allows it, or else in pieces that repeat the first column. A table without columns has no piece.
-pub(super) fn fitted(table: &Table) -> Vec<Fitted> {
+pub(super) fn fit_table(table: &Table) -> Vec<Fitted> {
     let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
     let n = n.max(table.head.len());
     if n == 0 {

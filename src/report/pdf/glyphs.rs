@@ -1,6 +1,6 @@
 //! The fonts of the pages, and text that they can show.
 
-use crate::report::drawing::picture::shortened;
+use crate::report::drawing::picture::shorten_to;
 use std::sync::OnceLock;
 use typst::foundations::Bytes;
 use typst::text::Font;
@@ -58,5 +58,5 @@ pub(super) fn breakable(text: &str, longest: usize) -> String {
 
 /// At most `most` characters of printable text, marked where some are left out.
 pub(super) fn short_printable(text: &str, most: usize) -> String {
-    shortened(&printable(text), most)
+    shorten_to(&printable(text), most)
 }

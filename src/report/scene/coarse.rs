@@ -10,7 +10,7 @@ const STEPS: usize = 9;
 const TURN: f64 = 0.5;
 
 /// The part with `most` triangles or fewer (never none): whole where it can be, else with its grids gathered in cubes as small as will do.
-pub(super) fn coarsened(model: &Model, part: &Part, most: usize) -> Drawn {
+pub(super) fn coarsen(model: &Model, part: &Part, most: usize) -> Drawn {
     let whole = Drawn {
         vertex_of: (0..part.grids.len() as u32).collect(),
         vertices: (0..part.grids.len() as u32).collect(),

@@ -5,10 +5,10 @@ use super::pack::packed_scene;
 use super::part::Part;
 use super::pointing::{result, tools};
 use super::skin::{Finest, skin};
-use super::still::still;
+use super::still::draw_still;
 use super::types::{FieldValues, Pointing, Scene};
 use super::view::SceneView;
-use crate::report::figure::embedded;
+use crate::report::figure::embed_data;
 use crate::report::page::{Block, Section};
 use maud::{Markup, html};
 
@@ -24,7 +24,7 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
         .flat_map(|p| p.faces.iter().map(|f| f.1.map(|c| p.grids[c as usize])));
     let mut lines = outline(scene.model, faces);
     let rods = bars(scene.model);
-    let data = embedded(&packed_scene(scene, &parts, &lines, &rods));
+    let data = embed_data(&packed_scene(scene, &parts, &lines, &rods));
     let markup = html! {
         figure.plot.scene aria-label="the model in three dimensions" data-figure="scene" {
             (switches(scene, &parts))
@@ -41,7 +41,7 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
     lines.extend(rods);
     let view = SceneView {
         markup,
-        still: still(scene),
+        still: draw_still(scene),
         lines,
         marks: scene.marks.clone(),
     };

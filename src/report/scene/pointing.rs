@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use serde_json::{Map, Value, json};
 
 /// Returns the data for the page's script: null without pointing, else the lists and the file of picked places.
-pub(super) fn said(pointing: &Pointing) -> Value {
+pub(super) fn script_data(pointing: &Pointing) -> Value {
     match pointing {
         Pointing::Nothing => Value::Null,
         Pointing::Gauges => json!({}),

@@ -25,7 +25,7 @@ struct Timed {
 ///
 /// # Errors
 /// Times that can't be read, and a file that states another unit than `time_unit_s`.
-pub(super) fn timed(
+pub(super) fn with_times_in_seconds(
     reader: Box<dyn RecordReader>,
     time_unit_s: Option<f64>,
 ) -> Result<(Box<dyn RecordReader>, Option<TimeUnit>), SeriesError> {

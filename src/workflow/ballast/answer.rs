@@ -128,7 +128,7 @@ pub(super) struct Sized<'a> {
 }
 
 /// The answer in report units, once it has its deck.
-pub(super) fn ballasted(
+pub(super) fn report_ballast(
     task: &Task,
     sized: &Sized,
 ) -> impl FnOnce(CompletedDeck) -> Ballasted + use<> {

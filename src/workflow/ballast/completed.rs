@@ -78,7 +78,7 @@ pub(super) fn cards(
 }
 
 /// Reads the completed deck back, solves it again and returns its reactions.
-pub(super) fn after(
+pub(super) fn solve_completed(
     work: &mut Work,
     task: &Task,
     edited: &[(String, Vec<u8>)],

@@ -92,7 +92,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     edits.insert_cards(&read.deck, &text);
     let edited = write_edited(&read.deck, &edits);
     let after = work.stage("solve completed deck", |s| {
-        completed::after(s, &task, &edited)
+        completed::solve_completed(s, &task, &edited)
     })?;
     answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
     work.findings
@@ -107,7 +107,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         cards: &cards,
         height,
     };
-    let answer = answer::ballasted(&task, &sized);
+    let answer = answer::report_ballast(&task, &sized);
     let deck = CompletedDeck {
         deck: read.deck,
         edited,

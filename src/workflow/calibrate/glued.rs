@@ -2,7 +2,7 @@
 
 use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::{CornerRows, Drawn, Gauge, Offset, centre, reading};
 use crate::host::fault::{Fault, Faults};
 use crate::job::{CalibrationKeys, Job};
@@ -228,7 +228,7 @@ pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
             .collect();
         count += names.len();
         if !names.is_empty() {
-            parts.push(format!("{what} of {}", few(&names)));
+            parts.push(format!("{what} of {}", list_few(&names)));
         }
     }
     (count > 0).then(|| {

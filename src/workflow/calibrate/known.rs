@@ -3,9 +3,9 @@
 use super::asked::Asked;
 use super::payloads::{Payloads, add_columns};
 use crate::calibrate::KnownLoads;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::table::{Table, read_table};
 use crate::job::{HoldOut, Job, Measured, Runs};
@@ -206,15 +206,15 @@ fn without_strain(
     (!runs.is_empty()).then(|| {
         let wrong = format!(
             "the strain file has no row for {} with known loads in `{}`: {}",
-            counted(runs.len(), "run"),
+            count_of(runs.len(), "run"),
             table.file,
-            few(&runs)
+            list_few(&runs)
         );
         let remedy = "give the runs the same names in both files, or remove these rows";
         Finding::new(
             Severity::Warning,
             "run-without-record",
-            few(&runs),
+            list_few(&runs),
             wrong,
             remedy,
         )

@@ -36,7 +36,7 @@ impl DependenceSummary {
 }
 
 /// The largest known load of each unit, where there is no model that its strain could be held against.
-pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
+pub(super) fn report_unchecked_loads(task: &Task, listed: &Listed) -> Option<Finding> {
     if task.model.is_some() {
         return None;
     }
@@ -91,7 +91,11 @@ fn largest(task: &Task, l: usize) -> f64 {
 
 /// Returns a finding on a load with far less strain than another load of its unit, although this strain exceeds the noise. Returns `None` for a job
 /// with a model.
-pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Option<Finding> {
+pub(super) fn report_uneven_loads(
+    task: &Task,
+    found: &Calibration,
+    listed: &Listed,
+) -> Option<Finding> {
     if task.model.is_some() {
         return None;
     }

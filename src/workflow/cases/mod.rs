@@ -3,14 +3,14 @@
 mod includes;
 
 pub(crate) use includes::from_folder;
-pub(crate) use includes::relocated;
+pub(crate) use includes::relocate_deck;
 
 use crate::fe::{Relief, Support, determinate_dofs};
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{Component, Job, JobLoad, LoadActs};
 use crate::model::{Grid, Model};
@@ -71,7 +71,7 @@ impl Answer for UnitLoadDeck {
     fn verdict(&self) -> String {
         format!(
             "{} written for Nastran; the structure is {}.",
-            counted(self.subcases.len(), "unit-load subcase"),
+            count_of(self.subcases.len(), "unit-load subcase"),
             self.support
         )
     }
@@ -97,7 +97,7 @@ pub fn edited_files(
     folder: &Path,
     stem: &str,
 ) -> Vec<(String, Vec<u8>)> {
-    includes::relocated(deck, write_edited(deck, edits), folder, stem)
+    includes::relocate_deck(deck, write_edited(deck, edits), folder, stem)
 }
 
 /// Makes the deck of a job with one unit-load subcase for each load, ready for Nastran. All other lines of the deck stay unchanged.

@@ -41,7 +41,7 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
         _ if placed && job.candidates.line == 0 && job.placement.line == 0 => {
             read_fields(work, job, WantedAt::Anywhere).map(|_| ())
         }
-        _ if placed || recovers(job) => sensitivity::prepared(work, job).map(|_| ()),
+        _ if placed || recovers(job) => sensitivity::prepare_sensitivity(work, job).map(|_| ()),
         _ => prepare(work, job).map(|_| ()),
     }
 }

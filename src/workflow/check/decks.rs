@@ -3,7 +3,7 @@
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::finding::Finding;
 use crate::host::fault::FaultList;
-use crate::host::words::{counted, short};
+use crate::host::words::{count_of, short};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::{Model, UnsupportedCard};
@@ -271,9 +271,9 @@ impl DeckEntry {
         format!(
             "deck `{}`: {}, {}, {}{solution}\n  mass {}\n  cards: {}\n{}  faults: {}",
             self.path,
-            counted(self.grids, "grid"),
-            counted(self.elements, "element"),
-            counted(self.subcases.len(), "subcase"),
+            count_of(self.grids, "grid"),
+            count_of(self.elements, "element"),
+            count_of(self.subcases.len(), "subcase"),
             self.weight(),
             cards.join(", "),
             self.idle(),

@@ -1,6 +1,6 @@
 //! Records and tables in `result.json` and in the text for people.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::files::as_table;
 use crate::host::words::short;
@@ -111,7 +111,7 @@ impl RecordEntry {
         let is_whole = self.other_channels.is_empty();
         let names = self.channels.iter();
         let listed = match is_whole {
-            true => few(&names.map(ChannelEntry::text).collect::<Vec<_>>()),
+            true => list_few(&names.map(ChannelEntry::text).collect::<Vec<_>>()),
             false => by_group(names.map(|c| (c.group.clone(), c.text()))).join(", "),
         };
         let n = self.channels.len();

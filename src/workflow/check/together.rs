@@ -3,7 +3,7 @@
 use super::checked::Checked;
 use super::decks::DeckEntry;
 use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
-use crate::fe::from_results::repeated;
+use crate::fe::from_results::find_repeated_results;
 use crate::finding::Finding;
 use crate::host::work::Work;
 use crate::strain_chain::deck::model_of_op2;
@@ -21,7 +21,7 @@ fn ambiguous(found: &Checked) -> Vec<Finding> {
         let read =
             read.filter_map(|r| Some((r.path(), ResultsFile::read(&r.bytes, r.path()).ok()?)));
         let (names, files): (Vec<&str>, Vec<ResultsFile>) = read.unzip();
-        let twice = repeated(&files.iter().collect::<Vec<_>>(), None);
+        let twice = find_repeated_results(&files.iter().collect::<Vec<_>>(), None);
         findings.extend(twice.iter().map(|r| r.finding(&names)));
     }
     findings

@@ -46,7 +46,7 @@ impl Exchange {
 /// With `P = I - U U'`, U an orthonormal basis of the columns of S, and `M = sum of y y'` over the samples, the squares of the residuals sum to
 /// `tr(P M)`. Exchanged readings have M with rows and columns exchanged. Without the gauges a and b the sum is less by `tr(P_ab^-1 (P M P)_ab)`.
 /// Returns `None` if no pair or more than one pair explains the readings, or if the gauges are too few.
-pub(super) fn exchanged<'a>(
+pub(super) fn find_exchange<'a>(
     s: &Sensitivity,
     samples: impl Iterator<Item = &'a [f64]>,
     noise: f64,
@@ -145,7 +145,7 @@ mod tests {
             uncertainty: None,
             noise: None,
         };
-        let found = exchanged(&s, samples.iter().map(Vec::as_slice), 0.1);
+        let found = find_exchange(&s, samples.iter().map(Vec::as_slice), 0.1);
         found.map(|e| e.gauges)
     }
 

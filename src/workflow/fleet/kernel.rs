@@ -2,12 +2,12 @@
 
 use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, told_dead};
-use super::exchange::exchanged;
+use super::exchange::find_exchange;
 use super::health::Health;
 use super::judged::{Judged, findings_of};
-use super::recovering::{Part, Recovering, UnderWay, counted};
+use super::recovering::{Part, Recovering, UnderWay, count_pieces};
 use super::scale::{noise_of, scales};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::may_be_cut;
 use crate::job::StrainCorrection;
@@ -172,7 +172,7 @@ impl Kernel {
             let decode = || group.par_iter().map(|p| r.part(record, *p, &marks));
             let (next, ()) = rayon::join(
                 || decode().collect::<Result<_, _>>(),
-                || counted(&mut pass.counters, &parts),
+                || count_pieces(&mut pass.counters, &parts),
             );
             parts = next.map_err(|e: SeriesError| record_fault("record", &e))?;
             for part in &mut parts {
@@ -184,7 +184,7 @@ impl Kernel {
                 }
             }
         }
-        counted(&mut pass.counters, &parts);
+        count_pieces(&mut pass.counters, &parts);
         Ok(pass)
     }
 
@@ -208,7 +208,7 @@ impl Kernel {
         let named = |f: &Finding| f.code == "inputs-exchanged";
         if !explained && !found.iter().any(named) {
             let rows = samples.iter().map(Vec::as_slice);
-            let pair = exchanged(&r.sensitivity, rows, self.errors.noise);
+            let pair = find_exchange(&r.sensitivity, rows, self.errors.noise);
             findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges)));
         }
         findings.extend(found);
@@ -387,7 +387,7 @@ impl Kernel {
             let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
             let wrong = format!(
                 "the gauges do not separate the loads: only {} have readings",
-                few(&names)
+                list_few(&names)
             );
             return Err(Fault::of(
                 "record",

@@ -114,7 +114,7 @@ pub struct Vehicle {
 ///
 /// Of two files for one day, or with the same bytes, that with the first path counts. What comes out does not depend on the order of
 /// `files`.
-pub fn sorted(
+pub fn sort_files(
     files: &[FileHead],
     days_in: DayOrder,
 ) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status>) {

@@ -36,13 +36,13 @@ pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
 pub use outcome::{FileAnswer, Fleet, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::context::{Context, Files};
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::Opened;
 use crate::host::outcome::{Outcome, StatedUnits};
-use crate::host::words::counted;
-use crate::host::work::{Work, stopped};
+use crate::host::words::count_of;
+use crate::host::work::{Work, cancelled_fault};
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::measured::faults::record_fault;
 use crate::series::record::{Options, open_source};
@@ -52,7 +52,7 @@ use days::DayOrder;
 use drift::drift;
 use kept::{KeptDays, digest};
 use kernel::Kernel;
-use merge::{Status, sorted, vehicle};
+use merge::{Status, sort_files, vehicle};
 use name::{NameForm, Shard};
 use other_scale::in_other_scale;
 use other_unit::in_other_units;
@@ -161,7 +161,7 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         let absent = compared.check(&job.file, section, is_all)?;
         work.findings.extend(absent);
     }
-    let kept = counted(reused, "result");
+    let kept = count_of(reused, "result");
     work.notes.push(format!("{kept} stored by an earlier run"));
     let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared);
     work.findings
@@ -194,7 +194,7 @@ fn merged(
     job: &str,
     keys: &FleetKeys,
 ) -> Result<Merged, Faults> {
-    let (by_vehicle, status) = sorted(files, days_in);
+    let (by_vehicle, status) = sort_files(files, days_in);
     let mut compared = Compared::of(keys, kept, &by_vehicle);
     let mut vehicles = Vec::with_capacity(by_vehicle.len());
     for (name, list) in by_vehicle {
@@ -313,7 +313,7 @@ fn done(
         .par_iter()
         .map(|path| {
             if progress.is_cancelled() {
-                return Err(stopped());
+                return Err(cancelled_fault());
             }
             let told = spec.digests.get(*path);
             let told = told.and_then(|d| kept.head(path, d));
@@ -368,7 +368,7 @@ fn told_replaced(paths: &[String]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "fleet-record-replaced",
-            few(paths),
+            list_few(paths),
             format!("{n} records changed since an earlier run and were processed again"),
             "nothing, if they were written again; records of another folder need other paths",
         )

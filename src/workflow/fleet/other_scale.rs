@@ -4,7 +4,7 @@
 use super::other_unit;
 use super::outcome::VehicleAnswer;
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 
@@ -87,7 +87,7 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
                  of the slope",
                 days.len(),
                 v.days.len(),
-                few(&names),
+                list_few(&names),
             ),
             "check the bridge factor, the gain and the filter of the logger; correct the records with [[correction]], or leave them out",
         )

@@ -2,7 +2,7 @@
 
 use super::outcome::VehicleAnswer;
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ pub(super) fn in_other_units(vehicles: &[VehicleAnswer], errors: &ErrorModel) ->
             "on {} of {} days ({}) readings and noise are {times:.0} times {word} than on the other days of the fleet, from {first} on. They are in another unit. Do not use the damage of these days",
             days.len(),
             v.days.len(),
-            few(&names),
+            list_few(&names),
         );
         let remedy = "state the unit in the columns of these records ([um/m], [mm/m], [m/m]), or correct them with [[correction]]";
         let found = Finding::new(Severity::Error, "fleet-day-unit", &v.name, message, remedy);

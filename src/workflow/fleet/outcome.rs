@@ -8,9 +8,9 @@ use super::gauge_history::{GainChange, GaugeHistory, moving_days};
 use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::outcome::Answer;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::series::rainflow::{DamageInterval, Ratio};
 use crate::units::number;
@@ -174,10 +174,10 @@ impl Answer for Fleet {
         format!(
             "{} of {} used, {} failed: {} h of {}.",
             count("done"),
-            counted(self.files.len(), "file"),
+            count_of(self.files.len(), "file"),
             count("failed"),
             number(hours),
-            counted(self.vehicles.len(), "vehicle")
+            count_of(self.vehicles.len(), "vehicle")
         )
     }
 }
@@ -439,7 +439,7 @@ fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
          load: {}. The intervals of the sums do not include this error",
         v.doubtful_days.len(),
         v.days.len(),
-        few(&shares)
+        list_few(&shares)
     );
     let remedy = "correct the causes in the findings of these records, or leave the records out";
     let found = Finding::new(Severity::Error, "damage-in-doubt", &v.name, message, remedy);

@@ -15,7 +15,7 @@ use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::stated_errors;
-use crate::workflow::recover::listed;
+use crate::workflow::recover::list_load_columns;
 
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
@@ -54,7 +54,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     {
         *z -= r;
     }
-    let listed = listed(job, s)?;
+    let listed = list_load_columns(job, s)?;
     let section = job.fleet.as_ref();
     let law = Law {
         slope: job.recover.slope,

@@ -1,7 +1,7 @@
 //! The records that are asked for: files as they are, folders with all records below them, patterns, lists of paths.
 
 use super::name::NameForm;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, Faults};
 use glob::{MatchOptions, Pattern, glob_with};
 use std::collections::BTreeSet;
@@ -73,7 +73,7 @@ fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
     let others: Vec<String> = others.iter().map(|p| p.display().to_string()).collect();
     let held = match others.is_empty() {
         true => "contains no file".to_owned(),
-        false => format!("contains {}", few(&others)),
+        false => format!("contains {}", list_few(&others)),
     };
     Err((
         format!(

@@ -13,13 +13,14 @@ mod text;
 mod trial;
 
 use crate::fe::from_results::{
-    Displacements, HOLD_ONCE, ReadOptions, repeated, solution_from_file, subcase_labels,
+    Displacements, HOLD_ONCE, ReadOptions, find_repeated_results, solution_from_file,
+    subcase_labels,
 };
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::model::{Model, Shell};
 use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
@@ -86,7 +87,7 @@ impl Answer for Proposal {
         format!(
             "{} proposes {}{left_out}{places}.",
             self.job,
-            counted(self.loads.len(), "load")
+            count_of(self.loads.len(), "load")
         )
     }
 }
@@ -268,7 +269,11 @@ fn read_strained(
         let read = work.stage("read results", |_| {
             ResultsFile::read(&bytes, &name).map(|f| {
                 let solution = solution_from_file(&deck.model, &name, &f, &options);
-                (solution, repeated(&[&f], None), subcase_labels(&f))
+                (
+                    solution,
+                    find_repeated_results(&[&f], None),
+                    subcase_labels(&f),
+                )
             })
         });
         let (solution, repeated, labels) =

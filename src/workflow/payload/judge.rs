@@ -4,11 +4,11 @@ use super::model::Parts;
 use super::stated::REFUTED;
 use super::task::Task;
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::words::short;
 use crate::host::work::Work;
 use crate::input_faults::identical::identical_readings;
-use crate::measured::zero::judged;
+use crate::measured::zero::subtract_and_test_zero;
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
@@ -191,7 +191,7 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
     let of_gauge = |g: usize| read.iter().map(|r| r.strain[g]).collect();
     let columns: Vec<Vec<f64>> = (0..gauges.len()).map(of_gauge).collect();
     work.findings.extend(identical_readings(gauges, &columns));
-    let kept = judged(work, measured, gauges, &read);
+    let kept = subtract_and_test_zero(work, measured, gauges, &read);
     let strained = runs.iter_mut().filter(|r| !r.strain.is_empty());
     for (run, kept) in strained.zip(kept) {
         run.strain = kept.strain;
@@ -261,7 +261,7 @@ pub(super) fn findings(
             Finding::new(
                 if most { Severity::Error } else { Severity::Warning },
                 "gauges-not-used",
-                few(&rejected),
+                list_few(&rejected),
                 "these gauges disagree with the others and are not used in the answer (reasons in by_gauge)",
                 "check their wiring, place and sign; if they are the majority, check the place of the payload and the model",
             )

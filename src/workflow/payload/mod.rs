@@ -111,7 +111,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     work.findings.extend(place);
     let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;
     work.findings.extend(mass);
-    let answer = answer::weighed(&task, parts, readings, &spec, weighing);
+    let answer = answer::report_payload(&task, parts, readings, &spec, weighing);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 

@@ -1,7 +1,7 @@
 //! Readings of the runs: net strain with its noise, changes of the wheel forces, known places.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
 use crate::host::work::Work;
@@ -117,14 +117,14 @@ pub(super) fn runs_of(
                 &*job.file,
                 job.runs.as_ref().map_or(0, |r| r.line),
                 "runs",
-                format!("no force of some wheel for {}", few(&without)),
+                format!("no force of some wheel for {}", list_few(&without)),
                 "add their rows and columns",
             )));
         }
         work.findings.push(Finding::new(
             Severity::Warning,
             "run-without-wheel-forces",
-            few(&without),
+            list_few(&without),
             "these runs do not contain the force of every wheel: all runs are weighed by strain on a flat floor",
             "add their rows and columns to the runs file",
         ));
@@ -168,7 +168,7 @@ fn same_runs(
     let row = |run: &PayloadRun| rows.iter().find(|row| row.run == run.run);
     let names = |some: &mut dyn Iterator<Item = &PayloadRun>| {
         let names: Vec<&str> = some.map(|r| r.run.as_str()).collect();
-        few(&names)
+        list_few(&names)
     };
     // The strain of a single record has the name of its file, which a runs file need not know.
     if read.len() > 1 && !read.iter().any(|run| row(run).is_some()) {
@@ -471,7 +471,7 @@ fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String
             Finding::new(
                 Severity::Warning,
                 "gauges-too-weak",
-                few(&weak),
+                list_few(&weak),
                 "the net reading does not exceed the noise in any run: these gauges do not measure the payload",
                 "leave them out, or add gauges where the payload strains the structure (`place`)",
             )

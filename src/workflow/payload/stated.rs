@@ -3,7 +3,7 @@
 use super::model::Parts;
 use super::task::Task;
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::words::short;
 use crate::host::work::Work;
@@ -58,7 +58,7 @@ pub(super) fn place_contradicted(
         Finding::new(
             severity,
             "payload-place-contradicted",
-            few(&names),
+            list_few(&names),
             format!(
                 "the readings contradict the stated place of the payload. With a free place, run {} weighs {} ± {} {force} at {}, {} \
                  {length}; at the stated place it weighs {} {force}",
@@ -122,7 +122,7 @@ pub(super) fn mass_contradicted(
         Finding::new(
             Severity::Error,
             "recorded-mass-contradicts",
-            few(&names),
+            list_few(&names),
             format!(
                 "the payload masses of `{}` contradict the readings: run {} weighs {} to {} {}, and the recorded payload is {} {}",
                 file.file.given,

@@ -161,7 +161,7 @@ fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) 
     for row in &task.kept_rows {
         spd::add_outer(&mut base, row, noise * noise);
     }
-    let found = condition::best(&kind.candidates, spec, layout, &base)?;
+    let found = condition::find_least_condition(&kind.candidates, spec, layout, &base)?;
     put_instead(kind, spec, layout, found.gauges)?;
     Some(found.least)
 }

@@ -31,7 +31,7 @@ use crate::strain_chain::{
     Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, mesh_errors,
     read_fields, without_strain,
 };
-use crate::workflow::recover::listed;
+use crate::workflow::recover::list_load_columns;
 
 /// Chooses gauges for the loads of a job from its candidates, with a certificate. If the job has installed gauges, it evaluates them as well.
 ///
@@ -70,10 +70,10 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);
-    let (sites, cleared) = region::allowed(job, fields, &common)?;
+    let (sites, cleared) = region::allowed_sites_and_rule(job, fields, &common)?;
     let k = cases.len();
     let scales = scales(work, &cases, &common);
-    let given = known::given(work, job)?;
+    let given = known::read_given_sensitivity(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
     task.cleared = cleared;
     task.keep(work)?;
@@ -130,11 +130,11 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let mesh_error = mesh_errors(&all, &s, &task.errors);
     work.findings
         .extend(coarse_at_gauges(&all, &mesh_error, fields.mesh_left()));
-    let listed = listed(job, &s)?;
+    let listed = list_load_columns(job, &s)?;
     let units = &listed.units[..k];
-    let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
+    let gauges = sheet::list_placed_gauges(&task, &chosen, &spec.prior, &quality, &validation);
     let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
-        Some(kind) => installed::installed(work, &task, &kind.candidates, &spec)?,
+        Some(kind) => installed::evaluate_installed(work, &task, &kind.candidates, &spec)?,
         None => None,
     };
     work.findings.extend(check_separability(&s.unconditioned()));

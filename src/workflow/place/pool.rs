@@ -8,7 +8,7 @@ use crate::model::{Model, ShellIx};
 use crate::placement::angle_variance::Form;
 use crate::placement::candidates::{Angles, Candidates, Scatter};
 use crate::placement::gradient::forms;
-use crate::placement::sites::{Site, bridges, wired};
+use crate::placement::sites::{Site, bridge_strain, bridges};
 use crate::sensitivity::LoadCaseOf;
 use crate::strain_chain::left_squared;
 use crate::units::MICROSTRAIN;
@@ -64,7 +64,7 @@ fn add_mesh_error(
     for (form, &site) in forms.iter_mut().zip(sites) {
         for (cases, left) in [errors, loads].into_iter().zip(left_squared()) {
             for (case, scale) in cases.iter().zip(scales) {
-                let Some(strain) = wired(bridge, case.case, site) else {
+                let Some(strain) = bridge_strain(bridge, case.case, site) else {
                     continue;
                 };
                 let [x, y, g] = strain.map(|v| v * scale / case.applied / MICROSTRAIN);

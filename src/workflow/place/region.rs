@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 /// # Errors
 /// No surface is left, or the deck lacks a SET, an element or a property.
 pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
-    allowed(job, fields, common).map(|(sites, _)| sites)
+    allowed_sites_and_rule(job, fields, common).map(|(sites, _)| sites)
 }
 
 /// Rule of `clear_of` that excludes the most shells, with the number of shells before and after it.
@@ -41,7 +41,7 @@ impl ClearRule {
 }
 
 /// [`allowed_sites`] with the rule of `clear_of` that excludes the most.
-pub(super) fn allowed(
+pub(super) fn allowed_sites_and_rule(
     job: &Job,
     fields: &Fields,
     common: &[ShellIx],

@@ -10,7 +10,7 @@ use crate::job::{Job, Keep, LoadRole, Optimality};
 use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::region::clear_of;
-use crate::placement::sites::{Site, wired};
+use crate::placement::sites::{Site, bridge_strain};
 use crate::placement::{Criterion, PlaceError, Spec};
 use crate::sensitivity::{LoadCaseOf, Sensitivity};
 use crate::strain_chain::{Fields, lay_gauges, left_in_reading, without_strain};
@@ -188,7 +188,7 @@ impl<'a> Task<'a> {
                 .iter()
                 .zip(&scales)
                 .map(|(c, f)| {
-                    let t = wired(Bridge::Quarter, c.case, site).unwrap_or_default();
+                    let t = bridge_strain(Bridge::Quarter, c.case, site).unwrap_or_default();
                     // Engineering shear g: 2 (g/2)^2 is its part of the square of the tensor.
                     [t[0], t[1], t[2] / std::f64::consts::SQRT_2]
                         .map(|v| v * f / c.applied / MICROSTRAIN)

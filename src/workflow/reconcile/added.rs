@@ -30,7 +30,7 @@ pub struct Added {
 pub(super) type Place = [String; 3];
 
 /// Converts places into the changes by one effect.
-pub(super) fn added(effect: &str, places: Vec<Place>) -> Vec<Added> {
+pub(super) fn list_changes(effect: &str, places: Vec<Place>) -> Vec<Added> {
     let one = |[path, old, new]: Place| Added {
         effect: effect.to_owned(),
         path,
@@ -57,7 +57,7 @@ pub(super) fn added_to_strain(
         extended,
         deck,
     };
-    let of = |e: &NamedEffect| added(&e.id, held.places(e));
+    let of = |e: &NamedEffect| list_changes(&e.id, held.places(e));
     effects.iter().flat_map(of).collect()
 }
 

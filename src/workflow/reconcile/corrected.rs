@@ -122,7 +122,7 @@ pub(super) fn corrections(
 }
 
 /// Returns the corrections of gauges of a deck with a wrong angle. Rewritten readings can't contain them.
-pub(super) fn turned(effects: &[NamedEffect], has_deck: bool) -> Vec<Corrected> {
+pub(super) fn angle_corrections(effects: &[NamedEffect], has_deck: bool) -> Vec<Corrected> {
     let lists = effects.iter().filter_map(|e| match &e.extension {
         Extension::Channels(list) if has_deck => Some(list),
         _ => None,

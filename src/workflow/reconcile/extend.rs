@@ -1,6 +1,6 @@
 //! Changes by the named effects of strain: readings, S, loads of the runs, the deck.
 
-use super::corrected::{Weight, corrections, turned};
+use super::corrected::{Weight, angle_corrections, corrections};
 use super::deck_frame::DeckFrame;
 use super::described::effect_of;
 use super::extended::{ExtendedModel, ExtendedRuns, ExtendedS};
@@ -72,7 +72,7 @@ fn is_edit(job: &Job, id: &str) -> bool {
 ///
 /// # Errors
 /// A job that can't be read again.
-pub(super) fn extended(
+pub(super) fn extend_model(
     job: &Job,
     work: &mut Work,
     frame: &StrainFrame,
@@ -133,7 +133,7 @@ pub(super) fn extended(
         None => (
             corrected_readings(frame, effects)
                 .map(|values| less_gains(values, frame, effects, weights.as_deref())),
-            turned(effects, deck.is_some()),
+            angle_corrections(effects, deck.is_some()),
         ),
     };
     Ok(Some(ExtendedModel {

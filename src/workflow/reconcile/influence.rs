@@ -6,7 +6,7 @@ use crate::fe::{
 };
 use crate::gauge::{Gauge, reading};
 use crate::host::fault::{Fault, Faults};
-use crate::host::work::stopped;
+use crate::host::work::cancelled_fault;
 use crate::job::Job;
 use crate::model::{GridIx, Model};
 use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
@@ -114,7 +114,7 @@ fn until(stop: &Stop) -> SolveOptions {
 pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     match e {
-        FeError::Stopped => Faults::from(stopped()),
+        FeError::Stopped => Faults::from(cancelled_fault()),
         e => Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)),
     }
 }

@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{HoldOut, Job, Measured, Reference};
-use crate::measured::zero::{Zeroed, judged, read_zeroed, some_left};
+use crate::measured::zero::{Zeroed, read_zeroed, some_left, subtract_and_test_zero};
 use crate::reconcile::Observations;
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
@@ -107,7 +107,7 @@ fn judge(
             noise_factor: *noise_factor,
         })
         .collect();
-    let kept = judged(work, measured, &observations.channels, &readings);
+    let kept = subtract_and_test_zero(work, measured, &observations.channels, &readings);
     some_left(file, &kept)?;
     let strain = kept.iter().flat_map(|r| &r.strain);
     for (v, kept) in observations.values.iter_mut().zip(strain) {

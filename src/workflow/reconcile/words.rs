@@ -2,7 +2,7 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled};
 use crate::estimate::NORMAL_95;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::reconcile::Verdict;
 use crate::units::{number, plus_minus};
 
@@ -157,7 +157,7 @@ impl Reconciled {
             0 => String::new(),
             _ => format!(
                 "; {} {} off by up to {} microstrain, and now by up to {} microstrain",
-                few(&names[..names.len().min(MOST)]),
+                list_few(&names[..names.len().min(MOST)]),
                 if names.len() == 1 { "was" } else { "were" },
                 number(residuals(false)),
                 number(residuals(true))

@@ -59,7 +59,7 @@ pub(super) struct Rested {
 /// # Errors
 /// A job without a model that could vibrate; a band that does not fit the sampling rate; gauges that don't determine the loads in the band; a record
 /// that is too long.
-pub(super) fn rested(
+pub(super) fn remove_vibration(
     work: &mut Work,
     task: &Task,
     record: &Record,

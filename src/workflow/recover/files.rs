@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 20_000;
 ///
 /// # Errors
 /// A file asked for that this build can't write.
-pub(super) fn wanted(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
+pub(super) fn select_load_files(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
     let Some(files) = &job.recover.files else {
         let list = LoadFile::ALL.iter().map(|f| f.1);
         let few = list.filter(|f| {

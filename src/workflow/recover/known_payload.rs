@@ -2,7 +2,7 @@
 //! `[sensitivity] signatures.payload`; from a deck that of the job's nuisance loads at `[payload] grid`.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::payload_signature::{COLUMNS, note_unread};
@@ -86,7 +86,7 @@ pub(super) fn take_out(
         work.findings.push(Finding::new(
             Severity::Warning,
             "payload-unknown",
-            few(&unknown),
+            list_few(&unknown),
             "the runs file states no payload for these runs: none is assumed",
             "state its mass (0 without a payload) and its place",
         ));

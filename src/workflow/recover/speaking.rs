@@ -1,7 +1,7 @@
 //! The gauges of a record that read, and S of them.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::correct::channel_of;
@@ -81,7 +81,7 @@ pub(crate) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding>
         Finding::new(
             Severity::Warning,
             "gauge-silent",
-            few(names),
+            list_few(names),
             format!(
                 "these gauges have {what}. The loads are computed from the other gauges, with wider intervals"
             ),

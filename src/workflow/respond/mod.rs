@@ -9,7 +9,7 @@ pub use gauges::{Check, GaugeCheck};
 pub use outcome::{Element, ElementFatigue, Field, Responded};
 
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits};
@@ -264,7 +264,7 @@ fn say_findings(
             Finding::new(
                 Severity::Warning,
                 "hot-at-a-joint",
-                few(&at_joint),
+                list_few(&at_joint),
                 "these elements touch a rigid element: their stress is the stress of the idealised joint and grows as the mesh is refined",
                 "assess the joint by its forces, or by elements a plate thickness away",
             )

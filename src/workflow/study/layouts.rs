@@ -1,7 +1,7 @@
 //! Layouts of a study: the gauges given, random ones, the best ones.
 
 use super::pool::{Prepared, on_model};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::GaugeSpec;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
@@ -94,7 +94,7 @@ pub(super) fn of(
         work.findings.push(Finding::new(
             Severity::Warning,
             "layouts-skipped",
-            few(&skipped),
+            list_few(&skipped),
             format!(
                 "the job has {} gauges: these layouts need more",
                 prepared.pool.len()

@@ -7,7 +7,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{Job, Study};
 use crate::measured::runs_file::{RunRow, read_runs};
@@ -55,7 +55,7 @@ impl Answer for Studied {
                 "{} % ({} {}, {})",
                 number(100.0 * error),
                 row.layout,
-                counted(row.gauges, "gauge"),
+                count_of(row.gauges, "gauge"),
                 row.error
             )
         };

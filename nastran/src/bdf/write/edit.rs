@@ -1,6 +1,6 @@
 //! Edits of a deck: cards replaced, removed, added.
 
-use super::super::continuation_name::bare;
+use super::super::continuation_name::strip_marks;
 use super::super::deck::Deck;
 use super::super::line::{Line, Lines, trim, without_comment};
 use super::super::source::Position;
@@ -193,7 +193,7 @@ fn card_lines(deck: &Deck, at: Place) -> Result<Vec<(usize, usize)>, EditError> 
     let mut spans = vec![(first.start, first.end)];
     for line in lines.filter(|l| !is_empty(l)) {
         let cut = cut(without_comment(line.text));
-        let (wanted, have) = (bare(cut.head), bare(label));
+        let (wanted, have) = (strip_marks(cut.head), strip_marks(label));
         let named = matches!(label.first(), Some(b'+' | b'*'));
         let fits = wanted.is_empty() || have.is_empty() || wanted == have || !named;
         match cut.lead {

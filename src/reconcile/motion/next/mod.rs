@@ -14,10 +14,11 @@ mod worth;
 use self::known::Known;
 use self::measurement::{Measurement, measurements};
 use self::view::{View, view};
-use self::worth::expected;
+use self::worth::expected_evidence;
 use super::fitted::MotionFit;
 use super::found::other_sets;
 use super::scorer::MotionScorer;
+use crate::finding::capital;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::search::{Scored, Scorer};
 
@@ -161,7 +162,7 @@ fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed
             let (Some(truth), Some(other)) = (&seen[a], &seen[b]) else {
                 return 0.0;
             };
-            expected(&known[b], other, truth).unwrap_or(0.0)
+            expected_evidence(&known[b], other, truth).unwrap_or(0.0)
         };
         let worth: Vec<f64> = (1..known.len())
             .map(|k| between(0, k).min(between(k, 0)))

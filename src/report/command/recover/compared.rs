@@ -5,7 +5,7 @@ use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::figure::{CrossPlot, cross};
 use crate::report::page::{Block, Page, Section, number, table_section};
-use crate::units::{fixed, percent};
+use crate::units::{format_fixed, percent};
 use crate::workflow::recover::{Comparison, LoadComparison, Recovered, Sections};
 use std::io::Write;
 
@@ -172,9 +172,9 @@ fn comparison_section(comparison: &Comparison) -> Section {
     let shift = comparison.shift.as_ref().map(|s| {
         let half = s.half_width_s.map_or_else(
             || ", as stated".to_owned(),
-            |h| format!(" ± {}", fixed(h, 5)),
+            |h| format!(" ± {}", format_fixed(h, 5)),
         );
-        let shift = fixed(s.shift_s, 5);
+        let shift = format_fixed(s.shift_s, 5);
         Block::Text(format!("Time shift of {}: {shift}{half} s.", s.file))
     });
     let mut blocks: Vec<Block> = shift.into_iter().collect();

@@ -1,6 +1,6 @@
 //! One data set 58: its head, and where its numbers are.
 
-use super::fault::broken;
+use super::fault::read_error;
 use crate::series::error::SeriesError;
 use crate::series::record::column::{Column, seconds_in};
 use std::collections::BTreeSet;
@@ -109,7 +109,7 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
         }
         // To the end of this data set.
         if !lines.by_ref().any(|l| l.trim_ascii() == b"-1") {
-            return Err(broken("the file is cut off: a data set has no end"));
+            return Err(read_error("the file is cut off: a data set has no end"));
         }
     }
     // Programs differ in what tells their channels apart: the first of the titles that tells most of them; a number where it is there twice.
@@ -175,14 +175,14 @@ fn history(
     if let Some(n) = bytes_of_data {
         lines.at = at.saturating_add(n);
         if lines.at > lines.bytes.len() {
-            return Err(broken("the file is cut off"));
+            return Err(read_error("the file is cut off"));
         }
     }
     let function = whole(5, 0, 5).unwrap_or(-1);
     if !RESPONSES.contains(&function) || whole(7, 0, 10) != Some(TIME) {
         return Ok(None);
     }
-    let bad = |what: &str| broken(format!("data set {}: {what}", before + 1));
+    let bad = |what: &str| read_error(format!("data set {}: {what}", before + 1));
     let double = match whole(6, 0, 10) {
         Some(2) => false,
         Some(4) => true,

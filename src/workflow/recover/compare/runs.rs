@@ -2,7 +2,7 @@
 
 use super::{Comparison, Differences, POINTS, Pair};
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{HoldOut, Job, Runs};
@@ -141,7 +141,7 @@ fn not_compared(runs: &[&str]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "calibration-runs-not-compared",
-            few(runs),
+            list_few(runs),
             "S was calibrated with the recorded loads of these runs. Their recovered loads therefore agree, and they are not compared",
             "leave some runs out of the calibration ([calibration] runs, or [measured] hold_out) and compare these",
         )
