@@ -104,7 +104,7 @@ impl RigidStructure<'_> {
         }
     }
 
-    /// Returns springs and bushes to ground, and to grids that stand for ground.
+    /// Returns springs and bushes to ground, and to grids that represent ground.
     fn springs(&self) -> Vec<Ground> {
         let mut all = grounds(self.model, self.reduction);
         all.extend(to_anchors(self.model, self.reduction));

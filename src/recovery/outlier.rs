@@ -246,8 +246,8 @@ impl Suspect {
     }
 }
 
-/// The gauge whose error stands out most. An error shifts the loads, and their covariance with them, which hides a part of it: the largest ones
-/// are weighed with the loads that the corrected reading gives.
+/// The gauge with the largest error relative to its uncertainty. An error shifts the loads, and their covariance with them, which hides a part of it:
+/// the largest ones are weighed with the loads that the corrected reading gives.
 fn suspect(judged: &Judged) -> Option<Suspect> {
     let joint = &judged.joint;
     let mut order: Vec<&GaugeTest> = joint.gauges.iter().collect();

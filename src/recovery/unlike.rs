@@ -118,7 +118,7 @@ pub fn estimate_loosely(
     together
 }
 
-/// With the least excess that explains what is left of a run.
+/// With the least excess that explains the residual of a run.
 fn explained(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
     let is = |more: f64| {
         let run = with(more).0;

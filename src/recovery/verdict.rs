@@ -394,7 +394,7 @@ fn missing_load_remedy(patterns: usize) -> String {
     }
 }
 
-/// Number of patterns among the residuals of the runs that stand out of noise: singular values above the largest one of pure noise.
+/// Number of patterns above noise among the residuals of the runs: singular values above the largest one of pure noise.
 fn patterns(n: usize, runs: &[RunEstimate]) -> usize {
     let m = runs.len();
     let std = |g: usize, r: &RunEstimate| {

@@ -4,8 +4,8 @@ use super::spectrum::Fourier;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a
-/// sinc under a Lanczos window; beyond the ends the end samples stand.
+/// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a sinc under a
+/// Lanczos window; beyond the ends the end samples are repeated.
 pub fn remove_lateness(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
     /// Samples to either side: signals up to three quarters of half the rate pass to better than a per mille.
     const SIDE: isize = 12;

@@ -24,9 +24,9 @@ struct Resultant {
 
 /// Refuses loads whose subcase in the deck contains another load: the strain would belong to the other load.
 ///
-/// For a load at a grid, force and moment about the grid are compared, so that a couple may stand for a moment. Pressures, accelerations,
-/// temperatures and enforced displacements in its subcase are refused. A load set is compared with the LOAD of the subcase. A combination
-/// is the sum of its subcases. A subcase whose label differs in the results is not compared: the results are of another deck.
+/// For a load at a grid, force and moment about the grid are compared, so that a couple may represent a moment. Pressures, accelerations,
+/// temperatures and enforced displacements in its subcase are refused. A load set is compared with the LOAD of the subcase. A combination is the sum
+/// of its subcases. A subcase whose label differs in the results is not compared: the results are of another deck.
 ///
 /// # Errors
 /// Every such load.

@@ -1,4 +1,4 @@
-//! Whether a fitted model leaves more than its sensors do: then something is missing in it, and its parameters stand in for that.
+//! Whether the residual of a fitted model exceeds the errors of its sensors: then an effect is missing, and the parameters compensate for it.
 
 use super::adjustment::Adjustment;
 use super::layout::{Measures, Vehicle};

@@ -162,7 +162,7 @@ fn scene(placed: &Placed) -> Scene<'_> {
     scene_of(&placed.job, &placed.fields, marks)
 }
 
-/// Columns of gauges.csv; `L` stands for the job's length.
+/// Columns of gauges.csv; `L` is the job's length.
 const GAUGES: [(&str, &str); 16] = [
     ("name", ""),
     ("element", ""),

@@ -192,7 +192,7 @@ fn where_section(found: &MotionPart) -> Section {
     Section::new("Largest gaps", blocks)
 }
 
-/// Effects with their sizes, how sure they are together, and where they stand in the extended job.
+/// Effects with their sizes, their joint probability, and their places in the extended job.
 fn added_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
     let attempt = &found.outcome.best_attempt;
     if attempt.is_empty() {

@@ -105,7 +105,7 @@ fn within(all: Vec<FindingLines>, limit: usize, width: usize) -> Vec<FindingLine
     shown
 }
 
-/// The line that counts what is left out.
+/// The line that counts the omitted findings.
 fn left_out_line(left_out: &[FindingLines], width: usize) -> FindingLines {
     let kinds = [
         (Severity::Info, "note"),

@@ -63,7 +63,7 @@ pub fn lay_out(console: &Console, texts: &Texts, room: &Room) -> Layout {
 
 /// Returns a text in ASCII as far as signs of numbers and units go.
 pub fn ascii(text: &str) -> String {
-    /// Signs and what stands for them.
+    /// Signs and their ASCII replacements.
     const SIGNS: [(&str, &str); 9] = [
         ("±", "+-"),
         ("µ", "u"),

@@ -1,4 +1,4 @@
-//! A table in aligned columns. Short rows stand side by side in blocks, so that many of them fit.
+//! A table in aligned columns. Short rows are next to each other in blocks, so that many of them fit.
 
 use super::content::{Console, ConsoleTable};
 use super::wrap::{cut_to_width, wrap_lines};

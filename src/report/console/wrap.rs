@@ -39,7 +39,7 @@ pub fn wrap_lines(text: &str, width: usize, indent: usize) -> Vec<String> {
     lines
 }
 
-/// Returns a text of at most `width` characters; three dots stand for what is left out.
+/// Returns a text of at most `width` characters; three dots mark an omitted end.
 pub(super) fn cut_to_width(text: &str, width: usize) -> String {
     match text.chars().count() <= width {
         true => text.to_owned(),

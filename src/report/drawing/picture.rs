@@ -64,7 +64,7 @@ pub(in crate::report) struct Word {
     pub(in crate::report) upwards: bool,
 }
 
-/// Grey of what stands back.
+/// Grey of the background.
 pub(in crate::report) const FAINT: &str = "#9aa7b5";
 /// Nearly black.
 pub(in crate::report) const INK: &str = "#1c2530";

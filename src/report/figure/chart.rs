@@ -36,7 +36,7 @@ impl Render for Figure {
     }
 }
 
-/// Data of a figure inside the page. `<` can only stand inside a string there and is written as its code, so that nothing ends early.
+/// Data of a figure inside the page. `<` can only be inside a string there and is written as its code, so that nothing ends early.
 pub(in crate::report) fn embed_data(data: &Value) -> Markup {
     let text = data.to_string().replace('<', "\\u003c");
     html! { script type="application/json" { (PreEscaped(text)) } }

@@ -1,4 +1,4 @@
-//! Figures of a page: plain numbers in, what the script of the page draws as SVG out. The script and its data stand in the page: no network.
+//! Figures of a page: plain numbers in, what the script of the page draws as SVG out. The script and its data are in the page: no network.
 
 mod agreement;
 mod chart;

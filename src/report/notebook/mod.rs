@@ -114,7 +114,7 @@ impl Room {
         }
     }
 
-    /// A picture with its title and caption; `None` where it is too large for what is left.
+    /// A picture with its title and caption; `None` if it is too large for the remaining space.
     fn picture(&mut self, p: &Picture, label: &str) -> Option<Markup> {
         let svg = to_svg(p, label);
         self.bytes = self.bytes.checked_sub(svg.0.len())?;

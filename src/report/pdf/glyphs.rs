@@ -19,8 +19,8 @@ pub(super) fn fonts() -> &'static [Font] {
     })
 }
 
-/// The text as it can stand on paper: a character without a font is written as its number, `[U+4E2D]`, and so is one that would be invisible or turn
-/// the direction of reading. Nobody signs for an empty box.
+/// The text as it can be printed: a character without a font is written as its number, `[U+4E2D]`, and so is one that would be invisible or turn the
+/// direction of reading. Nobody signs for an empty box.
 pub(super) fn printable(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

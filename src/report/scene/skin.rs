@@ -24,7 +24,7 @@ pub(super) enum Finest {
     FewFields,
 }
 
-/// Faces by property, coarsened so that all together stay below a limit: small parts whole, large ones with what is left.
+/// Faces by property, coarsened so that all together stay below a limit: small parts unchanged, large ones with the remaining triangles.
 pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
     let limit = match finest {
         Finest::Always => MOST_TRIANGLES,

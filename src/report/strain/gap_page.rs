@@ -126,7 +126,7 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     )
 }
 
-/// The named effects (or best attempt) with their sizes, how sure they are together, and where they stand in the extended model.
+/// The named effects (or best attempt) with their sizes, their joint probability, and their places in the extended model.
 fn added_section(outcome: &Outcome, added: &[Vec<String>]) -> Section {
     if outcome.best_attempt.is_empty() {
         let nothing = Block::Text("No effect is identified.".into());

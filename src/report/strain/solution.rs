@@ -65,7 +65,7 @@ pub fn solution_page(
     Page::new(title, "Solution of the built-in solver", findings, sections)
 }
 
-/// Grids shown of a support: the rest stands in `result.json`.
+/// Grids shown of a support: `result.json` contains the others.
 const GRIDS_SHOWN: usize = 12;
 
 /// Resultants of what acts and of the reactions, and the grids that carry most.

@@ -385,7 +385,7 @@ fn rises(
 }
 
 /// A number of mean 0 and variance 1 that belongs to a sample by its loads: the sum of four even ones, much like a normal one up to three standard
-/// deviations. The same wherever a record is cut, and whatever stands before it.
+/// deviations. The result does not depend on the cuts of a record or on the samples before it.
 #[inline(always)]
 fn white(mark: u64) -> f64 {
     let bits = mix_bits(mark);

@@ -130,7 +130,7 @@ fn is_fixed(name: &str) -> bool {
     name.starts_with(['/', '\\', '$', '%']) || name.contains(':')
 }
 
-/// Paths that a name may stand for.
+/// Possible paths of a name.
 fn names(name: &str, first: &str, includer: &str) -> Vec<PathBuf> {
     let symbol = name
         .split_once(':')

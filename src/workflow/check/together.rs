@@ -27,7 +27,7 @@ fn ambiguous(found: &Checked) -> Vec<Finding> {
     findings
 }
 
-/// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry stands for it.
+/// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry replaces it.
 pub(super) fn compare(work: &mut Work, found: &mut Checked) {
     work.findings.extend(ambiguous(found));
     let has_mesh = |d: &DeckEntry| d.model.as_ref().is_some_and(|m| !m.grids.is_empty());

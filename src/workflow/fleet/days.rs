@@ -17,9 +17,9 @@ pub enum DayOrder {
     /// By numbers, from left to right.
     #[default]
     Numbers,
-    /// By dates whose day stands before the month.
+    /// By dates with the day before the month.
     DayFirst,
-    /// By dates whose month stands before the day.
+    /// By dates with the month before the day.
     MonthFirst,
 }
 

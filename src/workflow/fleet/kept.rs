@@ -231,7 +231,7 @@ impl KeptDays {
         kept
     }
 
-    /// Keeps what a run is asked for, before it begins: a merge knows by it what is missing. Where it stands.
+    /// Stores the request of a run before it begins, so that a merge can report missing results. Returns the path.
     ///
     /// # Errors
     /// Those of the system.

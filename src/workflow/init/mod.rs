@@ -54,7 +54,7 @@ pub struct Proposal {
     /// The job itself.
     #[serde(skip)]
     pub text: String,
-    /// Where it is to stand.
+    /// Path of the proposed job.
     #[serde(skip)]
     pub path: PathBuf,
     /// The command that it is written for, where that is not `place`.
@@ -202,7 +202,7 @@ fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
     zones
 }
 
-/// Where the job is to stand.
+/// Path of the proposed job.
 ///
 /// # Errors
 /// A job that is there already.

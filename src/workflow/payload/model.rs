@@ -111,7 +111,7 @@ struct Place {
 
 /// Weight down; its shift along b turns about c, along c against b.
 const SIGNS: [f64; 3] = [-1.0, -1.0, 1.0];
-/// Part of `p = (F, F dx, F dy)` that each of [`Place::parts`] stands for.
+/// Part of `p = (F, F dx, F dy)` of each of [`Place::parts`].
 const SHIFT_OF: [usize; 3] = [0, 2, 1];
 
 impl Place {

@@ -202,8 +202,8 @@ fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
     }
 }
 
-/// Gauges whose place has to be kept better than it will be: than the stated tolerance where that is finer than a rule, else than a rule.
-/// Budgets and tolerance are in `unit`; the remedy is what is left to do.
+/// Gauges whose place has to be kept better than it will be: than the stated tolerance where that is finer than a rule, else than a rule. Budgets and
+/// tolerance are in `unit`; the remedy follows from both.
 fn check_budgets<'a>(
     budgets: impl Iterator<Item = (&'a str, Option<f64>)>,
     tolerance: f64,

@@ -29,7 +29,7 @@ pub(super) struct DeckFrame {
     pub(super) fields: Fields,
     pub(super) gauges: Vec<Gauge>,
     pub(super) columns: Vec<UnitLoad>,
-    /// Influence on the mesh as it stands, by the built-in solver.
+    /// Influence on the mesh of the deck, by the built-in solver.
     pub(super) base: Vec<f64>,
     /// Small regions whose stiffness is tried.
     pub(super) regions: Vec<Region>,

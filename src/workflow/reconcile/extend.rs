@@ -194,7 +194,7 @@ fn less_gains(
     values
 }
 
-/// Where a payload that stands elsewhere than noted is moved.
+/// Place in the extended model in which the recorded position of the payload is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Moved {
     /// Nowhere.

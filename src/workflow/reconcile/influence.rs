@@ -14,7 +14,7 @@ use crate::stop::Stop;
 use crate::strain_chain::solved::support_of_job;
 use crate::units::MICROSTRAIN;
 
-/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
+/// Influence of the columns, `n_gauges x n_columns`, zero for columns without a load.
 pub(super) fn influence(
     job: &Job,
     model: &Model,
@@ -27,7 +27,7 @@ pub(super) fn influence(
     out
 }
 
-/// Sets the columns of an influence matrix that stand for nothing to zero.
+/// Sets the columns of an influence matrix without a load to zero.
 pub(super) fn blank_payload(job: &Job, model: &Model, influence: &mut [f64], n_columns: usize) {
     let blank = if payload_grid(job, model).is_some() {
         1

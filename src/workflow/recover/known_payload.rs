@@ -12,10 +12,10 @@ use crate::measured::runs_file::{RunRow, read_runs};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
 
-/// Loads that are known, by run: number of the load, value in job units. What the recovery finds of them is what is left besides.
+/// Loads that are known, by run: number of the load, value in job units. The recovery determines the remainder of these loads.
 pub(super) type KnownLoads = Vec<Vec<(usize, f64)>>;
 
-/// Takes the strain of the known payload from the readings of every run; what is left is that of the loads.
+/// Takes the strain of the known payload from the readings of every run; the remaining strain is the strain of the loads.
 ///
 /// `strain = m (b0 + dx b_dx + dy b_dy + dx dy b_dxdy)`, `dx`, `dy` from the nominal place of `[payload]`.
 ///

@@ -147,7 +147,7 @@ impl Edits {
     ///
     /// # Errors
     ///
-    /// The card is replicated, or its lines do not stand together.
+    /// The card is replicated, or its lines are not consecutive.
     pub fn remove_card(&mut self, deck: &Deck, at: Place) -> Result<(), EditError> {
         self.replace_card(deck, at, "")
     }

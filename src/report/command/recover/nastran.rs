@@ -74,7 +74,7 @@ fn unit_card(model: Option<&Model>, load: &JobLoad, sid: u32) -> String {
     load_card(model, &card, component)
 }
 
-/// Text that can stand in a comment or a label.
+/// Text for a comment or a label.
 fn plain(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_control() && *c != '$')

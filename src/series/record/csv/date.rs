@@ -74,7 +74,7 @@ fn days_of(date: &str) -> Option<i64> {
     is_date.then(|| days(year, month, day))
 }
 
-/// Hours, minutes and seconds (none stated: 0), of twelve hours where `AM` or `PM` stands behind them.
+/// Hours, minutes and seconds (none stated: 0), of twelve hours if `AM` or `PM` follows them.
 fn seconds_of_day(time: &str) -> Option<f64> {
     let time = time.trim();
     let half = time

@@ -250,7 +250,7 @@ fn decimals(field: &[u8]) -> usize {
     usize::try_from(after as i32 - power).unwrap_or(0)
 }
 
-/// The lines in which header and first rows stand, empty ones and comments left out.
+/// The lines of header and first rows, without empty lines and comments.
 fn first_lines(encoding: Encoding, bytes: &[u8], begin: usize) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut at = begin;
