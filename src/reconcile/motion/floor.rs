@@ -77,8 +77,8 @@ fn even(d: &Design) -> Whitener {
     Whitener::of(&vec![s; d.f_hz.len()], n)
 }
 
-/// Floors by equation of a design `judged`, its parameters `values` found by [`fit_without_nuisance`] on the designs `learnt` in the `free` ones, effects
-/// `parts` in the model.
+/// Floors by equation of a design `judged`, its parameters `values` found by [`fit_without_nuisance`] on the designs `learnt` in the `free` ones,
+/// effects `parts` in the model.
 ///
 /// A tolerance of one sd leaves column - A beta there, beta the parameters that take its column on the learnt designs: what the
 /// parameters take up is no gap. Several tolerances make a quadratic form of normal deviates; its quantile is that of the chi-square
