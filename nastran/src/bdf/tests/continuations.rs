@@ -107,7 +107,7 @@ fn the_last_of_several_continuations_is_missed_too() {
     for between in ["", "GRID,99\n"] {
         let found = shown(&super::bulk(&[head, between, rest].concat()));
         assert!(
-            found.len() == 1 && found[0].contains("that no line has: R2"),
+            found.len() == 1 && found[0].contains("that does not exist: R2"),
             "{between}: {found:?}"
         );
     }
