@@ -174,7 +174,7 @@ impl MotionFault {
         }
     }
 
-    /// Describes it: "`f_wheel` has the opposite sign".
+    /// Describes it: "`f_wheel` has reversed sign".
     fn describe(&self, channels: &[MotionChannel]) -> String {
         let own = self.channels();
         let quoted: Vec<String> = names(own, channels)

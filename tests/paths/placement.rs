@@ -303,7 +303,7 @@ fn a_layout_for_the_worst_loss_keeps_more_after_it_and_the_curve_falls() {
     assert_eq!(curve.len(), 4);
     assert_eq!(
         curve[0]["worst_loss"], 0.0,
-        "nine gauges for nine loads: have no redundancy"
+        "nine gauges for nine loads: nothing may fail"
     );
     for w in curve.windows(2) {
         let (a, b) = (sigmas(&w[0]["load_sigma"]), sigmas(&w[1]["load_sigma"]));

@@ -20,7 +20,7 @@ const STROKE: f64 = 2.2;
 const LARGEST: f64 = 5.0;
 
 /// Caption of a drawing of gauges.
-pub(in crate::report) const STROKES: &str = "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
+pub(in crate::report) const STROKES: &str = "Strokes are along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
 
 /// A direction to look along: which axes run right and up, by sign, and its name.
 struct View {

@@ -15,7 +15,7 @@ use serde::Serialize;
 pub struct Responded {
     /// The elements asked for, or the hottest, the hottest first.
     pub elements: Vec<Element>,
-    /// Elements hotter than all that share a grid with them.
+    /// Elements with a higher stress than all elements that share a grid with them.
     pub hot_spots: Vec<Element>,
     /// Pseudo-damage of these elements over the history of loads, where the job states a slope.
     #[serde(skip_serializing_if = "Vec::is_empty")]
