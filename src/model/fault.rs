@@ -230,7 +230,7 @@ impl fmt::Display for FaultKind {
             ZeroLength { length } => write!(f, "the length is {length:e}"),
             Degenerate { what } => write!(f, "the element has no {what}"),
             Orientation => write!(f, "the orientation vector has no part across the element"),
-            CollinearFrame => write!(f, "points A, B, C lie on a line"),
+            CollinearFrame => write!(f, "points A, B, C are on a line"),
             FrameCycle => write!(f, "the system is defined through others by its own id"),
             SumCycle { sets } => {
                 write!(f, "the sets name each other in a circle: ")?;
