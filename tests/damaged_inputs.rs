@@ -223,7 +223,7 @@ fn init_recommends_place_where_the_deck_has_shells_that_tell_its_loads_alone() {
         files,
         loads: &[],
         shells: None,
-        says: "there is no surface for gauges",
+        says: "There is no surface for gauges",
     };
     let buckling = [
         "msc_buckling_tabs/sbuckl2a.bdf",
