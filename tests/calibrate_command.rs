@@ -458,7 +458,8 @@ fn strip_job(share: f64) -> String {
 /// A job of the strip with gauges off their drawing.
 fn strip_job_with(offsets: &[[f64; 3]; 6]) -> String {
     use std::fmt::Write;
-    let mut job = String::from("units = \"mm-t-s\"\n[model]\ndeck = \"strip.bdf\"\n");
+    let mut job =
+        String::from("units = \"mm-t-s\"\n[model]\ndeck = \"strip.bdf\"\nmesh_error = false\n");
     for (name, component) in [
         ("bend", "FZ"),
         ("side", "MZ"),

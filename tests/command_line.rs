@@ -488,3 +488,121 @@ fn cleans_with_yes_alone(command: &[&str]) {
     assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
     assert!(!kept.exists());
 }
+
+#[test]
+fn a_terminal_without_utf_8_gets_ascii_and_files_and_json_stay_utf_8() {
+    let frame = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
+    let dir = folder("ascii");
+    let run = |command: &str, json: bool| {
+        let out = dir.join(command);
+        let job = frame.join("place.toml");
+        let mut words = vec![
+            command,
+            job.to_str().unwrap(),
+            "--out",
+            out.to_str().unwrap(),
+            "-v",
+        ];
+        words.extend(json.then_some("--json"));
+        let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+            .args(words)
+            .env("LC_ALL", "C")
+            .env("TERM", "dumb")
+            .output()
+            .unwrap();
+        assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+        (text(&done.stdout), text(&done.stderr))
+    };
+    for command in ["sensitivity", "place"] {
+        let (out, err) = run(command, false);
+        assert!(out.is_ascii() && err.is_ascii(), "{out}\n{err}");
+    }
+    let (json, _) = run("place", true);
+    let written = std::fs::read_to_string(dir.join("place/result.json")).unwrap();
+    let summary = |json: &str| -> serde_json::Value {
+        serde_json::from_str::<serde_json::Value>(json).unwrap()["summary"].clone()
+    };
+    assert_eq!(summary(&json), summary(&written));
+    assert!(summary(&json).as_str().unwrap().contains('±'));
+}
+
+#[test]
+fn init_leaves_a_job_that_is_there() {
+    let frame = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame/frame.bdf");
+    let dir = folder("init_twice");
+    let job = dir.join("job.toml");
+    let gauges = dir.join("gauges.csv");
+    std::fs::write(&job, "units = \"mm-t-s\"\n").unwrap();
+    std::fs::write(&gauges, "name\nG1\n").unwrap();
+    let done = strainbridge(&[
+        "init",
+        frame.to_str().unwrap(),
+        "--out",
+        dir.to_str().unwrap(),
+    ]);
+    assert_eq!(done.status.code(), Some(2));
+    assert!(
+        text(&done.stderr).contains("not overwritten"),
+        "{}",
+        text(&done.stderr)
+    );
+    assert_eq!(
+        std::fs::read_to_string(&job).unwrap(),
+        "units = \"mm-t-s\"\n"
+    );
+    std::fs::remove_file(&job).unwrap();
+    let done = strainbridge(&[
+        "init",
+        frame.to_str().unwrap(),
+        "--out",
+        dir.to_str().unwrap(),
+    ]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert_eq!(std::fs::read_to_string(&gauges).unwrap(), "name\nG1\n");
+}
+
+/// A folder unpacked from an archive of Windows: its name has the letter of code page 1252 as a single byte.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_name_that_is_not_utf_8_is_a_fault_that_says_so() {
+    use std::os::unix::ffi::OsStrExt;
+    let frame = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/frame");
+    let dir = folder("code_page").join(std::ffi::OsStr::from_bytes(b"Tr\xe4ger"));
+    if std::fs::create_dir(&dir).is_err() {
+        return;
+    }
+    for name in ["place.toml", "frame.bdf"] {
+        std::fs::copy(frame.join(name), dir.join(name)).unwrap();
+    }
+    let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .arg("place")
+        .arg(dir.join("place.toml"))
+        .output()
+        .unwrap();
+    assert_eq!(done.status.code(), Some(2));
+    let said = text(&done.stderr);
+    assert!(
+        said.contains("is not UTF-8") && said.contains("rename it"),
+        "{said}"
+    );
+    // The same letter in UTF-8 is a name like any other, also for results.
+    let named = folder("code_page_utf8").join("Träger");
+    std::fs::create_dir(&named).unwrap();
+    std::fs::copy(frame.join("frame.bdf"), named.join("Rähmen.bdf")).unwrap();
+    let job = std::fs::read_to_string(frame.join("place.toml")).unwrap();
+    std::fs::write(
+        named.join("place.toml"),
+        job.replace("frame.bdf", "Rähmen.bdf"),
+    )
+    .unwrap();
+    let out = named.join("Plan µ");
+    let job = named.join("place.toml");
+    let done = strainbridge(&[
+        "place",
+        job.to_str().unwrap(),
+        "--out",
+        out.to_str().unwrap(),
+    ]);
+    assert_eq!(done.status.code(), Some(0), "{}", text(&done.stderr));
+    assert!(out.join("gauges.csv").is_file());
+}

@@ -34,6 +34,7 @@ const JOB: &str = r#"
 units = "mm-t-s"
 [model]
 deck = "strip.bdf"
+mesh_error = false
 [[load]]
 name = "left"
 grid = 1
@@ -65,6 +66,35 @@ fn a_rule_that_leaves_no_place_is_named() {
         said.contains("`clear_of` loads = 1000 leaves 0 of"),
         "{said}"
     );
+    for (rules, named) in [
+        (
+            "boxes = [[[900, 901], [0, 1], [0, 1]]]\n",
+            "`boxes` leaves 0 of 10",
+        ),
+        (
+            "elements = [3, 4]\nexclude_elements = \"1 THRU 5\"\n",
+            "`exclude_elements` leaves 0 of 2",
+        ),
+        (
+            "exclude_properties = [1]\nelements = [2]\n",
+            "`exclude_properties` leaves 0 of 1",
+        ),
+        // Fewer places than gauges: the rule that takes most.
+        (
+            "elements = [2]\nsurfaces = [\"top\"]\nangle_step_deg = 180\n",
+            "`elements` leaves 1 of 10",
+        ),
+    ] {
+        let files = files
+            .clone()
+            .with("rule.toml", format!("{JOB}[candidates]\n{rules}"));
+        let job = Job::read("rule.toml", &files).unwrap();
+        let faults = place(&job, &Context::new(&files)).err().unwrap();
+        let said = faults.to_string();
+        let rule = named.split(" leaves").next().unwrap();
+        assert!(said.contains(named), "{said}");
+        assert!(said.contains(&format!("widen or delete {rule}")), "{said}");
+    }
 }
 
 #[test]

@@ -74,8 +74,10 @@ class CandidatesKeys(Section):
     exclude_properties: _Key[Any]
     """Properties left out, ids or names; default: none."""
     file: _Key[Any]
-    """TOML file with a section [candidates] whose lists of properties and elements (properties, elements, exclude_properties, exclude_elements,
-    wanted_elements) are added to those of the job; default: none."""
+    """A name that ends with .toml: file with a section [candidates] whose lists of properties and elements (properties, elements,
+    exclude_properties, exclude_elements, wanted_elements) are added to those of the job. Any other name: table of named spots, with the columns
+    of [gauges] file and an optional column `cost`. Gauges are chosen from these spots alone and keep their names; other keys of [candidates]
+    are refused. Costs need [placement] budget; default: none."""
     grid_length: _Key[Any]
     """Grid length of the gauges to be placed; written to gauges.csv. The layout and its sigmas are computed with the strain at the middle of
     each gauge, its spread over the grid counts as scatter; S and the strain by load of the chosen gauges are averaged over the grid. A place
@@ -320,7 +322,8 @@ class PlacementKeys(Section):
     angle_tolerance_deg: _Key[Any]
     """Tolerance of the angle, one standard deviation [degree]; default: 0."""
     budget: _Key[Any]
-    """Largest cost of a layout [channels, or money]; default: gauges."""
+    """Largest cost of a layout. With a table of spots it is in the unit of the column `cost`, and replaces `gauges` [channels, or money];
+    default: gauges."""
     costs: _Key[Any]
     """Cost by wiring (quarter, half-bending, full-bending, shear, rosette) [channels, or money]; default: 1; a rosette 3."""
     criterion: _Key[Any]

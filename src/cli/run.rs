@@ -143,7 +143,7 @@ impl Run {
                 Some(_) => save(&outcome, &into)?,
                 None => {
                     let mut out = Output::begin(&into)?;
-                    outcome.write(&mut out)?;
+                    out.write_bytes(outcome.job, outcome.text.as_bytes())?;
                     out.check_spared(&outcome.sources)?;
                     out.rename_all()?;
                     result_text(&outcome)?

@@ -48,7 +48,10 @@ impl Voice {
             room: Room {
                 width: width(),
                 lines: (level != Level::Verbose).then_some(LINES),
-                is_utf8: is_utf8(),
+                is_utf8: shows_utf8(
+                    locale().as_deref(),
+                    !cfg!(windows) || std::io::stdout().is_terminal(),
+                ),
             },
         }
     }
@@ -116,17 +119,22 @@ impl Voice {
 
     /// Prints lines on standard output.
     pub fn print_lines(self, lines: &[String]) -> ExitCode {
-        let text = text_of(lines);
+        print(self.shown(text_of(lines)).as_bytes())
+    }
+
+    /// Returns a text with the signs that standard output and standard error show.
+    fn shown(self, text: String) -> String {
         match self.room.is_utf8 {
-            true => print(text.as_bytes()),
-            false => print(ascii(&text).as_bytes()),
+            true => text,
+            false => ascii(&text),
         }
     }
 
     /// Prints a remark on standard error.
     pub fn note(self, text: &str) {
         if self.level != Level::Quiet {
-            say(&text_of(&wrap_lines(text, self.room.width, 4)));
+            let text = text_of(&wrap_lines(text, self.room.width, 4));
+            say(&self.shown(text));
         }
     }
 
@@ -158,10 +166,7 @@ impl Voice {
     /// Prints faults on standard error only.
     pub fn fault_lines(self, faults: &[Fault]) {
         let n = faults.len();
-        let mut text: String = faults.iter().map(|f| format!("{f}\n")).collect();
-        if !self.room.is_utf8 {
-            text = ascii(&text);
-        }
+        let mut text = self.shown(faults.iter().map(|f| format!("{f}\n")).collect());
         let plural = if n == 1 { "" } else { "s" };
         let total = format!("{n} fault{plural} found");
         text.push_str(&match self.colour {
@@ -189,16 +194,19 @@ fn width() -> usize {
     size.map_or(WIDTH, |(w, _)| usize::from(w.0).max(LEAST))
 }
 
-/// Whether the terminal shows UTF-8, by the first of `LC_ALL`, `LC_CTYPE` and `LANG` that is set. Windows consoles always do: the standard
-/// library writes to them in Unicode. Where none is set nothing is known, and most terminals do.
-fn is_utf8() -> bool {
+/// Returns the first of `LC_ALL`, `LC_CTYPE` and `LANG` that is set.
+fn locale() -> Option<String> {
     let value = |name: &str| std::env::var(name).ok().filter(|v| !v.is_empty());
-    let locale = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value);
-    let Some(locale) = locale.filter(|_| !cfg!(windows)) else {
-        return true;
-    };
-    let locale = locale.to_ascii_lowercase();
-    locale.contains("utf-8") || locale.contains("utf8")
+    ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().find_map(value)
+}
+
+/// Returns whether printed text may contain UTF-8. A stated locale decides. Without one, `is_read_as_utf8` does: it is false for a pipe or a file on
+/// Windows, which other programs read in the code page of the console. To a Windows console the standard library writes Unicode.
+fn shows_utf8(locale: Option<&str>, is_read_as_utf8: bool) -> bool {
+    locale.map_or(is_read_as_utf8, |l| {
+        let l = l.to_ascii_lowercase();
+        l.contains("utf-8") || l.contains("utf8")
+    })
 }
 
 /// Lines as text.
@@ -231,5 +239,24 @@ fn is_printed(text: &[u8]) -> bool {
             false
         }
         _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_locale_decides_whether_utf_8_is_printed_and_without_one_the_pipe_of_windows_does_not_have_it()
+     {
+        let (terminal, pipe_of_windows) = (true, false);
+        for locale in ["C", "POSIX", "de_DE.ISO-8859-1", "German_Germany.1252"] {
+            assert!(!shows_utf8(Some(locale), terminal), "{locale}");
+        }
+        for locale in ["de_DE.UTF-8", "C.utf8", "en_US.UTF8"] {
+            assert!(shows_utf8(Some(locale), pipe_of_windows), "{locale}");
+        }
+        assert!(shows_utf8(None, terminal));
+        assert!(!shows_utf8(None, pipe_of_windows));
     }
 }

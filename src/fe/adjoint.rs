@@ -132,8 +132,8 @@ impl<'a> Adjoint<'a> {
     }
 }
 
-/// The adjoint forces of a reading: by grid of its shells, what the reading gains by each unit of displacement.
-fn forces_of(
+/// Returns the adjoint forces of a reading: by grid of its shells, the reading per unit of displacement.
+pub(super) fn forces_of(
     prepared: &Prepared<'_>,
     terms: &[StrainTerm],
 ) -> Result<Vec<(GridIx, [f64; 6])>, Refusal> {

@@ -84,5 +84,5 @@ pub use support::{
 pub(crate) use temperature::is_heated;
 pub use unsupported_cards::refuse;
 pub(crate) use unsupported_cards::unsupported_cards;
-pub use variants::solve_variants;
+pub use variants::{reading_changes, solve_variants};
 pub(crate) use weight::mass_moved;

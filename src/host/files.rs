@@ -312,7 +312,13 @@ pub(crate) fn may_be_cut(file: &str, severity: Severity) -> Finding {
 }
 
 pub(crate) fn unreadable(given: &str, e: &std::io::Error) -> Fault {
-    let (wrong, remedy) = why_unreadable(e);
+    let (mut wrong, mut remedy) = why_unreadable(e);
+    // A name in another encoding, such as the one of Windows, arrives with this sign in place of each byte that is not UTF-8.
+    if e.kind() == std::io::ErrorKind::NotFound && given.contains('\u{fffd}') {
+        "the name of the file or of its folder is not UTF-8".clone_into(&mut wrong);
+        remedy =
+            "rename it: `convmv -f cp1252 -t utf8 --notest NAME`, or without letters such as ä";
+    }
     Fault::of(given, "file", wrong, remedy)
 }
 

@@ -23,7 +23,7 @@ enum Measures {
 use Measures::{Angle, Length, Nothing};
 
 /// Columns of a gauge table: name, other names, unit.
-const COLUMNS: [(&str, &[&str], Measures); 26] = [
+const COLUMNS: [(&str, &[&str], Measures); 27] = [
     ("name", &["gauge"], Nothing),
     ("element", &[], Nothing),
     ("surface", &["side"], Nothing),
@@ -49,6 +49,8 @@ const COLUMNS: [(&str, &[&str], Measures); 26] = [
     ("cid", &[], Nothing),
     ("role", &[], Nothing),
     ("member", &[], Nothing),
+    // Of a spot that `place` may choose; a gauge has none.
+    ("cost", &["costs", "price"], Nothing),
     // A vector in one column can't be read.
     ("direction", &[], Nothing),
 ];

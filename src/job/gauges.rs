@@ -10,7 +10,7 @@ use super::resolve::{
 };
 use super::suggest;
 use super::table::{Table, read_table};
-use super::types::{Job, JobGauge, StatedPlace};
+use super::types::{Job, JobGauge, NamedFile, StatedPlace};
 use crate::fe::strain_tensor::Surface;
 use crate::finding::{Finding, Severity};
 use crate::gauge::{Bridge, Rosette};
@@ -27,6 +27,22 @@ pub(super) fn read_gauge_file(
     let Some(named) = &job.gauge_file else {
         return Vec::new();
     };
+    let Some((t, columns, gauges)) = read_gauges(inputs, job, named, faults) else {
+        return Vec::new();
+    };
+    if let Some(finding) = without_direction(job, &t, &columns, &gauges) {
+        inputs.note(&t.file, finding);
+    }
+    gauges
+}
+
+/// Returns a table of gauges, its columns and the gauges in it; `None` if it can't be read. Faults are added to the list.
+pub(super) fn read_gauges(
+    inputs: &mut Inputs,
+    job: &Job,
+    named: &NamedFile,
+    faults: &mut FaultList,
+) -> Option<(Table, GaugeColumns, Vec<JobGauge>)> {
     let table = inputs
         .read_named_text(job, named)
         .map_err(Faults::from)
@@ -37,14 +53,11 @@ pub(super) fn read_gauge_file(
             let columns = GaugeColumns::of(&t, job.units.length_m(), faults);
             columns.note_unread(inputs, &t);
             let gauges = gauges_from_table(&t, &columns, faults);
-            if let Some(finding) = without_direction(job, &t, &columns, &gauges) {
-                inputs.note(&t.file, finding);
-            }
-            gauges
+            Some((t, columns, gauges))
         }
         Err(f) => {
             faults.extend(f);
-            Vec::new()
+            None
         }
     }
 }

@@ -24,6 +24,7 @@ pub(crate) mod same_name;
 pub mod schema;
 mod shapes;
 mod spanned;
+mod spots;
 pub mod suggest;
 pub mod table;
 mod types;
@@ -57,6 +58,15 @@ impl Job {
     pub fn gravity_m_s2(&self) -> f64 {
         let payload = self.payload.as_ref();
         payload.map_or(STANDARD_GRAVITY_M_S2, |p| p.gravity_m_s2)
+    }
+
+    /// Returns the job with the spots of `[candidates] file` as its gauges; `None` without a table of spots.
+    pub fn with_spots_as_gauges(&self) -> Option<Self> {
+        let spots = self.candidates.spots.as_ref()?;
+        Some(Self {
+            gauges: spots.iter().map(|s| s.gauge.clone()).collect(),
+            ..self.clone()
+        })
     }
 
     /// Returns gravity in the units of the job.
@@ -105,6 +115,7 @@ pub fn read_job(inputs: &mut Inputs, path: &Path) -> Result<Job, Faults> {
     job.gauges
         .extend(gauges::read_gauge_file(inputs, &job, &mut faults));
     picked::read_picked(inputs, &mut job, &mut faults);
+    spots::read_spots(inputs, &mut job, &mut faults);
     resolve::check_names(&job, &mut faults);
     resolve::check_named(&job, &mut faults);
     correct::correct_legs(&mut job, &mut faults);

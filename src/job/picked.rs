@@ -44,7 +44,7 @@ fn lists(c: &mut Candidates) -> [(&'static str, List<'_>); 5] {
 
 /// Adds the lists of the file that `[candidates] file` names to the lists of the job, and its faults to the list.
 pub(super) fn read_picked(inputs: &mut Inputs, job: &mut Job, faults: &mut FaultList) {
-    let Some(named) = job.candidates.file.clone() else {
+    let Some(named) = job.candidates.file.clone().filter(NamedFile::is_toml) else {
         return;
     };
     match inputs.read_named_text(job, &named) {

@@ -45,7 +45,7 @@ pub fn remove_lateness(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> 
 /// # Example
 /// A smooth pulse, delayed by 3.4 samples:
 /// ```
-/// use strainbridge::series::align::delayed;
+/// use strainbridge::series::align::delay;
 ///
 /// let pulse = |t: f64| (-0.5 * ((t - 50.0) / 4.0).powi(2)).exp();
 /// let x: Vec<f64> = (0..128).map(|i| pulse(f64::from(i))).collect();

@@ -12,7 +12,7 @@ use super::spectrum::{Band, Fourier};
 /// The displacement of a sine is its acceleration over `-omega^2`:
 /// ```
 /// use std::f64::consts::TAU;
-/// use strainbridge::series::integrate::integrated;
+/// use strainbridge::series::integrate::integrate_in_band;
 /// use strainbridge::series::spectrum::Band;
 ///
 /// let (rate_hz, omega) = (200.0, TAU * 5.0);

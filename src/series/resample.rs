@@ -6,7 +6,7 @@
 ///
 /// # Example
 /// ```
-/// use strainbridge::series::resample::upsampled;
+/// use strainbridge::series::resample::upsample;
 ///
 /// let pulse = |t: f64| 3.0 + 0.1 * t + (-0.5 * ((t - 32.0) / 4.0).powi(2)).exp();
 /// let x: Vec<f64> = (0..65).map(|i| pulse(f64::from(i))).collect();

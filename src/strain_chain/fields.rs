@@ -218,12 +218,13 @@ fn solve_fields(
         findings: Vec::new(),
         source: solved.source.clone(),
     });
-    let terms = solved.cases.split_off(of_job);
+    let mut terms = solved.cases.split_off(of_job);
+    cases.truncate(of_reference);
+    let mesh_error = take_out(work, job, &deck, (&cases, at), (&mut solved, &mut terms));
     let reference = match &reference {
         Some(state) => Some(state.add_up(&deck, &terms)?),
         None => None,
     };
-    let mesh_error = take_out(work, job, &deck, (&mut solved, at));
     work.go_on()?;
     let of_load = (0..job.loads.len()).map(|i| (0, i)).collect();
     Ok(Fields {
@@ -248,7 +249,7 @@ fn read_results(
     files: &ModelFiles,
     deck: DeckModel,
 ) -> Result<Fields, Faults> {
-    if files.mesh_error {
+    if files.mesh_error == Some(true) {
         work.findings.push(not_checked(
             "the strain comes from results, and the built-in solver alone can solve a finer mesh",
         ));

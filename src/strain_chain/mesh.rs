@@ -8,16 +8,16 @@
 //! L. F. Richardson, Phil. Trans. R. Soc. A 210 (1911) 307.
 
 use super::specs::corrected_spec_of;
-use crate::fe::{CaseResult, ShellField, Solution};
+use crate::fe::{CaseResult, LoadCase, ShellField, Solution, UnitLoad};
 use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
-use crate::host::fault::Faults;
+use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
 use crate::model::{Model, RefinedModel, ShellIx};
 use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
 use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::solved::{support_of_job, unit_loads_kept};
+use crate::strain_chain::solved::{MOST_GRIDS_TWICE, cases_kept, support_of_job};
 use serde::Serialize;
 
 /// Number of shells beyond which only shells round the gauges are divided: four times as many would take too long.
@@ -129,24 +129,50 @@ fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
     laid.flatten().collect()
 }
 
-/// Subtracts the mesh error from the strain of a job's unit loads and returns it: by load, strain on the deck's mesh less the limit. `None` if the
-/// job does not ask for it, or if no finer mesh could be solved, which a finding reports.
+/// Subtracts the mesh error from the strain of a job's unit loads and of its `reference` state. Returns it by load: strain on the deck's mesh less
+/// the limit.
+///
+/// `None` if the job declines it, or if no finer mesh could be solved, which a finding reports. A job without this key gets it on decks
+/// of shells with up to [`MOST_GRIDS_TWICE`] grids; a note states why a larger deck or another mesh has none.
 pub(super) fn take_out(
     work: &mut Work,
     job: &Job,
     deck: &DeckModel,
-    (solution, at): (&mut Solution, WantedAt),
+    (cases, at): (&[LoadCase], WantedAt),
+    (solution, reference): (&mut Solution, &mut [CaseResult]),
 ) -> Option<MeshError> {
-    if !job.model.as_ref().is_some_and(|m| m.mesh_error) {
-        return None;
+    let asked = job.model.as_ref().and_then(|m| m.mesh_error);
+    let grids = deck.model.grids.len();
+    match asked {
+        Some(true) => {}
+        // Bars and springs alone have no error of the mesh.
+        None if deck.model.shells.is_empty() => return None,
+        None if grids <= MOST_GRIDS_TWICE => {}
+        None => {
+            work.notes.push(format!(
+                "the error of the mesh is not computed: the deck has {grids} grids, limit {MOST_GRIDS_TWICE}. `mesh_error = true` in [model] computes it"
+            ));
+            return None;
+        }
+        Some(false) => return None,
     }
-    match finer(work, job, deck, (solution, at)) {
-        Ok((changes, left)) => {
-            let cases: Vec<CaseResult> = changes.into_iter().map(|c| times(c, -WHOLE)).collect();
-            for (case, error) in solution.cases.iter_mut().zip(&cases) {
+    let own: Vec<&CaseResult> = solution.cases.iter().chain(&*reference).collect();
+    match finer(work, job, deck, (cases, &own), at) {
+        Ok((mut errors, left)) => {
+            let of_reference = errors.split_off(solution.cases.len());
+            let all = solution.cases.iter_mut().zip(&errors);
+            for (case, error) in all.chain(reference.iter_mut().zip(&of_reference)) {
                 subtract(&mut case.shells, &error.shells);
             }
-            Some(MeshError { cases, left })
+            Some(MeshError {
+                cases: errors,
+                left,
+            })
+        }
+        Err(why) if asked.is_none() => {
+            let note = format!("the error of the mesh is not computed: {why}");
+            work.notes.push(note);
+            None
         }
         Err(why) => {
             work.findings
@@ -154,6 +180,33 @@ pub(super) fn take_out(
             None
         }
     }
+}
+
+/// Subtracts the mesh error from the strain of further unit loads on the model of a job, where it was subtracted from the strain of the job's loads.
+///
+/// # Errors
+/// Loads that cannot be solved on the finer mesh.
+pub fn take_out_beside(
+    work: &mut Work,
+    job: &Job,
+    fields: &super::Fields,
+    (loads, solved): (&[UnitLoad], &mut [CaseResult]),
+) -> Result<(), Faults> {
+    if fields.mesh_error.is_none() {
+        return Ok(());
+    }
+    let deck = &fields.deck;
+    let cases = support_of_job(job, &deck.model)?.unit_cases(&deck.model, loads);
+    let own: Vec<&CaseResult> = solved.iter().collect();
+    let (errors, _) = finer(work, job, deck, (&cases, &own), WantedAt::Gauges).map_err(|why| {
+        let wrong = format!("the error of the mesh is not known for all loads: {why}");
+        let remedy = "write mesh_error = false in [model]";
+        Faults::from(Fault::of(&*job.file, "model.mesh_error", wrong, remedy))
+    })?;
+    for (case, error) in solved.iter_mut().zip(&errors) {
+        subtract(&mut case.shells, &error.shells);
+    }
+    Ok(())
 }
 
 /// Returns the finding that the mesh error is unknown although the job asks for it.
@@ -167,35 +220,49 @@ pub(super) fn not_checked(why: &str) -> Finding {
     )
 }
 
-/// By load, the strain on a mesh half as wide less that on the deck's; and the share of the error that may be left.
+/// Returns the mesh error of load cases by case, strain on the deck's mesh (`solved`) less the limit, and the share of it that may be left.
+///
+/// # Errors
+/// Why no finer mesh was solved, in words.
 fn finer(
     work: &mut Work,
     job: &Job,
     deck: &DeckModel,
-    (solution, at): (&Solution, WantedAt),
+    (cases, solved): (&[LoadCase], &[&CaseResult]),
+    at: WantedAt,
 ) -> Result<(Vec<CaseResult>, f64), String> {
-    let of_fault = |faults: Faults| faults.first_reason();
     let refined = work.stage("refine", |_| {
         let gauges = (at == WantedAt::Gauges).then(|| gauges_of(job, &deck.model));
         refined_mesh(&deck.model, gauges.as_deref())
     })?;
-    let support = support_of_job(job, &deck.model).map_err(of_fault)?;
-    let loads = super::unit_loads::unit_loads(job, &deck.model).map_err(of_fault)?;
+    let sets = |model: &Model| -> Vec<u32> { model.load_sets.iter().map(|s| s.sid).collect() };
+    let (of_deck, kept) = (sets(&deck.model), sets(&refined.model));
+    let acting = cases.iter().flat_map(|c| &c.loads);
+    let lost = acting.filter_map(|load| match load {
+        UnitLoad::Set(sid) if of_deck.contains(sid) && !kept.contains(sid) => Some(*sid),
+        _ => None,
+    });
+    if let Some(sid) = lost.into_iter().next() {
+        return Err(format!(
+            "load set {sid} acts on elements, and a mesh of half the width is solved for loads at grids, gravity and rotation"
+        ));
+    }
     let fine = work
         .stage("solve the finer mesh", |w| {
             let made = (deck, "mesh half as wide");
-            unit_loads_kept(w, made, (&refined.model, support), &loads)
+            cases_kept(w, made, &refined.model, cases)
         })
-        .map_err(of_fault)?;
-    let pairs: Vec<_> = solution.cases.iter().zip(&fine.cases).collect();
+        .map_err(|faults| faults.first_reason())?;
+    let pairs: Vec<_> = solved.iter().copied().zip(&fine.cases).collect();
     let left = match refined.is_whole() {
         true => LEFT,
         false => LEFT_IN_PART,
     };
-    let changes = work.stage("mesh error", |_| {
-        change_by_refining(&deck.model, &refined, &pairs)
+    let errors = work.stage("mesh error", |_| {
+        let changes = change_by_refining(&deck.model, &refined, &pairs).into_iter();
+        changes.map(|c| times(c, -WHOLE)).collect()
     });
-    Ok((changes, left))
+    Ok((errors, left))
 }
 
 /// A strain field times a number.

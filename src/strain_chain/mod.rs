@@ -30,7 +30,7 @@ pub use gauges::{lay_gauges, not_laid, without_strain};
 pub use given::read_given;
 pub use mesh::{
     GaugeMeshError, LoadMeshError, WantedAt, coarse_at_gauges, left_in_reading, left_squared,
-    mesh_errors, refined_mesh,
+    mesh_errors, refined_mesh, take_out_beside,
 };
 pub use specs::corrected_spec_of;
 pub use stated_noise::stated_noise;

@@ -6,13 +6,11 @@ use crate::finding::{Finding, Severity, list_few};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::strain_chain::deck::DeckModel;
-use crate::strain_chain::solved::{cases_of_job, solve_kept};
+use crate::strain_chain::solved::{MOST_GRIDS_TWICE, cases_of_job, solve_kept};
 use std::collections::BTreeMap;
 
 /// When results are compared with the built-in solver, and from which difference on they contradict the deck.
 struct Rules {
-    /// Grids of the largest deck that is solved for the comparison: below a second on two processors.
-    grids: usize,
     /// Share of the strain ([`StrainDifference::share`]) by which two programs differ at most on one deck; an error from twice this share on.
     /// On public decks with results of MSC, NX and MYSTRAN the share is 0 to 0.1, and 0.26 on a deck with an element of each kind alone.
     share: f64,
@@ -25,7 +23,6 @@ struct Rules {
 }
 
 const RULES: Rules = Rules {
-    grids: 15_000,
     share: 0.27,
     of_shell: 1.0,
     strained: 1e-6,
@@ -42,9 +39,9 @@ pub(super) fn check_against_solver(
     results: &[&CaseResult],
 ) -> Option<Finding> {
     let grids = deck.model.grids.len();
-    if grids > RULES.grids {
-        let limit = RULES.grids;
-        return skip(work, &format!("the deck has {grids} grids, limit {limit}"));
+    if grids > MOST_GRIDS_TWICE {
+        let why = format!("the deck has {grids} grids, limit {MOST_GRIDS_TWICE}");
+        return skip(work, &why);
     }
     let cases = match cases_of_job(job, deck) {
         Ok(cases) => cases,

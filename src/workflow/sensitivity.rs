@@ -111,12 +111,15 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
 /// Every fault of the job and of the files it names.
 pub(crate) fn prepare_sensitivity(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
-        work.stage("candidates", |w| of_candidates(w, job))?
+        match job.with_spots_as_gauges() {
+            Some(as_gauges) => prepare(work, &as_gauges)?,
+            None => work.stage("candidates", |w| of_candidates(w, job))?,
+        }
     } else {
         prepare(work, job)?
     };
     work.findings
-        .extend(check_separability(&prepared.sensitivity));
+        .extend(check_separability(&prepared.sensitivity.unconditioned()));
     Ok(prepared)
 }
 

@@ -129,7 +129,7 @@ fn load_section(frame: &Frame, load: &Load) -> String {
 fn head(frame: &Frame, loads: &[Load], results: &str) -> String {
     let mut text = format!(
         "units = \"{}\"\nreport_units = {{ force = \"kN\", moment = \"kN m\", length = \"m\", mass = \"kg\", stress = \"MPa\" }}\n\
-         [model]\ndeck = \"frame.bdf\"\nsupport = \"free\"\n{results}",
+         [model]\ndeck = \"frame.bdf\"\nmesh_error = false\nsupport = \"free\"\n{results}",
         frame.units.name
     );
     for load in loads {

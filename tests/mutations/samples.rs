@@ -10,7 +10,7 @@ GRID,1,,0.,0.,0.\nGRID,2,,10.,0.,0.\nGRID,3,,10.,10.,0.\nGRID*,4,,0.,10.\n*,0.\n
 CQUAD4,1,1,1,2,3,4\nCTRIA3,2,1,1,2,3\nCBAR,3,2,1,2,0.,0.,1.\nRBE2,4,1,123456,2,3\nCORD2R,5,,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\n\
 SPC1,1,123456,1,THRU,2\nSPCADD,3,1\nFORCE,2,3,,5.,0.,0.,1.\nLOAD,4,1.,1.,2\nPLOAD4,6,1,3.\nENDDATA\n";
 
-pub const JOB: &str = "title = \"t\"\nunits = \"mm-t-s\"\n[model]\ndeck = \"d.bdf\"\n[[load]]\nname = \"A\"\ngrid = 3\ncomponent = \"FZ\"\n\
+pub const JOB: &str = "title = \"t\"\nunits = \"mm-t-s\"\n[model]\ndeck = \"d.bdf\"\nmesh_error = false\n[[load]]\nname = \"A\"\ngrid = 3\ncomponent = \"FZ\"\n\
 expected = 100.0\n[[gauge]]\nname = \"g1\"\nelement = 1\nsurface = \"top\"\ndirection = [1, 0, 0]\n[candidates]\nsurfaces = [\"top\"]\n\
 [placement]\ngauges = 2\nspacing = 1.0\n[measured]\nstrain = \"s.csv\"\nnoise_microstrain = 1.0\n";
 

@@ -27,6 +27,7 @@ const JOB: &str = r#"title = "Folded plate"
 units = "mm-t-s"
 [model]
 deck = "model.bdf"
+mesh_error = false
 [[load]]
 name = "A.FZ"
 grid = 3

@@ -87,6 +87,7 @@ const JOB: &str = r#"title = "Plate"
 units = "mm-t-s"
 [model]
 deck = "plate.bdf"
+mesh_error = false
 [[load]]
 name = "A.FZ"
 grid = 1

@@ -31,16 +31,34 @@ fn is_sound(page: &Value, titles: &[&str], figures: &[&str]) {
         assert!(drawn.iter().any(|f| f["label"] == *label), "{label}");
     }
     for figure in drawn {
+        // A sentence of its own at least.
+        assert!(
+            figure["caption"].as_str().unwrap().len() > 30,
+            "no caption: {figure}"
+        );
         // An empty picture has one colour; thin lines on white cover about a hundredth.
         assert!(figure["other"].as_f64().unwrap() > 0.005, "{figure}");
         assert!(figure["colours"].as_u64().unwrap() > 20, "{figure}");
+        let (label, frame) = (figure["label"].as_str().unwrap(), &figure["frame"]);
+        let legend = frame["legend"].as_str().unwrap();
+        if label.starts_with("measured against") || label.starts_with("recovered against") {
+            let [wide, tall] = [0, 1].map(|i| frame["size"][i].as_f64().unwrap());
+            assert!((wide - tall).abs() < 0.01, "equal axes: {figure}");
+        }
+        if label.contains("heat map") {
+            assert!(legend.contains("100 % of the largest"), "{figure}");
+        }
+        if label.starts_with("density of force") {
+            assert!(legend.contains("band of the equations, 0.7"), "{figure}");
+        }
     }
 }
 
 /// Parts of a first screen: sentence, key numbers, picture, table of the result.
 const PARTS: [&str; 4] = ["verdict", "numbers", "picture", "table"];
 
-/// The first screen of 1280 x 800 holds all its parts, with JavaScript on and off; that of a phone the sentence and no part aside of it.
+/// The first screen of 1280 x 800 shows all its parts, with JavaScript on and off. The first screen of a phone shows sentence and numbers; picture and
+/// table are no wider than the phone.
 fn answers_first(page: &Value, has_picture: bool) {
     let shown = |seen: &Value, size: [f64; 2], parts: &[&str]| {
         for part in parts.iter().filter(|p| has_picture || **p != "picture") {
@@ -62,11 +80,14 @@ fn answers_first(page: &Value, has_picture: bool) {
             shown(still, [1280.0, 800.0], &PARTS);
             assert_eq!(still["summary"], page["first"]["summary"]);
             assert_eq!(still["empty"], 0);
+            // The first frame of every figure is a picture.
+            assert_eq!(still["without_picture"], serde_json::json!([]));
+            assert_eq!(still["overlaps"], serde_json::json!([]));
             assert!(!has_picture || still["pictures"].as_u64() >= Some(1));
         }
         None => {
             shown(&page["first"], [390.0, 800.0], &PARTS[..2]);
-            shown(&page["first"], [390.0, 1e5], &PARTS[2..3]);
+            shown(&page["first"], [390.0, 1e5], &PARTS[2..]);
         }
     }
 }
@@ -103,13 +124,18 @@ fn has_a_model(page: &Value) {
     );
 }
 
+/// The folder of the answer of a command on files of a folder of `examples/`.
+fn folder_of(command: &str, folder: &str) -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR"))
+        .join("pages")
+        .join(command)
+        .join(folder)
+}
+
 /// Runs a command on files of a folder of `examples/`; where its page lies.
 fn page_of(command: &str, folder: &str, files: &[&str]) -> PathBuf {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
-    let out = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("pages")
-        .join(command)
-        .join(folder);
+    let out = folder_of(command, folder);
     let _ = std::fs::remove_dir_all(&out);
     let done = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
         .arg(command)
@@ -129,6 +155,11 @@ const MOST_BYTES: f64 = 1e6;
 
 #[test]
 fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts_over_each_other() {
+    let [solved, placed] = [
+        folder_of("solve", "frame").join("results.op2"),
+        folder_of("place", "frame"),
+    ]
+    .map(|p| p.to_str().unwrap().to_owned());
     let pages = [
         ("check", "frame", &["place.toml"][..]),
         ("solve", "frame", &["place.toml"]),
@@ -151,6 +182,9 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
             &["fleet.toml", "A_2026-05-01.csv", "B_2026-05-02.csv"],
         ),
         ("cases", "frame", &["place.toml"]),
+        ("strains", "frame", &["frame.bdf", &solved]),
+        ("verify", "frame", &[&placed]),
+        ("init", "frame", &["frame.bdf"]),
     ];
     let reports: Vec<PathBuf> = pages.iter().map(|(c, d, f)| page_of(c, d, f)).collect();
     let paths: Vec<&Path> = reports.iter().map(PathBuf::as_path).collect();
@@ -160,19 +194,55 @@ fn every_kind_of_page_opens_wide_and_on_a_phone_without_errors_requests_or_texts
     for (i, page) in seen.iter().enumerate() {
         let (command, folder, _) = pages[i / 2];
         is_sound(page, &[], &[]);
-        answers_first(page, command != "cases");
+        // `verify` compares bytes and numbers: a table of its checks, and no picture.
+        answers_first(page, command != "verify");
         assert!(
             page["bytes"].as_f64().unwrap() < MOST_BYTES,
             "{command} {folder}: {}",
             page["bytes"]
         );
         let models = [
-            "check", "solve", "place", "recover", "respond", "payload", "modes",
+            "check", "solve", "place", "recover", "respond", "payload", "modes", "cases",
+            "strains", "init",
         ];
         let drawn = page.get("size").is_some();
         assert!(drawn || !models.contains(&command), "{command}");
         if drawn {
             has_a_model(page);
+        }
+    }
+}
+
+/// The demo's page: a card a step, each with a picture that can be seen and no text of a terminal; true loads next to their intervals.
+#[test]
+fn the_page_of_the_demo_has_a_picture_in_each_card_and_the_truth_beside_the_intervals() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("demo");
+    let _ = std::fs::remove_dir_all(&folder);
+    let told = Command::new(env!("CARGO_BIN_EXE_strainbridge"))
+        .arg("demo")
+        .arg(&folder)
+        .output()
+        .unwrap();
+    let error = String::from_utf8_lossy(&told.stderr);
+    assert_eq!(told.status.code(), Some(0), "{error}");
+    let Some(seen) = opened(&[&folder.join("report.html")]) else {
+        return;
+    };
+    for page in &seen {
+        is_sound(page, &["The truck", "Step by step"], &[]);
+        assert_eq!(page["terminal"], 0);
+        assert!(page["bytes"].as_f64().unwrap() < 1.2 * MOST_BYTES);
+        let cards = page["cards"].as_array().unwrap();
+        assert_eq!(cards.len(), 8);
+        for card in cards {
+            let [width, height] = [0, 1].map(|i| card["size"][i].as_f64().unwrap());
+            assert!(width >= 200.0 && height >= 120.0, "{card}");
+            let title = card["title"].as_str().unwrap();
+            let words = card["words"].as_str().unwrap();
+            assert!(
+                !title.starts_with("Recover") || words.contains("true load"),
+                "{title}: {words}"
+            );
         }
     }
 }

@@ -76,7 +76,7 @@ fn write_cases(case: &str, units: &str, grids: [u32; 2]) -> Option<(Deck, Outcom
     let deck = source.join(deck_of(&source));
     let path = deck.display().to_string().replace('\\', "/");
     let job = format!(
-        "units = \"{units}\"\n[model]\ndeck = \"{path}\"\nsupport = \"free\"\n\
+        "units = \"{units}\"\n[model]\ndeck = \"{path}\"\nmesh_error = false\nsupport = \"free\"\n\
          [[load]]\nname = \"A\"\ngrid = {}\ncomponent = \"FZ\"\napplied = -250.0\n\
          [[load]]\nname = \"B\"\ngrid = {}\ncomponent = \"MX\"\n",
         grids[0], grids[1]

@@ -15,6 +15,7 @@ mod op2_mesh;
 mod placement;
 mod sides;
 mod sites;
+mod spots;
 #[path = "../../nastran/tests/support/mod.rs"]
 mod support;
 mod thickness;

@@ -1,10 +1,12 @@
-"""Chromium for the scripts beside: exit code 77 where playwright or chromium is absent."""
+"""Chromium and axe-core for the scripts in this folder: exit code 77 where playwright, axe-core or chromium is absent."""
 import re
 import shutil
 import sys
 from contextlib import contextmanager
+from pathlib import Path
 
 try:
+    import axe_playwright_python
     from playwright.sync_api import sync_playwright
 except Exception as e:
     print(f"absent: {e}")
@@ -14,6 +16,9 @@ EXECUTABLE = shutil.which("chromium") or shutil.which("chromium-browser")
 if EXECUTABLE is None:
     print("absent: chromium")
     sys.exit(77)
+
+# The program that tests a page for everyone's use.
+AXE_CORE = (Path(axe_playwright_python.__file__).parent / "axe.min.js").read_text(encoding="utf-8")
 
 FLAGS = [
     "--headless=new", "--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic",

@@ -13,7 +13,7 @@ import os
 import sys
 import time
 
-from browser import HARMLESS, OVERLAPS, chromium
+from browser import AXE_CORE, HARMLESS, OVERLAPS, chromium
 
 # Share of the pixels that differ from the one in the corner, and the number of colours, of a PNG.
 COLOURS = """async (png) => {
@@ -40,8 +40,8 @@ GAUGES = """() => {
 # Boxes of the parts of the first screen, and its sentence.
 FIRST = """() => {
   const box = (s) => {
-    const e = document.querySelector(s);
-    if (!e || !e.checkVisibility()) return null;
+    const e = [...document.querySelectorAll(s)].find((e) => e.checkVisibility());
+    if (!e) return null;
     const r = e.getBoundingClientRect();
     return [r.left, r.top, r.right, r.bottom];
   };
@@ -49,42 +49,44 @@ FIRST = """() => {
   return { verdict: box(".verdict"), numbers: box(".tiles"), picture: box(".picture svg"), table: box(".result table"), summary: summary && summary.textContent };
 }"""
 
-# What breaks a rule of pages for everyone: landmarks, headings, names of controls and pictures, headers of tables, contrast, focus.
-RULES = """() => {
-  const out = [], say = (rule, e) => out.push(rule + ": " + (e.outerHTML || e.textContent).slice(0, 120));
-  const all = (s) => [...document.querySelectorAll(s)].filter((e) => e.checkVisibility({ visibilityProperty: true }));
-  if (!document.documentElement.lang || !document.title) out.push("language and title");
-  if (all("main").length !== 1) out.push("one main");
-  if (all("h1").length !== 1) out.push("one h1");
-  let level = 0;
-  for (const h of all("h1, h2, h3, h4")) { const n = +h.tagName[1]; if (n > level + 1) say("heading skips a level", h); level = n; }
-  for (const t of all("table")) if (t.rows.length && !t.querySelector("th")) say("table without headers", t);
-  for (const h of all("th")) if (!h.scope) say("header without scope", h);
-  for (const e of all("[role=img], figure[data-figure], [role=application]")) if (!e.getAttribute("aria-label")) say("picture without words", e);
-  for (const e of all("img")) if (!e.alt) say("picture without words", e);
-  for (const e of all("select, input, textarea")) if (!(e.labels && e.labels.length) && !e.getAttribute("aria-label") && !e.title) say("control without a label", e);
-  for (const e of all("button, a, summary")) if (!e.textContent.trim() && !e.getAttribute("aria-label")) say("nothing to read", e);
-  const ids = new Set();
-  for (const e of document.querySelectorAll("[id]")) { if (ids.has(e.id)) say("id twice", e); ids.add(e.id); }
-  for (const e of all("*")) {
-    const s = getComputedStyle(e), scrolls = /auto|scroll/.test(s.overflowX + s.overflowY) && (e.scrollWidth > e.clientWidth + 1 || e.scrollHeight > e.clientHeight + 1);
-    if (scrolls && e !== document.documentElement && e.tabIndex < 0 && !e.querySelector("a, button, select, input, [tabindex='0']")) say("scrolls without focus", e);
-  }
-  const rgb = (c) => (c.match(/[\\d.]+/g) || []).map(Number);
-  const light = ([r, g, b]) => { const f = (v) => (v /= 255) <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b); };
-  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  for (let node = walk.nextNode(); node; node = walk.nextNode()) {
-    const e = node.parentElement;
-    if (!node.textContent.trim() || e.closest("script, style, noscript, svg, option, .words, :disabled") || !e.checkVisibility({ visibilityProperty: true })) continue;
-    if (!e.closest("main")) say("outside main", e);
-    let back = [255, 255, 255];
-    for (let p = e; p; p = p.parentElement) { const c = rgb(getComputedStyle(p).backgroundColor); if (c.length === 3 || c[3] > 0.99) { back = c; break; } }
-    const s = getComputedStyle(e), size = parseFloat(s.fontSize), large = size >= 24 || (size >= 18.66 && +s.fontWeight >= 700);
-    const [a, b] = [light(rgb(s.color)), light(back)].sort((x, y) => y - x);
-    if ((a + 0.05) / (b + 0.05) < (large ? 3 : 4.5)) say("contrast " + ((a + 0.05) / (b + 0.05)).toFixed(2), e);
-  }
-  return [...new Set(out)].slice(0, 12);
+# Width and height of the space of a figure, and its legend.
+FRAME = """(f) => {
+  const r = f.querySelector("svg > rect[stroke]"), legend = f.querySelector(".legend");
+  return { size: r && [+r.getAttribute("width"), +r.getAttribute("height")], legend: legend ? legend.textContent : "" };
 }"""
+
+# By card: its heading, the size of its picture and the words in it.
+CARDS = """() => [...document.querySelectorAll(".card")].map((c) => {
+  const r = (c.querySelector("svg") || c).getBoundingClientRect(), words = [...c.querySelectorAll("svg text")].map((t) => t.textContent);
+  return { title: c.querySelector("h3").textContent, size: c.querySelector("svg") ? [r.width, r.height] : [0, 0], words: words.join(" ") };
+})"""
+
+# Violations of the rules of WCAG 2 (A, AA) and of good practice that axe-core finds: rule, impact, the first elements. Tables and figures that
+# are folded are opened first.
+AXE = """async () => {
+  document.querySelectorAll("details").forEach((d) => { d.open = true; });
+  const found = await axe.run(document, { runOnly: { type: "tag", values: ["wcag2a", "wcag2aa", "best-practice"] }, resultTypes: ["violations"] });
+  document.querySelectorAll("details").forEach((d) => { d.open = false; });
+  return found.violations.map((v) => [v.id, v.impact, ...v.nodes.slice(0, 3).map((n) => n.html.slice(0, 120) + " " + (n.any[0] || n.all[0] || n.none[0] || {}).message)].join(": "));
+}"""
+
+
+def violations(page):
+    """What axe-core finds on a page that is drawn, light and, if the page has a dark scheme, dark."""
+    page.evaluate(AXE_CORE)
+    found = page.evaluate(AXE)
+    if "prefers-color-scheme" in page.content():
+        page.emulate_media(color_scheme="dark")
+        found += ["dark: " + f for f in page.evaluate(AXE)]
+        page.emulate_media(color_scheme="light")
+    return found
+
+
+# Figures that show no picture where JavaScript is off.
+WITHOUT_PICTURE = """() => [...document.querySelectorAll("[data-figure=chart]")].filter((f) => {
+  const still = f.nextElementSibling;
+  return !still || still.localName !== "noscript" || ![...still.querySelectorAll("svg")].some((e) => e.checkVisibility() && e.getBoundingClientRect().height > 40);
+}).map((f) => f.getAttribute("aria-label"))"""
 
 
 def without_scripts(browser, path):
@@ -95,6 +97,8 @@ def without_scripts(browser, path):
     seen = page.evaluate(FIRST)
     seen["empty"] = page.evaluate("[...document.querySelectorAll('.canvas, .controls')].filter((e) => e.checkVisibility()).length")
     seen["pictures"] = page.evaluate("[...document.querySelectorAll('svg')].filter((e) => e.checkVisibility()).length")
+    seen["without_picture"] = page.evaluate(WITHOUT_PICTURE)
+    seen["overlaps"] = page.evaluate(OVERLAPS)
     context.close()
     return seen
 
@@ -118,7 +122,7 @@ def look(browser, path, width):
         "bytes": os.path.getsize(path),
         "titles": page.locator("h2").all_inner_texts(),
         "first": page.evaluate(FIRST),
-        "rules": page.evaluate(RULES),
+        "rules": violations(page),
         "wider": page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth"),
         "figures": [],
     }
@@ -129,7 +133,9 @@ def look(browser, path, width):
         page.wait_for_timeout(100)
         png = canvas.screenshot()
         drawn = page.evaluate(COLOURS, base64.b64encode(png).decode())
-        seen["figures"].append({"kind": figure.get_attribute("data-figure"), "label": figure.get_attribute("aria-label"), **drawn})
+        seen["figures"].append({"kind": figure.get_attribute("data-figure"), "label": figure.get_attribute("aria-label"), "caption": figure.locator("figcaption").inner_text(), "frame": figure.evaluate(FRAME), **drawn})
+    seen["terminal"] = page.locator("pre").count()
+    seen["cards"] = page.evaluate(CARDS)
     if page.locator(".scene").count():
         view = page.locator(".scene .canvas")
         view.scroll_into_view_if_needed()

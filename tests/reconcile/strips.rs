@@ -107,7 +107,7 @@ impl Mesh {
 
     pub fn job(&self, measured: &str) -> String {
         let mut out = String::from(
-            "title = \"Two strips\"\nunits = \"mm-t-s\"\nreport_units = { force = \"kN\", moment = \"kN m\", length = \"m\" }\n[model]\ndeck = \"deck.bdf\"\n",
+            "title = \"Two strips\"\nunits = \"mm-t-s\"\nreport_units = { force = \"kN\", moment = \"kN m\", length = \"m\" }\n[model]\ndeck = \"deck.bdf\"\nmesh_error = false\n",
         );
         for (name, (strip, row, station)) in LOADS {
             let grid = self.grid(strip, row, station);

@@ -46,7 +46,7 @@ fn job(more: &str) -> String {
 
 fn job_of(gauged: &[usize], more: &str) -> String {
     let mut text = format!(
-        "units = \"mm-t-s\"\n[model]\ndeck = \"beam.bdf\"\n[[load]]\nname = \"tip\"\ngrid = {}\ncomponent = \"FY\"\nexpected = 10.0\n",
+        "units = \"mm-t-s\"\n[model]\ndeck = \"beam.bdf\"\nmesh_error = false\n[[load]]\nname = \"tip\"\ngrid = {}\ncomponent = \"FY\"\nexpected = 10.0\n",
         N + 1
     );
     for e in gauged {

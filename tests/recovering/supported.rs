@@ -43,7 +43,8 @@ pub(super) fn deck() -> String {
 }
 
 pub(super) fn job() -> String {
-    let mut text = "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\n".to_owned();
+    let mut text =
+        "units = \"mm-t-s\"\n[model]\ndeck = \"plate.bdf\"\nmesh_error = false\n".to_owned();
     for (name, at, component) in [
         ("tip", grid(LONG, 1), "FZ"),
         ("corner", grid(LONG, WIDE), "FZ"),

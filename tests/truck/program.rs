@@ -32,7 +32,7 @@ pub fn run(arguments: &[&str], out: &Path) -> (i32, serde_json::Value, String) {
 pub fn head() -> String {
     let mut text = String::from(
         "title = \"truck\"\nunits = \"mm-t-s\"\nreport_units = { force = \"kN\", moment = \"kN m\", length = \"m\", mass = \"kg\" }\n\
-         [model]\ndeck = \"truck.bdf\"\n",
+         [model]\ndeck = \"truck.bdf\"\nmesh_error = false\n",
     );
     for (name, id) in crate::world::NAMES.iter().zip(crate::world::WHEELS) {
         text += &format!(

@@ -1,6 +1,7 @@
 //! Variants of a model on its factor, against solutions with a factor of their own.
 
 use crate::adjoint::{scaled, tray};
+use strainbridge::fe::shell_frame::ShellPlace;
 use strainbridge::fe::*;
 use strainbridge::model::{Model, ShellKind, Vec3};
 
@@ -118,4 +119,99 @@ fn variants_on_the_factor_of_their_base_are_those_with_factors_of_their_own() {
             );
         }
     }
+}
+
+/// Readings at the centre and at a corner of shells, on both surfaces.
+fn readings() -> Vec<Vec<StrainTerm>> {
+    let term = |shell: u32, surface, place, coefficient| StrainTerm {
+        shell: strainbridge::model::ShellIx(shell),
+        surface,
+        place,
+        coefficient,
+    };
+    let (bottom, top) = (strain_tensor::Surface::Bottom, strain_tensor::Surface::Top);
+    vec![
+        vec![term(0, top, ShellPlace::Centre, [1.0, 0.0, 0.0])],
+        vec![term(10, bottom, ShellPlace::Corner(2), [0.4, 0.6, 0.2])],
+        vec![
+            term(17, top, ShellPlace::Centre, [0.5, 0.5, 0.5]),
+            term(18, bottom, ShellPlace::Centre, [-0.5, 0.5, 0.5]),
+        ],
+    ]
+}
+
+/// The readings of a solution, by reading and load.
+fn read_all(solution: &Solution) -> Vec<f64> {
+    let of = |t: &StrainTerm, c: &CaseResult| -> f64 {
+        let at = c.shells.elements.iter().position(|s| *s == t.shell);
+        let side = t.surface.ix();
+        let strain = match t.place {
+            ShellPlace::Centre => c.shells.centre[at.unwrap()][side],
+            ShellPlace::Corner(k) => c.shells.corners[at.unwrap()][k][side],
+        };
+        strain.iter().zip(t.coefficient).map(|(e, c)| e * c).sum()
+    };
+    let all = readings();
+    let rows = all.iter().flat_map(|terms| {
+        let sum = |c: &CaseResult| terms.iter().map(|t| of(t, c)).sum::<f64>();
+        solution.cases.iter().map(sum).collect::<Vec<f64>>()
+    });
+    rows.collect()
+}
+
+#[test]
+fn changes_of_readings_are_exact_for_bushes_and_first_order_for_shells() {
+    let model = model();
+    let loads =
+        [(3, [300.0, -200.0, 500.0]), (45, [0.0, 700.0, 0.0])].map(|(g, f)| UnitLoad::AtGrid {
+            grid: strainbridge::model::GridIx(g),
+            force: f.into(),
+            moment: [0.0, 1.0e4, 0.0].into(),
+        });
+    let held = Support {
+        spc: Some(1),
+        relief: Relief::None,
+        by_springs: 0,
+    };
+    let steps = [2e-2, 1e-2];
+    let variants = [
+        bush(&model, 2.0),
+        bush(&model, 0.01),
+        thicker(&model, 1.0 + steps[0]),
+        thicker(&model, 1.0 + steps[1]),
+    ];
+    for support in [Support::free(&model), held] {
+        let options = SolveOptions::default();
+        let own = |m: &Model| {
+            let solved = solve_unit_loads_on(m, support, &loads, &options).unwrap();
+            read_all(&solved.0)
+        };
+        let base = own(&model);
+        let (of, all) = (readings(), variants.iter().cloned());
+        let found = reading_changes(&model, support, &loads, &of, all, &options);
+        let found = found.unwrap().unwrap();
+        let errors: Vec<f64> = found
+            .iter()
+            .zip(&variants)
+            .map(|(got, variant)| {
+                let right = own(variant);
+                let right: Vec<f64> = right.iter().zip(&base).map(|(a, b)| a - b).collect();
+                let largest = right.iter().fold(0.0_f64, |a, v| a.max(v.abs()));
+                let off = got.iter().zip(&right).map(|(a, b)| (a - b).abs());
+                off.fold(0.0, f64::max) / largest
+            })
+            .collect();
+        // Rounding alone for bushes.
+        assert!(errors[0] < 1e-8 && errors[1] < 1e-8, "{errors:?}");
+        // Bending goes with the cube of the thickness: the relative error of a first order is a few times the step, and falls with it.
+        assert!(errors[2] < 5.0 * steps[0], "{errors:?}");
+        let ratio = errors[2] / errors[3];
+        assert!((ratio - 2.0).abs() < 0.1, "{errors:?}");
+    }
+    // A moved grid is no change of stiffness alone.
+    let none = [moved(&model)].into_iter();
+    let support = Support::free(&model);
+    let options = SolveOptions::default();
+    let found = reading_changes(&model, support, &loads, &readings(), none, &options);
+    assert_eq!(found.unwrap(), None);
 }

@@ -45,14 +45,15 @@ pub(super) fn report_units() -> ReportUnits {
     units
 }
 
-fn head(results: Option<&str>) -> String {
-    let results = results.map_or(String::new(), |r| format!("results = [\"{r}\"]\n"));
-    format!(
-        "title = \"Roll-off truck\"\nunits = \"mm-t-s\"\n\
-         report_units = {{ force = \"kN\", moment = \"kN m\", length = \"m\", mass = \"kg\" }}\n\n\
-         [model]\ndeck = \"truck.bdf\"\n{results}\n"
-    )
-}
+/// First lines of every job.
+const HEAD: &str = r#"title = "Roll-off truck"
+units = "mm-t-s"
+report_units = { force = "kN", moment = "kN m", length = "m", mass = "kg" }
+
+[model]
+deck = "truck.bdf"
+
+"#;
 
 fn load(name: &str, grid: u32, component: &str, expected: f64) -> String {
     format!(
@@ -92,14 +93,14 @@ fn runs() -> String {
 }
 
 /// Unit loads and where gauges may go.
-pub(super) fn plan(results: Option<&str>) -> String {
+pub(super) fn plan() -> String {
     let properties: Vec<String> = ZONES
         .iter()
         .map(|z| z.1)
         .chain(31..=37)
         .map(|p| p.to_string())
         .collect();
-    head(results)
+    HEAD.to_owned()
         + &wheel_loads()
         + &payload_loads()
         + &format!(
@@ -112,13 +113,13 @@ pub(super) fn plan(results: Option<&str>) -> String {
 
 /// Nine loads from strain.
 pub(super) fn recover(strain: &str) -> String {
-    head(Some("1-solve/results.op2")) + &wheel_loads() + &payload_loads() + &measured(strain)
+    HEAD.to_owned() + &wheel_loads() + &payload_loads() + &measured(strain)
 }
 
 /// Measured wheel forces against strain.
 pub(super) fn reconcile() -> String {
     let zones: Vec<String> = ZONES.iter().map(|(n, p)| format!("{n} = [{p}]")).collect();
-    head(None)
+    HEAD.to_owned()
         + &wheel_loads()
         + &measured("strain.csv")
         + &runs()
@@ -131,7 +132,7 @@ pub(super) fn reconcile() -> String {
 
 /// Size and place of the payload.
 pub(super) fn payload(strain: &str) -> String {
-    head(Some("1-solve/results.op2"))
+    HEAD.to_owned()
         + &wheel_loads()
         + &payload_loads()
         + &measured(strain)
@@ -143,7 +144,7 @@ pub(super) fn payload(strain: &str) -> String {
 
 /// Stress under the recovered loads.
 pub(super) fn respond(strain: &str) -> String {
-    head(Some("1-solve/results.op2"))
+    HEAD.to_owned()
         + &wheel_loads()
         + &payload_loads()
         + &measured(strain)

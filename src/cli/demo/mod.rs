@@ -86,14 +86,14 @@ impl Answer for Story {
 
     fn verdict(&self) -> String {
         let [before, after] = [self.wheel_force_error.before, self.wheel_force_error.after];
-        let (hidden, before) = (&self.hidden, percent(before));
-        match self.named.contains(hidden) {
+        let (hidden, before) = (in_words(&self.hidden), percent(before));
+        match self.named.contains(&self.hidden) {
             true => format!(
-                "The hidden effect {hidden} is found: with it in the model, the error of the wheel loads falls from {before} to {} (rms).",
+                "{hidden}, and `reconcile` finds it: with the sign corrected, the error of the wheel loads falls from {before} to {} (rms).",
                 percent(after)
             ),
             false => format!(
-                "The hidden effect {hidden} is not found: the error of the wheel loads is {before} (rms)."
+                "{hidden}, and `reconcile` does not find it: the error of the wheel loads is {before} (rms)."
             ),
         }
     }
@@ -148,7 +148,7 @@ fn planned(
     story: &mut Vec<Chapter>,
 ) -> Result<Vec<simulated_measurements::Glued>, Faults> {
     write(folder, "truck.bdf", DECK)?;
-    let plan = write(folder, "solve.toml", &jobs::plan(None))?;
+    let plan = write(folder, "solve.toml", &jobs::plan())?;
     let step = play(work, "solve", folder, "1-solve", &plan)?;
     story.push(Chapter {
         folder: "1-solve",
@@ -167,11 +167,7 @@ fn planned(
         command: "solve",
         step,
     });
-    let place = write(
-        folder,
-        "place.toml",
-        &jobs::plan(Some("1-solve/results.op2")),
-    )?;
+    let place = write(folder, "place.toml", &jobs::plan())?;
     let step = play(work, "place", folder, "2-place", &place)?;
     let gauges = simulated_measurements::Glued::of(&step.result);
     story.push(Chapter {
@@ -303,12 +299,12 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
             ),
         ],
         words: format!(
-            "Hidden effect {}, identified {}. Gap on held-out runs: {:.1} % before, {:.1} % after.",
-            measured.hidden,
-            if named.is_empty() {
-                "nothing".to_owned()
-            } else {
-                named.join(", ")
+            "{}. Identified: {}. Gap on held-out runs: {:.1} % before, {:.1} % after.",
+            in_words(&measured.hidden),
+            match named.as_slice() {
+                [] => "nothing".to_owned(),
+                [one] if *one == measured.hidden => "the same".to_owned(),
+                all => all.join(", "),
             },
             100.0 * gap["before"].as_f64().unwrap_or(f64::NAN),
             100.0 * gap["after"].as_f64().unwrap_or(f64::NAN)
@@ -357,6 +353,14 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
         chapters: story,
         folder: folder.to_owned(),
     })
+}
+
+/// The hidden effect as a clause.
+fn in_words(hidden: &str) -> String {
+    match hidden.strip_prefix("sign_flip:") {
+        Some(gauge) => format!("Gauge {gauge} has reversed polarity on purpose"),
+        None => format!("The effect {hidden} is hidden on purpose"),
+    }
 }
 
 fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {

@@ -8,7 +8,7 @@ use crate::fe::{CaseResult, UnitLoad};
 use crate::gauge::{CornerRows, Gauge, GaugeSpec, build, on_refined, reading};
 use crate::host::fault::{Fault, Faults};
 use crate::model::{GridIx, Model, Vec3};
-use crate::report::figure::{Figure, intervals};
+use crate::report::figure::{Ends, Figure, intervals};
 use crate::units::{KILO, MICROSTRAIN, STANDARD_GRAVITY_M_S2};
 use nastran::bdf::{MemoryLoader, read_deck};
 use rand::{RngExt, SeedableRng};
@@ -98,13 +98,17 @@ impl Simulated {
         let runs = self.truth.iter().map(of_run);
         let (_, run, rows) = runs.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or_default();
         let shown = rows.iter().map(|(name, ends, _)| (name.clone(), *ends));
-        let title = format!("run {run}: recovered (blue, 95 %) and true (red) load, kN");
-        let mut figure = intervals(&[(run, shown.collect())], &title);
+        let title = format!("load of run {run}, kN");
+        let caption = "Recovered loads with 95 % intervals, and the true loads: an interval that contains the true load is right.";
+        let mut figure = intervals(&[(run, shown.collect())], &title, Ends::Interval, caption);
         if let Some((_, traces)) = figure.choices.first_mut() {
+            for trace in traces.iter_mut() {
+                trace["name"] = json!("recovered, 95 % interval");
+            }
             let names: Vec<&String> = rows.iter().map(|r| &r.0).collect();
             let truth: Vec<f64> = rows.iter().map(|r| r.2).collect();
             traces.push(json!({
-                "type": "scatter", "mode": "markers", "x": truth, "y": names,
+                "type": "scatter", "mode": "markers", "name": "true load", "x": truth, "y": names,
                 "marker": { "size": 9, "color": "#c0392b", "symbol": "x" },
             }));
         }

@@ -26,7 +26,7 @@ pub(super) fn model(c: &mut Collector, raw: Option<&Spanned<RawModel>>) -> Optio
             Some(s) => c.line(s),
             None => c.line(section),
         },
-        mesh_error: raw.mesh_error.as_ref().is_some_and(|m| *m.value()),
+        mesh_error: raw.mesh_error.as_ref().map(|m| *m.value()),
     })
 }
 

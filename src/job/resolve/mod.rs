@@ -123,8 +123,14 @@ pub(super) fn candidates_of(c: &mut Collector, raw: &Spanned<RawCandidates>) -> 
 
 /// Refuses two channels of one name: a strain column then belongs to both. Names that differ by case or spaces alone count as one name.
 pub(super) fn check_names(job: &Job, faults: &mut FaultList) {
+    check_names_of(job.gauges.iter(), faults);
+    let spots = job.candidates.spots.iter().flatten();
+    check_names_of(spots.map(|s| &s.gauge), faults);
+}
+
+fn check_names_of<'a>(gauges: impl Iterator<Item = &'a JobGauge>, faults: &mut FaultList) {
     let mut seen: BTreeMap<String, (&str, &JobGauge)> = BTreeMap::new();
-    for g in &job.gauges {
+    for g in gauges {
         let mut own = readings_of(g);
         // A table of S may have a row for a rosette as one channel.
         own.push(g.name.clone());

@@ -10,6 +10,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::gauge::Bridge;
 use crate::placement::Loss;
 use crate::study::ErrorKind;
+use std::ops::Range;
 
 /// Noise of a strain channel if the job states none, microstrain.
 pub(super) const DEFAULT_NOISE_MICROSTRAIN: f64 = 1.0;
@@ -40,6 +41,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         exclude_elements: None,
         wanted_elements: None,
         file: None,
+        spots: None,
         boxes: Vec::new(),
         exclude_boxes: Vec::new(),
         clear: Clearances::default(),
@@ -117,6 +119,9 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
     out.exclude_elements = ids(&raw.exclude_elements);
     out.wanted_elements = ids(&raw.wanted_elements);
     out.file = c.named(&raw.file, "candidates.file");
+    if out.file.as_ref().is_some_and(|f| !f.is_toml()) {
+        refuse_search_keys(c, section);
+    }
     out.boxes = boxes(c, &raw.boxes, "candidates.boxes");
     out.exclude_boxes = boxes(c, &raw.exclude_boxes, "candidates.exclude_boxes");
     if let Some(clear) = &raw.clear_of {
@@ -132,6 +137,47 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
         };
     }
     out
+}
+
+/// Refuses the keys that describe where a search may put gauges: a table of spots states every place, side and direction.
+fn refuse_search_keys(c: &mut Collector, section: &Spanned<RawCandidates>) {
+    let raw = section.value();
+    fn at<T>(
+        key: &'static str,
+        value: &Option<Spanned<T>>,
+    ) -> Option<(&'static str, Range<usize>)> {
+        value.as_ref().map(|v| (key, v.span()))
+    }
+    let stated = [
+        at("properties", &raw.properties),
+        at("elements", &raw.elements),
+        at("surfaces", &raw.surfaces),
+        at("angle_step_deg", &raw.angle_step_deg),
+        at("grid_length", &raw.grid_length),
+        at("bridge", &raw.bridge),
+        at("rosette", &raw.rosette),
+        at("sets", &raw.sets),
+        at("exclude_properties", &raw.exclude_properties),
+        at("exclude_elements", &raw.exclude_elements),
+        at("wanted_elements", &raw.wanted_elements),
+        at("boxes", &raw.boxes),
+        at("exclude_boxes", &raw.exclude_boxes),
+        (raw.clear_of.is_some()).then(|| ("clear_of", section.span())),
+    ];
+    for (key, span) in stated.into_iter().flatten() {
+        let remedy = match key {
+            "grid_length" | "bridge" | "rosette" => {
+                format!("delete the key, and state the column `{key}` of the table instead")
+            }
+            _ => "delete the key, and the rows of spots that are not wanted".to_owned(),
+        };
+        c.fault(
+            &Spanned::new(span, ()),
+            &format!("candidates.{key}"),
+            "`file` is a table of spots, which states every place: this key has no use",
+            remedy,
+        );
+    }
 }
 
 /// Boxes of two or three ranges, each low before high.

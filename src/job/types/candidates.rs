@@ -1,5 +1,6 @@
 //! `[candidates]`.
 
+use super::gauge::JobGauge;
 use super::named_file::NamedFile;
 use super::region::Region;
 use crate::fe::strain_tensor::Surface;
@@ -40,8 +41,10 @@ pub struct Candidates {
     pub exclude_elements: Option<Ids>,
     /// Elements of which each gets a gauge.
     pub wanted_elements: Option<Ids>,
-    /// A file with lists of properties and elements.
+    /// A TOML file with lists of properties and elements, or a table of named spots.
     pub file: Option<NamedFile>,
+    /// The spots of that table: gauges are chosen from these alone. `None`: the file is not a table.
+    pub spots: Option<Vec<NamedSpot>>,
     /// Boxes in which gauges may sit; empty: anywhere.
     pub boxes: Vec<Region>,
     /// Boxes in which they may not.
@@ -50,6 +53,22 @@ pub struct Candidates {
     pub clear: Clearances,
     /// Line of the job; 0 where the section is absent.
     pub line: u32,
+}
+
+/// A named place with a fixed direction that a gauge may be chosen for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedSpot {
+    /// The gauge as it would be installed there.
+    pub gauge: JobGauge,
+    /// Cost in the unit of `[placement] budget`; `None`: one for each channel.
+    pub cost: Option<f64>,
+}
+
+impl Candidates {
+    /// Returns whether the spots state costs.
+    pub fn has_costs(&self) -> bool {
+        self.spots.iter().flatten().any(|s| s.cost.is_some())
+    }
 }
 
 /// `clear_of` of `[candidates]`: least distances, 0 where not stated.

@@ -28,7 +28,7 @@ mod vehicle;
 pub use super::shapes::{Ids, PropertyIds};
 pub use ballast::Ballast;
 pub use calibration::{CalibrationKeys, Terms};
-pub use candidates::{AngleStep, Candidates, Clearances};
+pub use candidates::{AngleStep, Candidates, Clearances, NamedSpot};
 pub use compare::{Compare, TimeShift};
 pub use correction::StrainCorrection;
 pub use dynamic::Dynamic;

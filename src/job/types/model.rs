@@ -14,6 +14,6 @@ pub struct ModelFiles {
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,
-    /// Whether the strain of the built-in solver is corrected for the mesh error, with the remaining error in the covariance.
-    pub mesh_error: bool,
+    /// Whether the error of the mesh is subtracted from the strain of the built-in solver and its remainder is in the covariance. `None`: for small decks.
+    pub mesh_error: Option<bool>,
 }

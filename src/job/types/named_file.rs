@@ -10,3 +10,11 @@ pub struct NamedFile {
     /// Line of the job.
     pub line: u32,
 }
+
+impl NamedFile {
+    /// Returns whether the name ends with `.toml`.
+    pub fn is_toml(&self) -> bool {
+        let ending = self.given.rsplit_once('.');
+        ending.is_some_and(|(_, e)| e.eq_ignore_ascii_case("toml"))
+    }
+}

@@ -200,7 +200,7 @@ fn page(found: &Outcome<Ballasted>) -> Page {
             &gaps,
             &format!("{}, difference from measured", units.force.name),
         ),
-        "Before: the deck as given. After: the completed deck. Smaller is better.",
+        "Before: the deck as given. After: the completed deck.",
     ));
     let title = &found.job.title;
     Page::new(

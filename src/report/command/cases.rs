@@ -6,6 +6,7 @@ use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page};
+use crate::report::scene::{scene_of_loads, scene_section};
 use crate::units::number;
 use crate::workflow::cases::UnitLoadDeck;
 use serde_json::Value;
@@ -24,7 +25,10 @@ impl Report for Outcome<UnitLoadDeck> {
             &self.title,
             "Unit-load deck: run unit_loads.bdf, then name its OP2 as [model] results",
             &self.findings,
-            Vec::new(),
+            vec![scene_section(
+                "Loads",
+                &scene_of_loads(&self.job, &self.model),
+            )],
         );
         Some(page)
     }

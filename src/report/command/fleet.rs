@@ -9,7 +9,7 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::page::{KeyNumber, Page};
 use crate::series::rainflow::Ratio;
-use crate::units::number;
+use crate::units::{number, plus_minus};
 use crate::workflow::fleet::{Fleet, MissionAnswer, VehicleAnswer, VehicleLoadAnswer};
 use std::fmt::Write;
 
@@ -88,6 +88,23 @@ impl Report for Outcome<Fleet> {
             KeyNumber::new(format!("{} times", number(l.relative)), meaning)
         }));
         numbers
+    }
+
+    /// Returns a row for each load of each vehicle, the largest damage against the mean of the fleet first.
+    fn result_table(&self) -> ConsoleTable {
+        let mut rows: Vec<(&VehicleAnswer, &VehicleLoadAnswer)> = self.rows().collect();
+        rows.sort_by(|a, b| b.1.relative.total_cmp(&a.1.relative));
+        let row = |(v, l): &(&VehicleAnswer, &VehicleLoadAnswer)| {
+            let half = 0.5 * (l.damage_high - l.damage_low) * l.relative / l.damage;
+            let [min, max] = [l.min, l.max].map(|v| number(v.unwrap_or(f64::NAN)));
+            let load = format!("{}, {}", l.load, l.unit);
+            vec![v.name.clone(), load, plus_minus(l.relative, half), min, max]
+        };
+        ConsoleTable::new(
+            "Damage an hour, mean of the fleet = 1 (± half width of the 95 % interval), and extremes",
+            &["vehicle", "load", "damage", "smallest", "largest"],
+            rows.iter().map(row).collect(),
+        )
     }
 
     fn console(&self) -> Console {

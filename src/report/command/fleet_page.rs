@@ -1,8 +1,9 @@
 //! The report of `fleet`.
 
+use super::fleet_damage::damage_section;
 use crate::host::outcome::Outcome;
-use crate::report::figure::{Line, Scale, intervals, lines};
-use crate::report::page::{Block, CellLink, Page, Paper, Section, figure_section};
+use crate::report::figure::{Line, Scale, lines};
+use crate::report::page::{Block, CellLink, Page, Paper, Section};
 use crate::series::rainflow::Ratio;
 use crate::units::number;
 use crate::workflow::fleet::{
@@ -26,30 +27,10 @@ pub(super) fn page(o: &Outcome<Fleet>) -> Page {
         number(hours),
         o.slope
     );
-    let mut sections = vec![vehicles(o)];
+    let mut sections: Vec<Section> = damage_section(o).into_iter().collect();
+    sections.push(vehicles(o));
     sections.extend(compared(o));
     sections.extend(o.mission.as_ref().map(mission));
-    let mut by_load: Vec<(String, Vec<(String, [f64; 3])>)> = Vec::new();
-    for (v, l) in o.rows() {
-        let row = (
-            v.name.clone(),
-            [l.damage_low, l.damage, l.damage_high].map(|d| d / l.hours),
-        );
-        match by_load.iter_mut().find(|g| g.0 == l.load) {
-            Some(group) => group.1.push(row),
-            None => by_load.push((l.load.clone(), vec![row])),
-        }
-    }
-    for (_, list) in &mut by_load {
-        list.sort_by(|a, b| b.1[1].total_cmp(&a.1[1]));
-    }
-    if !by_load.is_empty() {
-        sections.push(figure_section(
-            "Damage an hour",
-            intervals(&by_load, &damage_unit(o)),
-            "",
-        ));
-    }
     for v in o.vehicles.iter().take(DRAWN) {
         sections.extend([days(v, o.slope), health(v)]);
     }
@@ -59,17 +40,6 @@ pub(super) fn page(o: &Outcome<Fleet>) -> Page {
     }
     sections.push(files(o));
     Page::new(&o.title, &lead, &o.findings, sections).on_paper(Paper::Report)
-}
-
-/// Damage an hour: the loads' unit to the power of the slope; where loads have several, that of each.
-fn damage_unit(o: &Fleet) -> String {
-    let mut units = o.rows().map(|(_, l)| l.unit.as_str());
-    let first = units.next().unwrap_or_default();
-    let unit = match units.all(|u| u == first) && !first.is_empty() {
-        true => first,
-        false => "unit of the load",
-    };
-    format!("damage per hour, ({unit})^{}", o.slope)
 }
 
 /// Numbers of a gauge by day.
@@ -133,11 +103,20 @@ fn health(v: &VehicleAnswer) -> Section {
             "day",
             "mean reading, µε",
             Scale::Linear,
+            "Mean reading of each day, and minus the prediction of the other gauges: level lines are better, a step or a drift is a fault of the gauge.",
         )));
         let of_gain: OfDays = |g| &g.gain;
-        for (what, of) in [
-            ("gain relative to the others", of_gain),
-            ("noise, µε", |g| &g.noise),
+        for (what, of, caption) in [
+            (
+                "gain relative to the others",
+                of_gain,
+                "Gain of the gauge against the other gauges by day: nearer to 1, and level, is better.",
+            ),
+            (
+                "noise, µε",
+                |g| &g.noise,
+                "Noise of the gauge by day: lower and level is better.",
+            ),
         ] {
             let series: Vec<(&str, Vec<f64>)> = v
                 .gauges
@@ -148,7 +127,13 @@ fn health(v: &VehicleAnswer) -> Section {
                 .iter()
                 .map(|(name, y)| ((*name).to_owned(), vec![Line { name, x: &x, y }]))
                 .collect();
-            blocks.push(Block::Figure(lines(&groups, "day", what, Scale::Linear)));
+            blocks.push(Block::Figure(lines(
+                &groups,
+                "day",
+                what,
+                Scale::Linear,
+                caption,
+            )));
         }
     }
     Section::new(format!("Gauges of {} by day", v.name), blocks)

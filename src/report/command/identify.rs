@@ -65,6 +65,7 @@ impl Report for Outcome<Identified> {
                 histories: history_curves(&shown.loads, &shown.motion),
                 spectra: spectrum_curves(&shown.loads, &shown.motion),
                 restoring: restoring_curves(found, &shown.motion),
+                band_hz: self.band_hz,
             },
             &self.forces,
         );

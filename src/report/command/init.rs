@@ -1,11 +1,12 @@
 //! Files and words of `init`.
 
-use super::Report;
+use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{Block, KeyNumber, Page, Section};
+use crate::report::scene::{scene_of_loads, scene_section};
 use crate::workflow::init::{NotProposed, Proposal};
 
 /// Lines of a block: a notebook cuts longer ones.
@@ -22,20 +23,24 @@ fn pieces(lines: &[&str]) -> Vec<Block> {
 }
 
 impl Report for Outcome<Proposal> {
-    const FILES: &'static [&'static str] = &["result.json"];
-
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
-        Ok(out.write_bytes(self.job, self.text.as_bytes())?)
+        out.write_bytes(self.job, self.text.as_bytes())?;
+        write_page(out, self)
     }
 
-    /// Returns the page for a notebook. `init` writes no report file: the job that it proposes is the only file.
     fn page(&self) -> Option<Page> {
-        let next = self.console().next.map(Block::Text);
+        let next = self
+            .console()
+            .next
+            .map(|next| Block::Text(format!("Next: {next}.")));
         let mut proposed: Vec<Block> = next.into_iter().collect();
         if !self.loads.is_empty() {
             proposed.push(Block::Stressed("Loads:".into(), self.loads.join(", ")));
         }
         let mut sections = vec![Section::new("Proposal", proposed)];
+        if let Some((job, model)) = &self.read {
+            sections.push(scene_section("Proposed loads", &scene_of_loads(job, model)));
+        }
         let to_check: Vec<&str> = self.text.lines().filter(|l| is_open(l)).collect();
         if !to_check.is_empty() {
             sections.push(Section::new("Yours to check", pieces(&to_check)));
@@ -46,7 +51,8 @@ impl Report for Outcome<Proposal> {
             blocks: pieces(&lines),
         };
         sections.push(Section::new("The job", vec![whole]));
-        Some(Page::new(self.job, "", &self.findings, sections))
+        let lead = "A proposal: correct it before you use it";
+        Some(Page::new(self.job, lead, &self.findings, sections))
     }
 
     fn key_numbers(&self) -> Vec<KeyNumber> {
@@ -58,6 +64,21 @@ impl Report for Outcome<Proposal> {
             ),
             KeyNumber::new(self.zones.len().to_string(), "zones of stiffness"),
         ]
+    }
+
+    /// Returns a row for each proposed load, then each load that is left out.
+    fn result_table(&self) -> ConsoleTable {
+        let proposed = self
+            .loads
+            .iter()
+            .map(|name| vec![name.clone(), "proposed".to_owned()]);
+        let left_out = self.left_out.iter();
+        let left_out = left_out.map(|l| vec![l.name.clone(), format!("left out: {}", l.reason)]);
+        ConsoleTable::new(
+            "Loads",
+            &["load", "in the job"],
+            proposed.chain(left_out).collect(),
+        )
     }
 
     fn console(&self) -> Console {
@@ -109,6 +130,7 @@ mod tests {
                 text: format!("{open}\n{}\n", rows.join("\n")),
                 path: "job.toml".into(),
                 zones: Default::default(),
+                read: None,
                 purpose: None,
             },
         };
@@ -116,6 +138,5 @@ mod tests {
         assert!(rows.iter().all(|r| html.contains(r.as_str())), "{html}");
         assert_eq!(html.matches("# check: by Young").count(), 2);
         assert!(html.contains("LF.FZ, RF.FZ") && html.contains("proposes 2 loads"));
-        assert!(!html.contains("report.html"), "{html}");
     }
 }

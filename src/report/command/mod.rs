@@ -6,6 +6,7 @@ mod cases;
 mod check;
 mod columns;
 mod fleet;
+mod fleet_damage;
 mod fleet_page;
 #[cfg(feature = "parquet")]
 mod fleet_parquet;

@@ -9,7 +9,7 @@ use crate::model::{Model, Vec3};
 use crate::payload::{WeighedRun, Weighing};
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::figure::{IntervalRow, intervals};
+use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{KeyNumber, Page, Paper, Section, figure_section, table_section};
 use crate::report::scene::{Arrow, ArrowSet, Twist, scene_of_job, scene_section};
 use crate::units::{MICROSTRAIN, factor, number, plus_minus};
@@ -322,7 +322,12 @@ fn gauge_sections(weighing: &Weighing, force: &str) -> [Section; 2] {
         .collect();
     let together = figure_section(
         "Single gauges and all together",
-        intervals(&runs, force),
+        intervals(
+            &runs,
+            force,
+            Ends::Interval,
+            "Payload from each gauge alone and from all gauges, with 95 % intervals: shorter intervals that overlap are better.",
+        ),
         "A gauge alone whose interval is wider than the payload is left out.",
     );
     [alone, together]

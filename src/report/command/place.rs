@@ -34,9 +34,12 @@ impl Report for Outcome<Placed> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let (s, model, job) = (&self.sensitivity, self.fields.model(), &self.job);
         let length = job.units.unit(crate::units::Quantity::Length).name;
-        out.declare("gauges.csv", GAUGES.map(|(c, u)| (c, unit(u, length))));
         let grid_length = job.candidates.grid_length;
         out.write("gauges.csv", |w| gauges_csv(w, &self.gauges, grid_length))?;
+        declare_written(out, "gauges.csv", |c| {
+            let stated = GAUGES.iter().find(|g| g.0 == c).map_or("", |g| g.1);
+            unit(stated, length).to_owned()
+        })?;
         out.declare("sensitivity.csv", super::sensitivity::columns(job, s));
         out.write("sensitivity.csv", |w| sensitivity_csv(w, s))?;
         out.write("gluing_sheet.csv", |w| {

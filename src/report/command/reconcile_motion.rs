@@ -253,7 +253,7 @@ fn gap_section(outcome: &MotionOutcome) -> Section {
     Section::new(
         "Gap before and after",
         vec![
-            Block::Figure(gap_by_channel(&gaps, "% of the measured quantity,")),
+            Block::Figure(gap_by_channel(&gaps, "% of the measured quantity, rms")),
             Block::Note(format!(
                 "On {}, by equation of motion; stroke: the floor.",
                 outcome.judged_by.words()

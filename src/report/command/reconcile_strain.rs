@@ -63,6 +63,7 @@ pub(super) fn strain_page(outcome: &Outcome<Reconciled>, found: &StrainPart) -> 
         arrows: Vec::new(),
         length: job.units.unit(crate::units::Quantity::Length).name,
         pointing: Pointing::Nothing,
+        caption: "Circles show the gap of each gauge, orange before and blue after: smaller circles are better.".to_owned(),
     });
     reconcile_page(&GapReport {
         title: &job.title,

@@ -258,6 +258,7 @@ fn sections(r: &Responded) -> Vec<Section> {
         if !stress.is_empty() {
             scene.fields = stress;
         }
+        scene.caption = "Colour shows the von Mises stress, first of the state with the largest: darker is worse. Marks show the hot spots.".to_owned();
         out.push(scene_section("Hot spots on the model", &scene));
     }
     if !r.check.rows.is_empty() {

@@ -1,6 +1,8 @@
 //! Files and words of `strains`.
 
 use super::{Report, write_page};
+use crate::fe::CaseResult;
+use crate::fe::strain_rows::{StrainRow, hottest, largest_strain};
 use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
@@ -9,6 +11,7 @@ use crate::report::console::{Console, ConsoleTable};
 use crate::report::page::{KeyNumber, Page};
 use crate::report::strain::strains_page;
 use crate::report::{strains_columns, write_strains};
+use crate::units::number;
 use crate::workflow::strains::Strains;
 
 impl Report for Outcome<Strains> {
@@ -34,6 +37,26 @@ impl Report for Outcome<Strains> {
             KeyNumber::new(self.subcases.to_string(), "static subcases"),
             KeyNumber::new(self.model.shells.len().to_string(), "shells of the model"),
         ]
+    }
+
+    /// Returns a row for each subcase: its element of the largest strain.
+    fn result_table(&self) -> ConsoleTable {
+        let row = |case: &CaseResult| {
+            let largest = hottest(&self.model, case, 1);
+            let of = |of: &dyn Fn(&StrainRow) -> String| {
+                largest.first().map_or_else(|| "-".to_owned(), of)
+            };
+            vec![
+                format!("{} {}", case.subcase, case.label).trim().to_owned(),
+                of(&|r| number(1e6 * largest_strain(r))),
+                of(&|r| format!("{} {}", r.card, r.element)),
+            ]
+        };
+        ConsoleTable::new(
+            "Largest strain of each subcase in any direction",
+            &["subcase", "strain, µε", "element"],
+            self.solution.cases.iter().map(row).collect(),
+        )
     }
 
     fn console(&self) -> Console {

@@ -8,13 +8,14 @@ use crate::host::output::Output;
 use crate::host::words::count_of;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
-use crate::report::figure::{IntervalRow, intervals};
+use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{KeyNumber, Page, Section, figure_section, table_section};
-use crate::units::{half_width, number, percent, plus_minus};
-use crate::workflow::study::{Studied, StudiedLayout, StudiedLoad};
+use crate::units::{Quantity, half_width, number, percent, plus_minus};
+use crate::workflow::study::{LayoutGauge, LayoutGauges, Studied, StudiedLayout, StudiedLoad};
 
 impl Report for Outcome<Studied> {
-    const FILES: &'static [&'static str] = &["result.json", "report.html", "study.csv"];
+    const FILES: &'static [&'static str] =
+        &["result.json", "report.html", "study.csv", "layouts.csv"];
 
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
         let loads = self.study.first().map_or(&[][..], |row| &row.loads);
@@ -30,6 +31,18 @@ impl Report for Outcome<Studied> {
             writeln!(w, "{}", header.join(","))?;
             for row in &self.study {
                 writeln!(w, "{}", line(row))?;
+            }
+            Ok(())
+        })?;
+        let length = self.job.units.unit(Quantity::Length).name;
+        let of_layouts = LAYOUT_COLUMNS.map(|(c, u)| (c, if u == "L" { length } else { u }));
+        out.declare("layouts.csv", of_layouts);
+        out.write("layouts.csv", |w| {
+            writeln!(w, "{}", LAYOUT_COLUMNS.map(|c| c.0).join(","))?;
+            for layout in &self.layouts {
+                for gauge in &layout.chosen {
+                    writeln!(w, "{}", gauge_line(layout, gauge))?;
+                }
             }
             Ok(())
         })?;
@@ -126,6 +139,40 @@ const COLUMNS: [&str; 5] = [
     "mean_relative_rms",
 ];
 
+/// Columns of layouts.csv: a row a gauge, the columns from `name` on as those of a gauge table; `L` is the job's length.
+const LAYOUT_COLUMNS: [(&str, &str); 14] = [
+    ("layout", ""),
+    ("gauges", ""),
+    ("name", ""),
+    ("element", ""),
+    ("surface", ""),
+    ("dir_x", ""),
+    ("dir_y", ""),
+    ("dir_z", ""),
+    ("angle_deg", "deg"),
+    ("x", "L"),
+    ("y", "L"),
+    ("z", "L"),
+    ("bridge", ""),
+    ("grid_length", "L"),
+];
+
+fn gauge_line(layout: &LayoutGauges, gauge: &LayoutGauge) -> String {
+    let name = csv_cell(&gauge.name);
+    let place = gauge.place.as_ref().map_or_else(
+        || ",".repeat(10),
+        |p| {
+            let [d, x] = [p.direction, p.position].map(|v| v.map(|c| c.to_string()).join(","));
+            let (element, surface) = (p.element, p.surface);
+            format!(
+                "{element},{surface},{d},0,{x},{},{}",
+                p.bridge, p.grid_length
+            )
+        },
+    );
+    format!("{},{},{name},{place}", layout.layout, layout.gauges)
+}
+
 fn plain(x: Option<f64>) -> f64 {
     x.unwrap_or(f64::NAN)
 }
@@ -195,7 +242,23 @@ fn page(found: &Outcome<Studied>) -> Page {
         title,
         "Effect of errors on recovered loads",
         &found.findings,
-        vec![errors_by_layout(found), section],
+        vec![errors_by_layout(found), section, gauges_by_layout(found)],
+    )
+}
+
+/// The gauges of each layout, by name.
+fn gauges_by_layout(found: &Studied) -> Section {
+    let row = |l: &LayoutGauges| {
+        let names = l.chosen.iter().map(|g| g.name.as_str());
+        let names: Vec<&str> = names.collect();
+        vec![l.layout.clone(), l.gauges.to_string(), names.join(", ")]
+    };
+    let rows: Vec<Vec<String>> = found.layouts.iter().map(row).collect();
+    table_section(
+        "Gauges of each layout",
+        &["layout", "gauges", "names"],
+        &rows,
+        "layouts.csv contains the place of each gauge. A random layout has no list: its errors are those of 50 layouts.",
     )
 }
 
@@ -223,8 +286,13 @@ fn errors_by_layout(found: &Studied) -> Section {
     groups.extend(first.iter().filter(|l| l.wanted).map(of_load));
     figure_section(
         "Error by layout",
-        intervals(&groups, "rms error of the load, % of its size"),
-        "Shorter lines are better: root mean square error over all trials.",
+        intervals(
+            &groups,
+            "rms error of the load, % of its size",
+            Ends::Span,
+            "Root mean square error of a load over all trials, by layout and error: shorter bars are better.",
+        ),
+        "",
     )
 }
 

@@ -5,8 +5,12 @@ use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
 use crate::report::console::{Console, ConsoleTable};
-use crate::report::page::{Block, KeyNumber, Page, Section};
+use crate::report::page::{KeyNumber, Page, table_section};
 use crate::workflow::verify::{Difference, Verified};
+
+fn same(file: &str) -> Vec<String> {
+    vec![file.to_owned(), "the same".to_owned()]
+}
 
 impl Report for Outcome<Verified> {
     fn write(&self, out: &mut Output) -> Result<(), Faults> {
@@ -14,19 +18,22 @@ impl Report for Outcome<Verified> {
     }
 
     fn page(&self) -> Option<Page> {
-        let rows: Vec<Vec<String>> = self
-            .differs
-            .iter()
-            .map(|d| vec![d.file.clone(), d.at.clone(), d.was.clone(), d.now.clone()])
-            .collect();
-        let differs = match rows.is_empty() {
-            true => Block::Text("Nothing.".into()),
-            false => Block::table(&["file", "where", "in the folder", "now"], rows),
-        };
-        let sections = vec![
-            Section::new("Differs", vec![differs]),
-            Section::new("Same", vec![Block::Lines(self.same.join("\n"))]),
-        ];
+        let row = |d: &Difference| vec![d.file.clone(), d.at.clone(), d.was.clone(), d.now.clone()];
+        let mut sections = Vec::new();
+        if !self.differs.is_empty() {
+            sections.push(table_section(
+                "Differences",
+                &["file", "where", "in the folder", "now"],
+                &self.differs.iter().map(row).collect::<Vec<_>>(),
+                "",
+            ));
+        }
+        sections.push(table_section(
+            "Files that are the same",
+            &["file", "check"],
+            &self.same.iter().map(|f| same(f)).collect::<Vec<_>>(),
+            "An input has the digest that the folder states. A table or page has the bytes, and `result.json` the numbers, that its inputs give now.",
+        ));
         let page = Page::new(
             "Verify",
             "A result folder recomputed",
@@ -41,6 +48,20 @@ impl Report for Outcome<Verified> {
             KeyNumber::new(self.same.len().to_string(), "files that are equal"),
             KeyNumber::new(self.differs.len().to_string(), "differences"),
         ]
+    }
+
+    /// Returns a row for each check, the differences first. There is no picture: bytes and numbers are compared.
+    fn result_table(&self) -> ConsoleTable {
+        let differs = self.differs.iter().map(|d| {
+            let place = format!("{} {}", d.file, d.at).trim().to_owned();
+            vec![place, "differs".to_owned()]
+        });
+        let same = self.same.iter().map(|f| same(f));
+        ConsoleTable::new(
+            "Checks of inputs and files",
+            &["file", "check"],
+            differs.chain(same).collect(),
+        )
     }
 
     fn console(&self) -> Console {

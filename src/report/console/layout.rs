@@ -64,16 +64,20 @@ pub fn lay_out(console: &Console, texts: &Texts, room: &Room) -> Layout {
 /// Returns a text in ASCII as far as signs of numbers and units go.
 pub fn ascii(text: &str) -> String {
     /// Signs and their ASCII replacements.
-    const SIGNS: [(&str, &str); 9] = [
+    const SIGNS: [(&str, &str); 13] = [
         ("±", "+-"),
         ("µ", "u"),
         ("μ", "u"),
+        ("ε", "e"),
         ("∞", "inf"),
         ("°", " deg"),
         ("²", "^2"),
         ("³", "^3"),
         ("×", "x"),
         ("·", "*"),
+        ("≥", ">="),
+        ("−", "-"),
+        ("…", "..."),
     ];
     let change = |text: String, sign: &(&str, &str)| text.replace(sign.0, sign.1);
     SIGNS.iter().fold(text.to_owned(), change)

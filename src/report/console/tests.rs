@@ -140,4 +140,7 @@ fn a_terminal_without_utf_8_shows_signs_in_ascii() {
     let text = all_lines(&lay_out(&console, &texts, &room)).join("\n");
     assert!(text.is_ascii() && text.contains("0.50 +- 0.36"), "{text}");
     assert!(text.contains("3 um/m"), "{text}");
+    // Every sign that a table or a message may have.
+    let signs = "± µε μm ∞ ° ² ³ × · ≥ − …";
+    assert_eq!(ascii(signs), "+- ue um inf  deg ^2 ^3 x * >= - ...");
 }

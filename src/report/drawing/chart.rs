@@ -3,7 +3,7 @@
 use super::heat::heat;
 use super::picture::{FAINT, LONGEST, Picture, Shape, UPRIGHT};
 use super::scale::Scale;
-use super::traces::{Kind, Series, names_of, series_of};
+use super::traces::{Kind, Series, names_of, on_white, series_of};
 use crate::report::figure::Figure;
 use serde_json::Value;
 
@@ -12,10 +12,43 @@ const COLOURS: [&str; 9] = [
     "#1f618d", "#d35400", "#1e8449", "#7d3c98", "#b7950b", "#c0392b", "#148f77", "#5d6d7e",
     "#a04000",
 ];
-/// Height of the space of curves and points, and of one row of names, mm.
-const HEIGHT: f64 = 68.0;
-const ROW: f64 = 4.4;
 const MOST_HIGH: f64 = 190.0;
+
+/// Sizes of a picture, mm.
+#[derive(Clone, Copy, Debug)]
+struct Sheet {
+    width: f64,
+    /// Height of the space of curves and points.
+    height: f64,
+    /// Height of one row of names.
+    row: f64,
+    /// Side of a space whose axes are equal.
+    equal: f64,
+}
+
+impl Sheet {
+    /// For A4, and for screens that are wide.
+    const PAPER: Self = Self {
+        width: UPRIGHT,
+        height: 68.0,
+        row: 4.4,
+        equal: 96.0,
+    };
+    /// For a card or a phone, whose words are then as large.
+    const CARD: Self = Self {
+        width: 88.0,
+        height: 44.0,
+        row: 6.0,
+        equal: 60.0,
+    };
+}
+
+/// Points of the edge of what is filled, each of which stands for several.
+const MOST_EDGES: usize = 240;
+/// Width of a bar that spans a range, mm.
+const SPAN: f64 = 2.4;
+/// Colour of a band of the x axis.
+const BAND: &str = "rgba(214,137,16,.16)";
 /// Widest group of bars, mm.
 const WIDEST: f64 = 20.0;
 
@@ -26,7 +59,7 @@ pub(in crate::report) fn pictures(figure: &Figure) -> Vec<Picture> {
         .flat_map(|(name, traces)| {
             let mut list = match traces.iter().find(|t| t["type"] == "heatmap") {
                 Some(map) => heat(map),
-                None => vec![chart(traces, &figure.layout)],
+                None => vec![chart(traces, &figure.layout, Sheet::PAPER)],
             };
             if let Some(first) = list.first_mut() {
                 first.title.clone_from(name);
@@ -35,6 +68,18 @@ pub(in crate::report) fn pictures(figure: &Figure) -> Vec<Picture> {
         })
         .collect()
 }
+
+/// The first choice of a figure for a card or a phone; a map as on paper.
+pub(in crate::report) fn card_picture(figure: &Figure) -> Option<Picture> {
+    let (_, traces) = figure.choices.first()?;
+    match traces.iter().any(|t| t["type"] == "heatmap") {
+        true => pictures(figure).into_iter().next(),
+        false => Some(chart(traces, &figure.layout, Sheet::CARD)),
+    }
+}
+
+/// Axes in a layout.
+const AXES: [&str; 2] = ["xaxis", "yaxis"];
 
 /// One axis: names at equal distances, or a scale.
 enum Axis {
@@ -47,10 +92,15 @@ impl Axis {
         if let Some(names) = names_of(series, k) {
             return Self::Names(names, place);
         }
-        let from_zero = layout["rangemode"] == "tozero";
-        let values = series.iter().flat_map(|s| s.reach(k));
+        let from_zero = layout[AXES[k]]["rangemode"] == "tozero";
+        // Both axes have the values of both where they are to be equal.
+        let axes = match layout["equal"] == true {
+            true => 0..2,
+            false => k..k + 1,
+        };
+        let values = axes.flat_map(|k| series.iter().flat_map(move |s| s.reach(k)));
         let values = values.chain(from_zero.then_some(0.0));
-        Self::Values(Scale::over(values, place, layout["type"] == "log"))
+        Self::Values(Scale::over(values, place, layout[AXES[k]]["type"] == "log"))
     }
 
     fn at(&self, series: &Series, k: usize, i: usize) -> Option<f64> {
@@ -90,24 +140,47 @@ impl Axis {
     }
 }
 
-fn chart(traces: &[Value], layout: &Value) -> Picture {
+fn chart(traces: &[Value], layout: &Value, sheet: Sheet) -> Picture {
     let series = series_of(traces, &COLOURS);
     let (x_names, y_names) = (names_of(&series, 0), names_of(&series, 1));
-    let rows = y_names.as_ref().map(|n| n.len() as f64 * ROW);
-    let inner = rows.unwrap_or(HEIGHT).clamp(2.0 * ROW, MOST_HIGH);
+    // A few names share the height of curves, up to twice their own.
+    let rows = y_names.as_ref().map(|n| {
+        let n = n.len().max(1) as f64;
+        n * (sheet.height / n).clamp(sheet.row, 2.0 * sheet.row)
+    });
+    let is_equal = layout["equal"] == true;
+    let inner = match is_equal {
+        true => sheet.equal,
+        false => rows
+            .unwrap_or(sheet.height)
+            .clamp(2.0 * sheet.row, MOST_HIGH),
+    };
     let mut picture = Picture::default();
-    let top = legend(&mut picture, &series);
+    let named = layout["band"]["name"].as_str();
+    let band = named.and_then(|name| Some((name, on_white(BAND)?)));
+    let top = legend(&mut picture, &series, band.as_ref(), sheet.width);
     let left = Axis::room(y_names, 19.0);
     let below = Axis::room(x_names, 4.5);
-    let (bottom, right) = (top + inner, UPRIGHT - 4.0);
-    picture.size = [UPRIGHT, bottom + below + 4.5];
-    let x = Axis::of(&series, 0, &layout["xaxis"], [left, right]);
+    let bottom = top + inner;
+    let right = match is_equal {
+        true => left + inner,
+        false => sheet.width - 4.0,
+    };
+    picture.size = [sheet.width, bottom + below + 5.5];
+    let x = Axis::of(&series, 0, layout, [left, right]);
     // Names read downwards, values grow upwards.
     let upwards = match names_of(&series, 1) {
         Some(_) => [top, bottom],
         None => [bottom, top],
     };
-    let y = Axis::of(&series, 1, &layout["yaxis"], upwards);
+    let y = Axis::of(&series, 1, layout, upwards);
+    if let (Some((_, colour)), Axis::Values(scale)) = (band, &x) {
+        let ends = [0, 1].map(|i| scale.at(layout["band"]["ends"][i].as_f64()?));
+        if let [Some(from), Some(to)] = ends.map(|e| e.map(|v| v.clamp(left, right))) {
+            let area = [from, top, to - from, inner];
+            picture.shapes.push(Shape::Area(area, colour));
+        }
+    }
     for (at, word) in x.ticks() {
         picture.line([at, top], [at, bottom], "#e6eaef", 0.15);
         match x {
@@ -125,7 +198,7 @@ fn chart(traces: &[Value], layout: &Value) -> Picture {
         let title = layout[&of_all]["title"]["text"].as_str().or_else(of_choice);
         title.unwrap_or_default().to_owned()
     };
-    let below = [(left + right) / 2.0, picture.size[1]];
+    let below = [(left + right) / 2.0, picture.size[1] - 1.0];
     picture.word(below, [0.5, 1.0], &title("x"));
     let beside = [0.0, (top + bottom) / 2.0];
     picture.word_upwards(beside, [0.0, 0.5], &title("y"));
@@ -146,6 +219,7 @@ fn chart(traces: &[Value], layout: &Value) -> Picture {
                 }
                 bar += 1;
             }
+            Kind::Filled => fill(&mut picture, s, &points, &y),
             _ => draw(&mut picture, s, &points, &x),
         }
     }
@@ -158,6 +232,36 @@ fn chart(traces: &[Value], layout: &Value) -> Picture {
     ];
     picture.strokes(vec![corners.to_vec()], FAINT, 0.2);
     picture
+}
+
+/// The area between a line and its foot, coarser where there are many points.
+fn fill(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], y: &Axis) {
+    let Axis::Values(scale) = y else { return };
+    let edge = |(i, p): (usize, &Option<[f64; 2]>)| {
+        let foot = scale.at(s.foot.get(i).copied().flatten()?)?;
+        p.map(|[x, head]| (x, head, foot))
+    };
+    let edges: Vec<Option<(f64, f64, f64)>> = points.iter().enumerate().map(edge).collect();
+    let step = points.len().div_ceil(MOST_EDGES).max(1);
+    for part in edges.split(Option::is_none) {
+        let known: Vec<(f64, f64, f64)> = part.iter().copied().flatten().collect();
+        // Values grow upwards, where millimetres fall.
+        let widest = |c: &[(f64, f64, f64)]| {
+            let x = c.iter().map(|e| e.0).sum::<f64>() / c.len() as f64;
+            let head = c.iter().map(|e| e.1).fold(f64::INFINITY, f64::min);
+            let foot = c.iter().map(|e| e.2).fold(f64::NEG_INFINITY, f64::max);
+            (x, head, foot)
+        };
+        let coarse: Vec<(f64, f64, f64)> = known.chunks(step).map(widest).collect();
+        let there = coarse.iter().map(|e| [e.0, e.1]);
+        let back = coarse.iter().rev().map(|e| [e.0, e.2]);
+        if coarse.len() > 1 {
+            let corners = there.chain(back).collect();
+            picture
+                .shapes
+                .push(Shape::Region(corners, s.colour.clone()));
+        }
+    }
 }
 
 /// Points and lines of a series, with the intervals of its values.
@@ -175,6 +279,12 @@ fn draw(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], x: &Axis
         let mut bars = Vec::new();
         for (i, p) in points.iter().enumerate() {
             if let (Some([_, py]), Some([Some(a), Some(b)])) = (p, ends(i)) {
+                if s.is_span {
+                    let area = [a.min(b), py - SPAN / 2.0, (b - a).abs(), SPAN];
+                    let colour = on_white("rgba(31,97,141,.35)").unwrap_or_default();
+                    picture.shapes.push(Shape::Area(area, colour));
+                    continue;
+                }
                 bars.push(vec![[a, *py], [b, *py]]);
                 bars.extend([a, b].map(|e| vec![[e, py - 0.8], [e, py + 0.8]]));
             }
@@ -194,26 +304,39 @@ fn draw(picture: &mut Picture, s: &Series, points: &[Option<[f64; 2]>], x: &Axis
             "line-ew-open" => {
                 picture.line([p[0] - 2.0, p[1]], [p[0] + 2.0, p[1]], &s.colour, 0.4);
             }
+            "x" => {
+                let [x, y] = *p;
+                let arm = |d: f64| vec![[x - 1.1, y - d], [x + 1.1, y + d]];
+                picture.strokes(vec![arm(1.1), arm(-1.1)], &s.colour, 0.5);
+            }
             "diamond-open" => picture.circle(*p, 0.8, &s.colour, 0.25),
             _ => picture.circle(*p, 0.8, &s.colour, 0.0),
         }
     }
 }
 
-/// Names of the series with their colours, in lines at the top; where the space below begins.
-fn legend(picture: &mut Picture, series: &[Series]) -> f64 {
-    let named: Vec<&Series> = series.iter().filter(|s| !s.name.is_empty()).collect();
+/// Names of the series, and of the band if there is one, with their colours in lines at the top; returns where the space below begins.
+fn legend(
+    picture: &mut Picture,
+    series: &[Series],
+    band: Option<&(&str, String)>,
+    wide: f64,
+) -> f64 {
+    let named = series.iter().filter(|s| !s.name.is_empty());
+    let named = named.map(|s| (s.name.as_str(), s.colour.as_str()));
+    let band = band.map(|(name, colour)| (*name, colour.as_str()));
+    let named: Vec<(&str, &str)> = named.chain(band).collect();
     if named.is_empty() {
         return 2.0;
     }
     let (mut x, mut y) = (0.0, 2.0);
-    for s in named {
-        let width = 8.0 + 1.25 * s.name.chars().count().min(LONGEST) as f64;
-        if x + width > UPRIGHT {
+    for (name, colour) in named {
+        let width = 9.0 + 1.35 * name.chars().count().min(LONGEST) as f64;
+        if x > 0.0 && x + width > wide {
             (x, y) = (0.0, y + 4.0);
         }
-        picture.line([x, y], [x + 4.0, y], &s.colour, 0.8);
-        picture.word([x + 5.0, y], [0.0, 0.5], &s.name);
+        picture.line([x, y], [x + 4.0, y], colour, 1.2);
+        picture.word([x + 5.0, y], [0.0, 0.5], name);
         x += width;
     }
     y + 4.0

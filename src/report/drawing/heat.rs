@@ -9,6 +9,10 @@ const ROWS: usize = 40;
 const ROW: f64 = 4.6;
 const HOLDS: f64 = 12.0;
 
+/// Range of the colours.
+const RANGE: &str =
+    "Colours: blue −100 %, white 0, red 100 % of the largest magnitude in the column.";
+
 /// The map in pictures of at most [`ROWS`] rows.
 pub(in crate::report) fn heat(map: &Value) -> Vec<Picture> {
     let names = |v: &Value| -> Vec<String> {
@@ -36,6 +40,7 @@ fn part(map: &Value, columns: &[String], rows: &[String], first: usize) -> Pictu
     let width = ((UPRIGHT - left) / columns.len() as f64).min(22.0);
     let mut picture = Picture {
         size: [UPRIGHT, top + ROW * rows.len() as f64 + 1.0],
+        caption: RANGE.to_owned(),
         ..Picture::default()
     };
     for (c, name) in columns.iter().enumerate() {

@@ -9,7 +9,7 @@ mod svg;
 mod traces;
 mod trails;
 
-pub(super) use chart::pictures;
+pub(super) use chart::{card_picture, pictures};
 pub(super) use scale::round_step;
 pub(super) use sketch::{Look, STROKES, marks, views};
 pub(super) use svg::to_svg;

@@ -27,6 +27,8 @@ pub(in crate::report) enum Shape {
     },
     /// An upright rectangle: corner, width and height, filled.
     Area([f64; 4], String),
+    /// A filled polygon.
+    Region(Vec<[f64; 2]>, String),
     /// A filled triangle.
     Face {
         /// Corners.
@@ -76,6 +78,12 @@ pub(in crate::report) const UPRIGHT: f64 = 174.0;
 pub(in crate::report) const LONGEST: usize = 40;
 
 impl Picture {
+    /// Whether it shows a model: its words are names of gauges and the range of its colours, which the caption has too.
+    pub(in crate::report) fn is_model(&self) -> bool {
+        let is_face = |s: &Shape| matches!(s, Shape::Face { .. });
+        self.shapes.iter().any(is_face)
+    }
+
     /// A line from `a` to `b`.
     pub(in crate::report) fn line(&mut self, a: [f64; 2], b: [f64; 2], colour: &str, pen: f64) {
         self.strokes(vec![vec![a, b]], colour, pen);

@@ -115,6 +115,10 @@ fn drawn(group: &[Shape]) -> String {
             let [x, y] = at.map(tenths);
             html! { circle cx=(x) cy=(y) r=(fine(*radius)) stroke=(colour) stroke-width=(fine(*pen)) {} }
         }
+        Shape::Region(corners, colour) => {
+            let d = path(&[corners.iter().map(|p| p.map(tenths)).collect()]);
+            html! { path d=(d) fill=(colour) {} }
+        }
         Shape::Area([x, y, w, h], colour) => {
             let (x, y) = (fine(*x), fine(*y));
             html! { rect x=(x) y=(y) width=(fine(w.max(0.0))) height=(fine(h.max(0.0))) fill=(colour) {} }

@@ -1,7 +1,8 @@
 use super::picture::{Picture, Shape};
 use super::scale::Scale;
-use super::to_svg;
 use super::trails::trails;
+use super::{pictures, to_svg};
+use crate::report::figure::{CrossPlot, Ends, Figure, LoadTrace, cross, history, intervals};
 use std::collections::BTreeSet;
 
 type Point = [i64; 2];
@@ -85,4 +86,91 @@ fn ticks_are_round_and_inside() {
     let powers = Scale::over([2e-3, 60.0].into_iter(), [0.0, 100.0], true);
     let words: Vec<String> = powers.ticks().into_iter().map(|t| t.1).collect();
     assert_eq!(words, ["1e-2", "1e-1", "1e0", "1e1"]);
+}
+
+/// Shapes of the picture of a figure.
+fn drawn(figure: &Figure) -> Picture {
+    pictures(figure).remove(0)
+}
+
+#[test]
+fn a_range_is_a_wide_bar_and_an_interval_a_line_with_caps() {
+    let rows = [("A".to_owned(), [1.0, 2.0, 4.0])];
+    let groups = [("run".to_owned(), rows.to_vec())];
+    let picture = |ends| drawn(&intervals(&groups, "kN", ends, "shorter is better"));
+    let bars = |p: &Picture| {
+        p.shapes
+            .iter()
+            .filter(|s| matches!(s, Shape::Area(..)))
+            .count()
+    };
+    let caps = |p: &Picture| {
+        let of = |s: &Shape| match s {
+            Shape::Strokes { lines, .. } => lines.len() == 3,
+            _ => false,
+        };
+        p.shapes.iter().filter(|s| of(s)).count()
+    };
+    let [interval, span] = [Ends::Interval, Ends::Span].map(picture);
+    assert_eq!((bars(&interval), caps(&interval)), (0, 1));
+    assert_eq!((bars(&span), caps(&span)), (1, 0));
+    // The bar reaches from 1 to 4, three times as far as the point is from its lower end.
+    let area = span.shapes.iter().find_map(|s| match s {
+        Shape::Area(area, _) => Some(*area),
+        _ => None,
+    });
+    let at = span.shapes.iter().find_map(|s| match s {
+        Shape::Circle { at, .. } => Some(*at),
+        _ => None,
+    });
+    let ([left, _, wide, _], [x, _]) = (area.unwrap(), at.unwrap());
+    assert!((wide - 3.0 * (x - left)).abs() < 1e-9, "{left} {wide} {x}");
+}
+
+#[test]
+fn axes_of_a_scatter_plot_are_equal() {
+    let load = CrossPlot {
+        name: "A",
+        unit: "kN",
+        points: &[[0.0, 0.1], [100.0, 101.0], [50.0, 49.0]],
+    };
+    let picture = drawn(&cross(&[load]));
+    // The line of equality rises as far as it goes to the right.
+    let line = picture.shapes.iter().find_map(|s| match s {
+        // Thinner than in the legend.
+        Shape::Strokes { lines, colour, pen } if colour == "#9aa7b5" && *pen < 0.5 => {
+            lines.first().cloned()
+        }
+        _ => None,
+    });
+    let line = line.unwrap();
+    let [a, b] = [line[0], line[1]];
+    assert!((b[0] - a[0] - (a[1] - b[1])).abs() < 1e-9, "{line:?}");
+}
+
+#[test]
+fn a_band_of_a_history_is_drawn_without_a_script() {
+    let trace = LoadTrace {
+        name: "A".into(),
+        unit: "kN".into(),
+        times: (0..1000)
+            .map(|i| [f64::from(i), f64::from(i) + 1.0])
+            .collect(),
+        half: 1.0,
+        spans: (0..1000)
+            .map(|i| [f64::from(i), f64::from(i) + 1.0, f64::from(i) + 2.0])
+            .collect(),
+    };
+    let picture = drawn(&history(&[trace]));
+    let regions: Vec<&Vec<[f64; 2]>> = picture
+        .shapes
+        .iter()
+        .filter_map(|s| match s {
+            Shape::Region(corners, _) => Some(corners),
+            _ => None,
+        })
+        .collect();
+    // The interval, then smallest to largest, both coarser than the samples.
+    assert_eq!(regions.len(), 2);
+    assert!(regions.iter().all(|r| r.len() > 100 && r.len() <= 480));
 }

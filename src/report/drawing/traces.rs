@@ -13,6 +13,8 @@ pub(in crate::report) enum Kind {
     Lines,
     /// Both.
     Both,
+    /// The area between a line and the line before it, of its colour.
+    Filled,
 }
 
 /// A series of a figure.
@@ -30,6 +32,10 @@ pub(in crate::report) struct Series {
     values: [Vec<Value>; 2],
     /// Below and above a value to the right.
     errors: [Vec<Value>; 2],
+    /// Whether these are the ends of a range instead of an interval.
+    pub(in crate::report) is_span: bool,
+    /// Lower ends of what is filled.
+    pub(in crate::report) foot: Vec<Option<f64>>,
 }
 
 impl Series {
@@ -68,8 +74,25 @@ impl Series {
         if k == 1 && self.kind == Kind::Bars {
             out.push(0.0);
         }
+        if k == 1 {
+            out.extend(self.foot.iter().flatten());
+        }
         out
     }
+}
+
+/// Returns a colour as `#rrggbb`: `#rrggbb` as it is, `rgba(r,g,b,a)` as it looks on white.
+pub(in crate::report) fn on_white(colour: &str) -> Option<String> {
+    if colour.starts_with('#') {
+        return Some(colour.to_owned());
+    }
+    let inside = colour.strip_prefix("rgba(")?.strip_suffix(')')?;
+    let parts: Option<Vec<f64>> = inside.split(',').map(|p| p.trim().parse().ok()).collect();
+    let [r, g, b, a] = *parts?.as_slice() else {
+        return None;
+    };
+    let mixed = [r, g, b].map(|c| (255.0 + (c - 255.0) * a).round() as u8);
+    Some(format!("#{:02x}{:02x}{:02x}", mixed[0], mixed[1], mixed[2]))
 }
 
 /// The series of traces; `colours` in turn for those without.
@@ -78,31 +101,39 @@ pub(in crate::report) fn series_of(traces: &[Value], colours: &[&str]) -> Vec<Se
     let word = |v: &Value| v.as_str().unwrap_or("").to_owned();
     let mut next = colours.iter().cycle();
     let mut out = Vec::new();
-    for t in traces {
-        // Lines of no width only bound what is filled.
-        if t["line"]["width"] == 0 {
+    for (i, t) in traces.iter().enumerate() {
+        let is_filled = t["fill"] == "tonexty";
+        // Other lines of no width only bound what is filled.
+        if t["line"]["width"] == 0 && !is_filled {
             continue;
         }
         let kind = match (t["type"].as_str(), t["mode"].as_str()) {
             (Some("bar"), _) => Kind::Bars,
+            _ if is_filled => Kind::Filled,
             (_, Some("lines")) => Kind::Lines,
             (_, Some("lines+markers")) => Kind::Both,
             _ => Kind::Points,
         };
-        let own = [&t["marker"]["color"], &t["line"]["color"]];
+        let own = [&t["fillcolor"], &t["marker"]["color"], &t["line"]["color"]];
         let own = own.into_iter().find_map(Value::as_str);
-        let own = own.filter(|c| c.starts_with('#'));
-        let colour = own.or_else(|| next.next().copied()).unwrap_or("#1f618d");
+        let own = own.and_then(on_white);
+        let foot = match i.checked_sub(1).and_then(|i| traces.get(i)) {
+            Some(before) if is_filled => list(&before["y"]),
+            _ => Vec::new(),
+        };
+        let colour = own.or_else(|| next.next().map(|c| (*c).to_owned()));
         out.push(Series {
             name: word(&t["name"]),
             kind,
-            colour: colour.to_owned(),
+            colour: colour.unwrap_or_else(|| "#1f618d".to_owned()),
             symbol: word(&t["marker"]["symbol"]),
             values: [list(&t["x"]), list(&t["y"])],
             errors: [
                 list(&t["error_x"]["arrayminus"]),
                 list(&t["error_x"]["array"]),
             ],
+            is_span: t["error_x"]["span"] == true,
+            foot: foot.iter().map(Value::as_f64).collect(),
         });
     }
     out

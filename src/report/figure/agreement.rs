@@ -37,10 +37,12 @@ pub fn agreement(gauges: &[GaugePoints], kinds: [&str; 2], runs: [&[String]; 2])
     }
     Figure {
         label: "measured against predicted strain".into(),
+        caption: "Each point is a gauge in one run or sample. Points nearer to the grey line of equality are better.".into(),
         choices,
         layout: json!({
             "xaxis": { "title": { "text": "predicted, µε" } },
             "yaxis": { "title": { "text": "measured, µε" } },
+            "equal": true,
         }),
         height: 460,
         on_paper: 1,

@@ -8,9 +8,11 @@ use serde_json::{Value, json};
 pub struct Figure {
     /// Description of the figure for screen readers and tests.
     pub label: String,
+    /// Caption: what the figure shows, and what would be better or worse.
+    pub caption: String,
     /// Name and traces of each choice. A single choice is drawn without a selector. `ytitle` of a trace is its axis title, if this differs by choice.
     pub choices: Vec<(String, Vec<Value>)>,
-    /// Axes.
+    /// Axes. `equal` draws both axes with one range and one length; `band` is a range of the x axis that is shaded, with its name.
     pub layout: Value,
     /// Pixels.
     pub height: usize,
@@ -31,6 +33,7 @@ impl Render for Figure {
                 }
                 div.canvas style=(format!("height:{}px", self.height)) {}
                 (embed_data(&data))
+                figcaption.muted { (self.caption) }
             }
         }
     }

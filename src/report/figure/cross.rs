@@ -40,8 +40,9 @@ pub fn cross(loads: &[CrossPlot]) -> Figure {
     let choices = loads.iter().filter(|l| !l.points.is_empty());
     Figure {
         label: "recovered against recorded loads".into(),
+        caption: "Each point is a recorded load and the load recovered at the same time. Points nearer to the grey line of equality are better.".into(),
         choices: choices.map(|l| (l.name.to_owned(), picture(l))).collect(),
-        layout: json!({}),
+        layout: json!({ "equal": true }),
         height: 460,
         on_paper: loads.len(),
     }

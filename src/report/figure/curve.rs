@@ -69,6 +69,7 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
     ));
     Figure {
         label: "efficiency and sigma against the number of gauges".into(),
+        caption: "Each line is a load or an efficiency over the number of gauges. A smaller sigma and a larger efficiency are better.".into(),
         choices,
         layout: json!({
             "xaxis": { "title": { "text": "gauges" }, "tickvals": counts },

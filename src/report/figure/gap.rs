@@ -4,7 +4,7 @@ use super::chart::Figure;
 use super::packed::shorts;
 use serde_json::json;
 
-/// A channel's name with its gap before, after, and its floor, `unit` rms, on what was held out.
+/// Draws the gap of each channel before and after, with its noise floor if known: name and numbers in `unit`, on what was held out.
 pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
     let names: Vec<&String> = channels.iter().map(|c| &c.0).collect();
     let of = |k: usize| shorts(channels.iter().map(|c| c.1[k]));
@@ -20,15 +20,19 @@ pub fn gap_by_channel(channels: &[(String, [f64; 3])], unit: &str) -> Figure {
         "hovertemplate": format!("%{{x}}: floor %{{y:.4}} {unit}<extra></extra>"),
     });
     let mut traces = vec![bar("before", 0, "#d68910"), bar("after", 1, "#1f618d")];
+    let mut caption =
+        "Bars show the difference from the measurement before and after the change: shorter is better.".to_owned();
     if channels.iter().any(|c| c.1[2].is_finite()) {
         traces.push(floor);
+        caption.push_str(" A bar no longer than its black stroke is noise alone.");
     }
     Figure {
         label: "gap before and after".into(),
+        caption,
         choices: vec![(String::new(), traces)],
         layout: json!({
             "xaxis": { "type": "category" },
-            "yaxis": { "title": { "text": format!("{unit} rms") }, "rangemode": "tozero" },
+            "yaxis": { "title": { "text": unit }, "rangemode": "tozero" },
         }),
         height: 380,
         on_paper: 1,

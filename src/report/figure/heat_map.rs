@@ -40,6 +40,7 @@ pub fn heat_map(
     });
     Figure {
         label: "sensitivity as a heat map".into(),
+        caption: "Colour shows the strain of each gauge as a share of the largest in the load's column. Columns with different patterns are better: the gauges cannot separate loads with like columns.".into(),
         choices: vec![(String::new(), vec![trace])],
         layout: json!({
             "xaxis": { "type": "category", "side": "top" },

@@ -27,6 +27,7 @@ pub fn history(traces: &[LoadTrace]) -> Figure {
     let ends = ends.unwrap_or([0.0, 1.0]);
     Figure {
         label: "histories of loads".into(),
+        caption: "Dark: smallest to largest sample of a span of time. Light: the 95 % interval of a sample around it; a narrower light band is better.".into(),
         choices: traces.iter().map(|t| (t.name.clone(), bands(t))).collect(),
         layout: json!({
             "xaxis": { "title": { "text": "time, s" }, "range": shorts(ends) },

@@ -7,12 +7,38 @@ use serde_json::{Value, json};
 /// A row: name, then low, value, high.
 pub type IntervalRow = (String, [f64; 3]);
 
-/// Values with 95 % bars, one group (a run) at a time.
-pub fn intervals(groups: &[(String, Vec<IntervalRow>)], unit: &str) -> Figure {
+/// Meaning of the two ends of a row, which are drawn differently.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ends {
+    /// 95 % interval of the value: a thin line with caps.
+    Interval,
+    /// Smallest and largest value, or zero and the value: a wide bar without caps.
+    Span,
+}
+
+impl Ends {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Interval => "intervals",
+            Self::Span => "ranges",
+        }
+    }
+}
+
+/// Values with their ends, one group (a run) at a time.
+pub fn intervals(
+    groups: &[(String, Vec<IntervalRow>)],
+    unit: &str,
+    ends: Ends,
+    caption: &str,
+) -> Figure {
     let most = groups.iter().map(|g| g.1.len()).max().unwrap_or(0);
-    let drawn = groups.iter().map(|g| (g.0.clone(), vec![bars(&g.1, unit)]));
+    let drawn = groups
+        .iter()
+        .map(|g| (g.0.clone(), vec![interval_trace(&g.1, unit, ends)]));
     Figure {
-        label: format!("values with intervals, {unit}"),
+        label: format!("values with {}, {unit}", ends.words()),
+        caption: caption.to_owned(),
         choices: drawn.collect(),
         layout: json!({
             "xaxis": { "title": { "text": unit } },
@@ -23,7 +49,8 @@ pub fn intervals(groups: &[(String, Vec<IntervalRow>)], unit: &str) -> Figure {
     }
 }
 
-fn bars(rows: &[IntervalRow], unit: &str) -> Value {
+/// Rows as one trace.
+pub fn interval_trace(rows: &[IntervalRow], unit: &str, ends: Ends) -> Value {
     let names: Vec<&String> = rows.iter().map(|r| &r.0).collect();
     json!({
         "type": "scatter",
@@ -34,6 +61,7 @@ fn bars(rows: &[IntervalRow], unit: &str) -> Value {
         "error_x": {
             "array": shorts(rows.iter().map(|r| r.1[2] - r.1[1])),
             "arrayminus": shorts(rows.iter().map(|r| r.1[1] - r.1[0])),
+            "span": ends == Ends::Span,
         },
         "marker": { "size": 9, "color": "#1f618d" },
         "hovertemplate": format!("%{{y}}: %{{x:.5}} {unit}<br>%{{customdata[0]:.5}} to %{{customdata[1]:.5}}<extra></extra>"),

@@ -29,7 +29,13 @@ pub enum Scale {
 }
 
 /// Groups of curves, one group at a time; in a group the first is drawn lowest.
-pub fn lines(groups: &[(String, Vec<Line>)], x: &str, y: &str, scale: Scale) -> Figure {
+pub fn lines(
+    groups: &[(String, Vec<Line>)],
+    x: &str,
+    y: &str,
+    scale: Scale,
+    caption: &str,
+) -> Figure {
     let trace = |i: usize, l: &Line| -> Value {
         let step = l.x.len().div_ceil(MOST_POINTS).max(1);
         let thin = |v: &[f64]| shorts(v.iter().step_by(step).copied());
@@ -48,6 +54,7 @@ pub fn lines(groups: &[(String, Vec<Line>)], x: &str, y: &str, scale: Scale) -> 
     };
     Figure {
         label: format!("{y} over {x}"),
+        caption: caption.to_owned(),
         choices: choices.collect(),
         layout: json!({
             "xaxis": { "title": { "text": x } },

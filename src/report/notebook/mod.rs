@@ -96,6 +96,7 @@ impl Room {
             @for (i, svg) in shown.iter().enumerate() {
                 @if i == 0 { (svg) } @else { details { summary { (drawn[i].title) } (svg) } }
             }
+            @if !f.caption.is_empty() { p.muted { (f.caption) } }
             @if left_out { (elsewhere("More of this figure")) }
         }
     }
@@ -110,7 +111,7 @@ impl Room {
                 Some(svg) => (svg),
                 None => (elsewhere("The model in three dimensions")),
             }
-            @if strokes { p.muted { (STROKES) } }
+            p.muted { (s.caption) @if strokes { " " (STROKES) } }
         }
     }
 

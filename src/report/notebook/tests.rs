@@ -39,7 +39,11 @@ fn a_piece_has_verdict_findings_and_pictures_and_runs_nothing() {
     };
     let groups = [("one".to_owned(), vec![curve])];
     let text = piece_of(&page(vec![
-        figure_section("Curve", lines(&groups, "t", "v", Scale::Linear), "a note"),
+        figure_section(
+            "Curve",
+            lines(&groups, "t", "v", Scale::Linear, "flatter is better"),
+            "a note",
+        ),
         table_section("Table", &["h"], &[vec!["<td>cell".into()]], ""),
     ]));
     for word in [
@@ -77,13 +81,21 @@ fn a_piece_stays_small_and_says_what_it_leaves_out() {
     let gauges: Vec<String> = (0..120).map(|i| format!("G{i}")).collect();
     let rows: Vec<Vec<String>> = (0..900).map(|i| vec![i.to_string()]).collect();
     let text = piece_of(&page(vec![
-        figure_section("Curves", lines(&groups, "t", "v", Scale::Linear), ""),
+        figure_section(
+            "Curves",
+            lines(&groups, "t", "v", Scale::Linear, "flatter is better"),
+            "",
+        ),
         figure_section(
             "Map",
             heat_map(&gauges, &names, "", |r, c| (r * c) as f64),
             "",
         ),
-        figure_section("Curves", lines(&groups, "t", "v", Scale::Linear), ""),
+        figure_section(
+            "Curves",
+            lines(&groups, "t", "v", Scale::Linear, "flatter is better"),
+            "",
+        ),
         table_section("Rows", &["i"], &rows, ""),
     ]));
     assert!(text.len() < 300_000, "{} bytes", text.len());

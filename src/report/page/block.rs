@@ -2,8 +2,8 @@
 
 use super::key_number::KeyNumber;
 use crate::finding::Finding;
+use crate::report::drawing::card_picture;
 use crate::report::drawing::picture::Picture;
-use crate::report::drawing::pictures;
 use crate::report::figure::Figure;
 use crate::report::scene::SceneView;
 use crate::workflow::cases::from_folder;
@@ -214,7 +214,7 @@ impl Card {
 
     /// Returns the card with its picture replaced by the first picture of a figure.
     pub fn with_figure(self, figure: &Figure) -> Self {
-        let picture = pictures(figure).into_iter().next().or(self.picture);
+        let picture = card_picture(figure).or(self.picture);
         Self { picture, ..self }
     }
 
@@ -230,7 +230,7 @@ impl Card {
             _ => None,
         });
         let figure = blocks().find_map(|b| match b {
-            Block::Figure(f) => pictures(f).into_iter().next(),
+            Block::Figure(f) => card_picture(f),
             _ => None,
         });
         let picture = match of_numbers {

@@ -2,6 +2,7 @@
 const PALETTE = ["#1f618d", "#c0392b", "#0b7a3e", "#d68910", "#7d3c98", "#148f9c", "#8e5a2b", "#566573", "#b03a7c", "#6b8e23"];
 const HEAT = [[0, [31, 78, 140]], [0.25, [134, 177, 216]], [0.5, [246, 247, 248]], [0.75, [238, 157, 114]], [1, [178, 24, 43]]];
 const ROW = 14;
+const BAND = "rgba(214,137,16,.16)";
 
 // As much of a text as fits.
 function fitted(text, room) {
@@ -77,15 +78,31 @@ function axisOf(layout, traces, key) {
   };
 }
 
-function legendOf(traces, colour) {
+// Colours of a map with what their ends mean.
+function mapLegend() {
+  const box = document.createElement("div"), ramp = document.createElement("i");
+  box.className = "legend";
+  ramp.style.cssText = "width:140px;background:linear-gradient(90deg," + [-1, -0.5, 0, 0.5, 1].map(heatColour).join(",") + ")";
+  box.append("−100 %", ramp, "100 % of the largest magnitude in the column");
+  return box;
+}
+
+function legendOf(traces, colour, band) {
+  if (traces.some((t) => t.type === "heatmap")) return mapLegend();
   const shown = traces.map((t, i) => [t, i]).filter(([t]) => t.name && t.showlegend !== false && t.type !== "heatmap");
-  if (shown.length < 2) return null;
+  if (shown.length < 2 && !band) return null;
   const box = document.createElement("div");
   box.className = "legend";
   for (const [t, i] of shown) {
     const item = document.createElement("span"), mark = document.createElement("i");
     mark.style.background = t.fillcolor || colour(i);
     item.append(mark, t.name);
+    box.append(item);
+  }
+  if (band) {
+    const item = document.createElement("span"), mark = document.createElement("i");
+    mark.style.background = BAND;
+    item.append(mark, band.name);
     box.append(item);
   }
   return box;
@@ -157,7 +174,10 @@ function drawScatter(root, traces, colour, px, py) {
     if (mode.includes("lines") && line.width !== 0) svg("path", { d: pathOf(xs, ys), fill: "none", stroke: colour(i), "stroke-width": line.width || 1.6 }, root);
     if (t.error_x) t.x.forEach((_, k) => {
       const [a, b] = intervalAt(t, k).map(px);
-      if (Number.isFinite(a + b + ys[k])) svg("path", { d: `M${a} ${ys[k]}H${b}M${a} ${ys[k] - 5}v10M${b} ${ys[k] - 5}v10`, stroke: colour(i), "stroke-width": 2 }, root);
+      if (!Number.isFinite(a + b + ys[k])) return;
+      // A range is a wide bar, an interval a thin line with caps.
+      if (t.error_x.span) svg("rect", { x: Math.min(a, b), y: ys[k] - 5, width: Math.abs(b - a), height: 10, fill: colour(i), "fill-opacity": 0.35 }, root);
+      else svg("path", { d: `M${a} ${ys[k]}H${b}M${a} ${ys[k] - 5}v10M${b} ${ys[k] - 5}v10`, stroke: colour(i), "stroke-width": 2 }, root);
     });
     if (!mode.includes("markers")) return;
     const r = (marker.size || 6) / 2, group = svg("g", { fill: colour(i), "fill-opacity": marker.opacity || 1 }, root);
@@ -165,6 +185,7 @@ function drawScatter(root, traces, colour, px, py) {
       if (!Number.isFinite(xs[k] + ys[k])) continue;
       if (marker.symbol === "line-ew-open") svg("path", { d: `M${xs[k] - r} ${ys[k]}h${2 * r}`, stroke: colour(i), "stroke-width": 2 }, group);
       else if (marker.symbol === "diamond-open") svg("path", { d: `M${xs[k]} ${ys[k] - r}l${r} ${r}l${-r} ${r}l${-r} ${-r}Z`, fill: "none", stroke: colour(i) }, group);
+      else if (marker.symbol === "x") svg("path", { d: `M${xs[k] - r} ${ys[k] - r}l${2 * r} ${2 * r}m${-2 * r} 0l${2 * r} ${-2 * r}`, stroke: colour(i), "stroke-width": 2 }, group);
       else svg("circle", { cx: fixed(xs[k]), cy: fixed(ys[k]), r }, group);
     }
   });
@@ -184,7 +205,7 @@ function drawAxes(root, frame, sx, sy, ax, ay) {
     const from = across ? Math.min(Math.max(x - wide / 2, 0), frame.width - wide) : x - wide / 2;
     if (from < last + (across ? 6 : 1)) continue;
     last = from + wide;
-    if (across) svg("text", { x: from, y: ax.above ? top - 6 : bottom + 15 }, words, t);
+    if (across) svg("text", { x: from, y: ax.above ? top - 6 : bottom + 18 }, words, t);
     else svg("text", { transform: `translate(${fixed(x + 4)} ${ax.above ? top - 5 : bottom + 6}) rotate(-90)`, "text-anchor": ax.above ? "start" : "end" }, words, fitted(t, frame.tall));
   }
   let low = Infinity;
@@ -199,15 +220,21 @@ function drawAxes(root, frame, sx, sy, ax, ay) {
 }
 
 // Sizes around the field of a figure.
-function frameOf(width, height, ax, ay, values) {
+function frameOf(width, height, ax, ay, values, equal) {
   const longest = (names) => Math.max(0, ...names.map((t) => widthOf(t)));
   const trial = scaleOf(ay, values, height, 0, height / 40);
   const left = Math.min(0.38 * width, Math.max(28, longest(trial.marks.map((m) => m[1])) + 10));
-  const right = width - 12;
+  let right = width - 12;
   const upright = Boolean(ax.names) && longest(ax.names) + 6 > (right - left) / ax.names.length;
-  const tall = upright ? Math.min(110, longest(ax.names) + 8) : ROW + 6;
+  const tall = upright ? Math.min(110, longest(ax.names) + 8) : ROW + 9;
   const top = (ay.title ? ROW + 8 : 8) + (ax.above ? tall : 0);
-  const bottom = height - (ax.title ? ROW + 6 : 4) - (ax.above ? 0 : tall);
+  let bottom = height - (ax.title ? ROW + 6 : 4) - (ax.above ? 0 : tall);
+  if (equal) {
+    const side = Math.min(right - left, bottom - top);
+    right = left + side;
+    bottom = top + side;
+    height = bottom + tall + (ax.title ? ROW + 6 : 4);
+  }
   return { width, height, left, right, top, bottom, upright, tall };
 }
 
@@ -225,14 +252,17 @@ function chart(figure, data) {
     const width = Math.max(200, canvas.clientWidth);
     const ax = axisOf(data.layout, traces, "x"), ay = axisOf(data.layout, traces, "y");
     if (zoom && !ax.names) ax.range = zoom;
-    const root = svg("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": figure.getAttribute("aria-label") });
     const reach = (key) => traces.flatMap((t) => {
       const list = (t[key] || []).filter((v, i) => typeof v === "number" && (!zoom || key === "x" || (t.x[i] >= zoom[0] && t.x[i] <= zoom[1])));
       return key === "x" && t.error_x ? list.concat(t.x.flatMap((_, k) => intervalAt(t, k)).filter((v) => v !== null)) : t.type === "bar" && key === "y" ? list.concat([0]) : list;
     });
-    const frame = frameOf(width, height, ax, ay, reach("y"));
-    const sx = scaleOf(ax, reach("x"), frame.left, frame.right, (frame.right - frame.left) / 80);
-    const sy = scaleOf(ay, reach("y"), frame.bottom, frame.top, (frame.bottom - frame.top) / 40);
+    const equal = Boolean(data.layout.equal), band = data.layout.band;
+    if (zoom && equal) ay.range = zoom;
+    const both = equal ? reach("x").concat(reach("y")) : null;
+    const frame = frameOf(width, height, ax, ay, both || reach("y"), equal);
+    const root = svg("svg", { width, height: frame.height, viewBox: `0 0 ${width} ${frame.height}`, role: "img", "aria-label": figure.getAttribute("aria-label") });
+    const sx = scaleOf(ax, both || reach("x"), frame.left, frame.right, (frame.right - frame.left) / 80);
+    const sy = scaleOf(ay, both || reach("y"), frame.bottom, frame.top, (frame.bottom - frame.top) / 40);
     drawAxes(root, frame, sx, sy, ax, ay);
     const id = "clip" + [...document.querySelectorAll("[data-figure]")].indexOf(figure);
     const clip = svg("clipPath", { id }, root);
@@ -240,10 +270,14 @@ function chart(figure, data) {
     const field = svg("g", { "clip-path": `url(#${id})` }, root);
     const px = (v) => (ax.names ? sx.at(ax.names.indexOf(v)) : v === null ? NaN : sx.at(v));
     const py = (v) => (ay.names ? sy.at(ay.names.indexOf(v)) : v === null ? NaN : sy.at(v));
+    if (band) {
+      const [a, b] = band.ends.map((v) => Math.min(frame.right, Math.max(frame.left, sx.at(v))));
+      svg("rect", { x: a, y: frame.top, width: Math.max(0, b - a), height: frame.bottom - frame.top, fill: BAND }, field);
+    }
     for (const t of traces) if (t.type === "heatmap") drawHeat(field, t, sx, sy);
     if (ax.names) drawBars(field, traces, colour, sx, sy, ax.names);
     drawScatter(field, traces, colour, px, py);
-    const legend = legendOf(traces, colour);
+    const legend = legendOf(traces, colour, band);
     canvas.replaceChildren(...(legend ? [legend] : []), root, said);
     listen(root, frame, { ax, ay, sx, sy, px, py, traces });
   }

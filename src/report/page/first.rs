@@ -6,7 +6,7 @@ use super::table::{list_of_links, table};
 use crate::finding::Finding;
 use crate::host::words::count_of;
 use crate::report::drawing::picture::Picture;
-use crate::report::drawing::{pictures, to_svg};
+use crate::report::drawing::{card_picture, pictures, to_svg};
 use crate::report::figure::Figure;
 use maud::{Markup, html};
 
@@ -133,7 +133,10 @@ fn result_table(page: &Page) -> Markup {
 /// The picture of a first screen.
 struct FirstPicture {
     picture: Picture,
+    /// For the width of a phone.
+    narrow: Option<Picture>,
     label: String,
+    caption: String,
     /// Number of the section that shows more, from 1.
     section: usize,
     is_model: bool,
@@ -147,8 +150,10 @@ impl FirstPicture {
             .map_or("", |s| s.title.as_str());
         html! {
             figure.picture {
-                (to_svg(&self.picture, &self.label))
+                div.model[self.is_model].wide[self.narrow.is_some()] { (to_svg(&self.picture, &self.label)) }
+                @if let Some(narrow) = &self.narrow { div.narrow { (to_svg(narrow, &self.label)) } }
                 figcaption.muted {
+                    (self.caption) " "
                     @if self.is_model { "Turn, zoom and point at things in " } @else { "More in " }
                     a href=(format!("#s{}", self.section)) { (title) }
                     "."
@@ -167,7 +172,9 @@ fn first_picture(page: &Page) -> Option<FirstPicture> {
     let model = blocks().find_map(|(section, b)| match b {
         Block::Scene(s) => Some(FirstPicture {
             picture: s.still.clone(),
+            narrow: None,
             label: MODEL.to_owned(),
+            caption: format!("{} {}", s.caption, s.still.caption),
             section,
             is_model: true,
         }),
@@ -180,7 +187,9 @@ fn first_picture(page: &Page) -> Option<FirstPicture> {
         blocks().find_map(|(section, b)| match b {
             Block::Figure(f) if tall(f) || !has_tall => Some(FirstPicture {
                 picture: pictures(f).into_iter().next()?,
+                narrow: card_picture(f),
                 label: f.label.clone(),
+                caption: f.caption.clone(),
                 section,
                 is_model: false,
             }),

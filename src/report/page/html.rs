@@ -99,7 +99,10 @@ fn card(c: &Card) -> Markup {
         article.card.bad[c.is_bad] {
             h3 { (c.title) }
             @if c.is_bad { p { b { "This result is not reliable." } } }
-            @if let Some(p) = &c.picture { (to_svg(p, &format!("Picture: {}", c.title))) }
+            @if let Some(p) = &c.picture {
+                div.model[p.is_model()] { (to_svg(p, &format!("Picture: {}", c.title))) }
+                @if !p.caption.is_empty() { p.muted { (p.caption) } }
+            }
             p { (c.text) }
             p.numbers { @for (value, what) in &c.numbers { span { b { (value) } " " (what) } } }
             @if !c.links.is_empty() { p { (list_of_links(&c.links)) } }

@@ -13,7 +13,7 @@ impl KeyNumber {
     /// Returns a key number with its meaning.
     pub fn new(value: impl Into<String>, meaning: impl Into<String>) -> Self {
         /// Characters of a value that stay on one line.
-        const ONE_LINE: usize = 18;
+        const ONE_LINE: usize = 16;
         let value: String = value.into();
         let value = match value.chars().count() <= ONE_LINE {
             true => value.replace(' ', "\u{a0}"),

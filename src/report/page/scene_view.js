@@ -85,7 +85,7 @@ async function scene(figure, data) {
     });
     const sizes = out.filter(Number.isFinite).map(Math.abs).sort();
     const most = sizes.length ? sizes[Math.floor(0.99 * (sizes.length - 1))] || sizes[sizes.length - 1] || 1 : 1;
-    kept.set(f + "/" + side, { values: out, most });
+    kept.set(f + "/" + side, { values: out, most, largest: sizes.length ? sizes[sizes.length - 1] : most });
     return kept.get(f + "/" + side);
   }
 
@@ -107,7 +107,9 @@ async function scene(figure, data) {
       const ramp = document.createElement("i");
       ramp.style.background = "linear-gradient(to right," + stops.join(",") + ")";
       const word = (t) => Object.assign(document.createElement("span"), { textContent: t });
-      bar.append(word(significant(ends[0], 4)), ramp, word(significant(ends[1], 4) + " " + data.fields[f].unit));
+      // The few largest values have the colours of the ends.
+      const [end, top] = [found.most, found.largest].map((v) => significant(v, 4)), beyond = end !== top, unit = " " + data.fields[f].unit;
+      bar.append(word(signed ? (beyond ? "≤ −" : "−") + end : "0"), ramp, word(beyond ? `≥ ${end}, largest ${signed ? "magnitude " : ""}${top}${unit}` : end + unit));
     }
     paint.refill(faces.value, list);
   }

@@ -10,11 +10,13 @@ pub(super) fn table(t: &Table, caption: &str) -> Markup {
             table.fields[t.head.is_empty()] {
                 @if !caption.is_empty() { caption { (caption) } }
                 @if !t.head.is_empty() {
-                    thead { tr { @for h in &t.head { th scope="col" { (h) } } } }
+                    thead { tr { @for h in &t.head {
+                        @if h.is_empty() { td {} } @else { th scope="col" { (unbroken(h)) } }
+                    } } }
                 }
                 tbody { @for (r, row) in t.rows.iter().enumerate() {
                     tr { @for (c, cell) in row.iter().enumerate() {
-                        @if c == 0 { th scope="row" { (linked(t, r, c, cell)) } }
+                        @if c == 0 && !cell.is_empty() { th scope="row" { (linked(t, r, c, cell)) } }
                         @else { td { (linked(t, r, c, cell)) } }
                     } }
                 } }
@@ -30,7 +32,16 @@ fn linked(t: &Table, row: usize, column: usize, cell: &str) -> Markup {
     let mut of_row = t.links.iter().skip(first).take_while(|l| l.row == row);
     match of_row.find(|l| l.column == column) {
         Some(l) => html! { a href=(reference(&l.path)) title=(l.title) { (cell) } },
-        None => html! { (cell) },
+        None => html! { (unbroken(cell)) },
+    }
+}
+
+/// A short cell, such as a unit, stays on one line.
+fn unbroken(cell: &str) -> String {
+    const SHORT: usize = 8;
+    match cell.chars().count() <= SHORT {
+        true => cell.replace(' ', "\u{a0}"),
+        false => cell.to_owned(),
     }
 }
 

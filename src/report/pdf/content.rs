@@ -109,6 +109,7 @@ fn block(b: &Block) -> Vec<Value> {
         Block::Figure(f) => {
             let left = f.choices.len().saturating_sub(f.on_paper);
             let mut out = drawn(pictures(f));
+            out.push(words("note", &f.caption));
             if left > 0 && f.on_paper > 1 {
                 let n = f.choices.len();
                 let note = format!("The first {} of {n}; all are in report.html.", f.on_paper);
@@ -118,6 +119,7 @@ fn block(b: &Block) -> Vec<Value> {
         }
         Block::Scene(s) => {
             let mut out = drawn(views(s));
+            out.push(words("note", &s.caption));
             if s.marks.iter().any(|m| m.axes.is_some()) {
                 out.push(words("note", STROKES));
             }

@@ -25,6 +25,9 @@ fn shape(s: &Shape) -> Value {
         Shape::Face { corners, colour } => {
             json!({ "kind": "face", "corners": rounded(corners), "colour": colour })
         }
+        Shape::Region(corners, colour) => {
+            json!({ "kind": "face", "corners": rounded(corners), "colour": colour })
+        }
         Shape::Area(area, colour) => json!({ "kind": "area", "area": area, "colour": colour }),
         Shape::Circle {
             at,

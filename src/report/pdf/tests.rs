@@ -1,6 +1,6 @@
 use super::*;
 use crate::finding::{Finding, Severity};
-use crate::report::figure::{GaugePoints, agreement, gap_by_channel, heat_map, intervals};
+use crate::report::figure::{Ends, GaugePoints, agreement, gap_by_channel, heat_map, intervals};
 use crate::report::page::{Block, Page, Paper, Section, figure_section, table_section};
 
 const HASH: &str = "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08";
@@ -77,7 +77,11 @@ fn text_of_users_is_no_markup_and_the_same_page_gives_the_same_bytes() {
                 &[vec![NASTY.into(), "1".into()]],
                 NASTY,
             ),
-            figure_section("", intervals(&[(NASTY.into(), bars)], NASTY), NASTY),
+            figure_section(
+                "",
+                intervals(&[(NASTY.into(), bars)], NASTY, Ends::Interval, NASTY),
+                NASTY,
+            ),
             figure_section(
                 "",
                 gap_by_channel(&[(NASTY.into(), [3.0, 1.0, 0.5])], NASTY),
@@ -102,8 +106,12 @@ fn nothing_to_show_is_a_page_too() {
     let empty = vec![
         table_section("", &[], &[], ""),
         table_section("", &["head"], &[], ""),
-        figure_section("", intervals(&[], ""), ""),
-        figure_section("", intervals(&[("run".into(), vec![])], ""), ""),
+        figure_section("", intervals(&[], "", Ends::Span, ""), ""),
+        figure_section(
+            "",
+            intervals(&[("run".into(), vec![])], "", Ends::Interval, ""),
+            "",
+        ),
         figure_section("", gap_by_channel(&[], ""), ""),
         figure_section("", heat_map(&[], &[], "", |_, _| 0.0), ""),
         figure_section("", agreement(&[], ["", ""], [&[], &[]]), ""),

@@ -35,12 +35,14 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
              or tap it." }
             (result(&scene.pointing))
             (data)
+            figcaption.muted { (scene.caption) }
         }
         (note(scene, &parts, data.0.len()))
     };
     lines.extend(rods);
     let view = SceneView {
         markup,
+        caption: scene.caption.clone(),
         still: draw_still(scene),
         lines,
         marks: scene.marks.clone(),

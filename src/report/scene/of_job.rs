@@ -31,7 +31,17 @@ pub fn scene_of_job<'a>(job: &Job, prepared: &'a Prepared) -> Option<Scene<'a>> 
 
 /// The scene of a job's model with these gauges.
 pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a> {
-    let model = fields.model();
+    Scene {
+        marks,
+        fields: fields_of(job, fields),
+        caption: "Colour shows the strain that one unit load causes: a gauge on a darker place reads more of this load, which is better."
+            .to_owned(),
+        ..scene_of_loads(job, fields.model())
+    }
+}
+
+/// The scene of a model with the loads of a job, before any strain is known.
+pub fn scene_of_loads<'a>(job: &Job, model: &'a Model) -> Scene<'a> {
     let arrows = job.loads.iter().flat_map(|l| match l.acts {
         LoadActs::Set(sid) => arrows_of_set(model, sid),
         LoadActs::Named => Vec::new(),
@@ -49,14 +59,16 @@ pub fn scene_of<'a>(job: &Job, fields: &'a Fields, marks: Vec<Mark>) -> Scene<'a
     });
     Scene {
         model,
-        marks,
-        fields: fields_of(job, fields),
+        marks: Vec::new(),
+        fields: Vec::new(),
         arrows: some(ArrowSet {
             name: "all unit loads".into(),
             arrows: arrows.collect(),
         }),
         length: job.units.unit(Quantity::Length).name,
         pointing: Pointing::Nothing,
+        caption: "Arrows show where the loads of the job act and their directions: an arrow in a wrong place makes every result wrong."
+            .to_owned(),
     }
 }
 
@@ -228,6 +240,7 @@ pub fn scene_of_solution<'a>(
         arrows: arrows.collect(),
         length: "",
         pointing: Pointing::Nothing,
+        caption: "Colour shows the strain of one load case: gauges on darker places read more, which is better.".to_owned(),
     }
 }
 
@@ -240,6 +253,7 @@ pub fn scene_of_model<'a>(model: &'a Model, places: Places) -> Scene<'a> {
         arrows: Vec::new(),
         length: "",
         pointing: Pointing::Places(places),
+        caption: "The structure as the deck describes it: a part that is absent or detached here makes every result wrong.".to_owned(),
     }
 }
 

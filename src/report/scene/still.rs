@@ -222,6 +222,7 @@ fn legend(picture: &mut Picture, field: &Field, most: [f64; 2]) {
         true => format!("0 to {covered} {}", field.unit),
         false => format!("0 to ≥ {covered}, largest {largest} {}", field.unit),
     };
+    picture.caption = format!("Colours of {}: {words}.", field.name);
     picture.word(
         [CELL * (steps + 1) as f64 + 2.0, y + 1.25],
         [0.0, 0.5],

@@ -227,6 +227,7 @@ fn colours_of_magnitudes_begin_at_zero_and_those_of_strain_lie_about_it() {
             arrows: Vec::new(),
             length: "mm",
             pointing: Pointing::Nothing,
+            caption: String::new(),
         };
         let section = scene_section("Model", &scene);
         let page = Page::new("Plate", "", &[], vec![section]).to_html();
@@ -302,6 +303,7 @@ fn a_page_of_a_large_model_stays_small() {
         arrows: Vec::new(),
         length: "mm",
         pointing: Pointing::Nothing,
+        caption: String::new(),
     };
     let section = scene_section("Model", &scene);
     let page = Page::new("Plate", "", &[], vec![section]).to_html();

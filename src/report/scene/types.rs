@@ -21,6 +21,8 @@ pub struct Scene<'a> {
     pub length: &'static str,
     /// Planning by pointing that the scene allows.
     pub pointing: Pointing,
+    /// Caption: what the scene shows, and what would be better or worse.
+    pub caption: String,
 }
 
 /// Planning by pointing at a scene.
@@ -74,7 +76,7 @@ impl Places {
         let stated =
             |(key, ids): (&'static str, &Option<Ids>)| Some((key, ids.as_ref()?.0.clone()));
         let mut out = Self::default();
-        if let Some(named) = &candidates.file {
+        if let Some(named) = candidates.file.as_ref().filter(|f| f.is_toml()) {
             out.file.clone_from(&named.given);
         }
         out.also = candidates.sets.is_some()

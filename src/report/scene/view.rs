@@ -10,7 +10,9 @@ use maud::Markup;
 pub struct SceneView {
     /// In three dimensions, for a browser.
     pub markup: Markup,
-    /// Still picture of the scene from its first point of view.
+    /// Caption of the scene.
+    pub caption: String,
+    /// Still picture of the scene from its first point of view; its caption states the range of the colours.
     pub(in crate::report) still: Picture,
     /// Outline of the shells and axes of the bars, basic frame.
     pub lines: Vec<[Vec3; 2]>,

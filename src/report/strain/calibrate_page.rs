@@ -2,7 +2,7 @@
 
 use crate::estimate::NORMAL_95;
 use crate::finding::Finding;
-use crate::report::figure::{IntervalRow, intervals};
+use crate::report::figure::{Ends, IntervalRow, intervals};
 use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::units::Quantity;
 use crate::workflow::calibrate::{
@@ -85,8 +85,13 @@ fn errors_of_left_out(answer: &Calibrated) -> Option<Section> {
     }
     Some(figure_section(
         "Errors of left-out runs",
-        intervals(&groups, "recovered minus known load"),
-        "Each run is recovered with S from the other runs. An interval that contains 0 contains the known load.",
+        intervals(
+            &groups,
+            "recovered minus known load",
+            Ends::Interval,
+            "Error of the load in each left-out run with its 95 % interval: an interval that contains 0 is right, and a shorter one is better.",
+        ),
+        "Each run is recovered with S from the other runs.",
     ))
 }
 

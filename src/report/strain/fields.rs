@@ -5,6 +5,7 @@ use crate::fe::strain_rows::{Location, Point, StrainRow, hottest, largest_strain
 use crate::finding::Finding;
 use crate::model::Model;
 use crate::report::page::{Block, Page, Section, number};
+use crate::report::scene::{scene_of_solution, scene_section};
 
 /// Subcases and elements a subcase that the page lists; `strains.csv` holds all.
 const MOST_CASES: usize = 40;
@@ -38,6 +39,10 @@ pub fn strains_page(title: &str, model: &Model, solution: &Solution, findings: &
             Block::table(&head, cases),
         ],
     )];
+    sections.push(scene_section(
+        "Strain on the model",
+        &scene_of_solution(model, &[], solution),
+    ));
     for case in solution.cases.iter().take(MOST_CASES) {
         let rows: Vec<Vec<String>> = hottest(model, case, HOTTEST).iter().map(line).collect();
         let head = [
@@ -84,9 +89,31 @@ fn line(row: &StrainRow) -> Vec<String> {
             .unwrap_or("")
             .to_owned(),
     };
-    let value = |v: f64| if v.is_nan() { String::new() } else { number(v) };
+    let value = |v: f64| match v.is_nan() {
+        true => String::new(),
+        false => number(1e6 * v),
+    };
     let mut out = vec![row.element.to_string(), row.card.to_owned(), place, point];
     out.push(value(largest_strain(row)));
     out.extend(row.local.map(value));
     out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fe::strain_tensor::Surface;
+
+    #[test]
+    fn the_table_is_in_microstrain() {
+        let row = StrainRow {
+            element: 7,
+            card: "CQUAD4",
+            location: Location::Centre,
+            point: Point::Surface(Surface::Bottom),
+            local: [2e-6, 0.0, f64::NAN],
+            basic: [0.0; 6],
+        };
+        assert_eq!(line(&row)[5..], ["2.000", "0", ""]);
+    }
 }

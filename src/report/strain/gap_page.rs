@@ -5,7 +5,7 @@ use crate::finding::Finding;
 use crate::reconcile::effect::Extension;
 use crate::reconcile::{NamedEffect, Outcome, SmoothAt, Verdict};
 use crate::report::covariance::covariance_block;
-use crate::report::figure::{GaugePoints, IntervalRow, agreement, gap_by_channel, intervals};
+use crate::report::figure::{Ends, GaugePoints, IntervalRow, agreement, gap_by_channel, intervals};
 use crate::report::page::{Block, Page, Section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 
@@ -188,7 +188,7 @@ fn gap_section(outcome: &Outcome) -> Section {
         "Gap before and after",
         vec![
             Block::Text(gap_words(outcome)),
-            Block::Figure(gap_by_channel(&by_channel, "µε")),
+            Block::Figure(gap_by_channel(&by_channel, "µε rms")),
             Block::Note(format!(
                 "Root mean square over the {} runs: before and after the identified effects; stroke: the floor, from noise and stated uncertainty.",
                 outcome.gap.basis.words()
@@ -270,9 +270,14 @@ fn smooth_section(outcome: &Outcome) -> Option<Section> {
         Section::new(
             "The smooth error of the model",
             vec![
-                Block::Figure(intervals(&groups, "strain divided by predicted strain")),
+                Block::Figure(intervals(
+                    &groups,
+                    "strain divided by predicted strain",
+                    Ends::Interval,
+                    "Measured over predicted strain of each gauge with its 95 % interval: nearer to 1 is better.",
+                )),
                 Block::Note(format!(
-                    "Bars: 95 % interval. Gauges in the order of their {axis}; the model is right at 1."
+                    "Gauges in the order of their {axis}."
                 )),
             ],
         )

@@ -3,12 +3,14 @@
 use super::gluing::{gluing_section, in_length};
 use crate::finding::Finding;
 use crate::report::figure::{
-    CountPoint, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history, intervals,
+    CountPoint, Ends, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history,
+    intervals,
 };
 use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
 use crate::sensitivity::Sensitivity;
 use crate::workflow::place::PlacedGauge;
+use std::collections::BTreeMap;
 
 /// Rows of S that a page shows; longer tables are in `sensitivity.csv`.
 const MOST_ROWS: usize = 120;
@@ -34,9 +36,7 @@ fn sensitivity_section(s: &Sensitivity) -> Section {
         number(s.condition_number()),
         number(s.condition_number_scaled())
     );
-    let mut note =
-        "Microstrain per job unit of the load; colour: share of the column's largest value."
-            .to_owned();
+    let mut note = "Microstrain per job unit of the load.".to_owned();
     if n < s.gauges.len() {
         note.push_str(&format!(
             " The first {n} of {} rows; all are in sensitivity.csv.",
@@ -178,7 +178,11 @@ pub fn recover_page(
 ) -> Page {
     let mut sections = vec![Section::new("Result", vec![Block::pairs(found.numbers)])];
     sections.extend(model_section(scene));
-    let mut loads = bars(found.runs);
+    let ends = match found.traces.is_empty() {
+        true => Ends::Interval,
+        false => Ends::Span,
+    };
+    let mut loads = bars(found.runs, ends);
     if !found.table.is_empty() {
         let head = ["run", "load", "low", "value", "high", "± of typical size"];
         loads.push(Block::table(&head, found.table.clone()));
@@ -199,7 +203,7 @@ pub fn recover_page(
         sections.push(figure_section(
             "Histories",
             history(found.traces),
-            "Drag to zoom, double click to return. Line: mean. Dark: from the smallest to the largest sample of a span of time. Light: 95 % interval of a sample around it.",
+            "Drag to zoom, double click to return.",
         ));
     }
     if !found.points.is_empty() {
@@ -211,7 +215,7 @@ pub fn recover_page(
         sections.push(figure_section(
             "Measured against predicted strain",
             agreement(found.points, kinds, [&runs, &runs]),
-            "One point for each gauge and run. Held out: prediction of this gauge from the other gauges, by its residual and leverage.",
+            "Held out: predicted from all other gauges, by the gauge's residual and leverage.",
         ));
     }
     let row = |(name, rms, leverage): &(String, f64, f64)| {
@@ -229,22 +233,107 @@ pub fn recover_page(
     )
 }
 
-/// Forces and moments on scales of their own, a run at a time.
-fn bars(runs: &[RecoveredRun]) -> Vec<Block> {
-    let mut units: Vec<&String> = runs.iter().flat_map(|r| &r.loads).map(|l| &l.2).collect();
-    units.sort_unstable();
-    units.dedup();
-    let of_run = |r: &RecoveredRun, unit: &String| -> (String, Vec<IntervalRow>) {
-        let rows = r.loads.iter().filter(|l| &l.2 == unit);
-        (r.run.clone(), rows.map(|l| (l.0.clone(), l.1)).collect())
+/// Ratio of the sizes of two loads above which they are not drawn on one axis.
+const MOST_RATIO: f64 = 20.0;
+
+/// Loads of a similar size in one unit.
+struct Alike<'a> {
+    unit: &'a str,
+    largest: f64,
+    names: Vec<&'a str>,
+}
+
+/// Groups the loads of all runs by unit and size, the largest first, so that no load flattens the axis of another.
+fn alike(runs: &[RecoveredRun]) -> Vec<Alike<'_>> {
+    let mut sizes: BTreeMap<(&str, &str), f64> = BTreeMap::new();
+    for (name, values, unit) in runs.iter().flat_map(|r| &r.loads) {
+        let size = sizes.entry((unit.as_str(), name.as_str())).or_default();
+        *size = values.iter().fold(*size, |m, v| m.max(v.abs()));
+    }
+    let mut sorted: Vec<_> = sizes.into_iter().collect();
+    sorted.sort_by(|a, b| (a.0.0).cmp(b.0.0).then(b.1.total_cmp(&a.1)));
+    let mut out: Vec<Alike> = Vec::new();
+    for ((unit, name), size) in sorted {
+        match out.last_mut() {
+            Some(a) if a.unit == unit && size * MOST_RATIO >= a.largest => a.names.push(name),
+            _ => out.push(Alike {
+                unit,
+                largest: size,
+                names: vec![name],
+            }),
+        }
+    }
+    out
+}
+
+/// Loads with their ends, a run at a time; an axis for each unit and size.
+fn bars(runs: &[RecoveredRun], ends: Ends) -> Vec<Block> {
+    let caption = match ends {
+        Ends::Interval => {
+            "Points are the recovered loads, thin lines their 95 % intervals: shorter lines are better."
+        }
+        Ends::Span => {
+            "Wide bars reach from the smallest to the largest value of the record, points are means. They show the size of a load, not its uncertainty."
+        }
     };
-    let figure = |unit: &String| {
-        let groups: Vec<_> = runs
+    let groups = alike(runs);
+    let figure = |group: &Alike| {
+        let of_run = |r: &RecoveredRun| -> (String, Vec<IntervalRow>) {
+            let of_group = |l: &&(String, [f64; 3], String)| {
+                l.2 == group.unit && group.names.contains(&l.0.as_str())
+            };
+            let rows = r.loads.iter().filter(of_group);
+            (r.run.clone(), rows.map(|l| (l.0.clone(), l.1)).collect())
+        };
+        let drawn: Vec<_> = runs.iter().take(MOST_RUNS).map(of_run).collect();
+        let mut figure = intervals(&drawn, group.unit, ends, caption);
+        if groups.iter().filter(|g| g.unit == group.unit).count() > 1 {
+            figure.label = format!("{}, up to {}", figure.label, number(group.largest));
+        }
+        Block::Figure(figure)
+    };
+    groups.iter().map(figure).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_load_twenty_times_as_large_has_an_axis_of_its_own() {
+        let load = |name: &str, size: f64, unit: &str| {
+            (name.to_owned(), [-size, 0.0, 0.5 * size], unit.to_owned())
+        };
+        let loads = vec![
+            load("small", 1.0, "kN"),
+            load("payload", 41.0, "kN"),
+            load("middle", 3.0, "kN"),
+            load("moment", 1.0, "kN m"),
+        ];
+        let run = RecoveredRun {
+            run: "R1".to_owned(),
+            loads,
+        };
+        let groups = alike(std::slice::from_ref(&run));
+        let names: Vec<Vec<&str>> = groups.iter().map(|g| g.names.clone()).collect();
+        assert_eq!(
+            names,
+            [vec!["payload", "middle"], vec!["small"], vec!["moment"]]
+        );
+        let labels: Vec<String> = bars(&[run], Ends::Interval)
             .iter()
-            .take(MOST_RUNS)
-            .map(|r| of_run(r, unit))
+            .map(|b| match b {
+                Block::Figure(f) => f.label.clone(),
+                _ => String::new(),
+            })
             .collect();
-        Block::Figure(intervals(&groups, unit))
-    };
-    units.into_iter().map(figure).collect()
+        assert_eq!(
+            labels,
+            [
+                "values with intervals, kN, up to 41.00",
+                "values with intervals, kN, up to 1.000",
+                "values with intervals, kN m",
+            ]
+        );
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
+use crate::job::{JobGauge, StatedPlace};
 use crate::model::Model;
 use crate::report::csv_cell;
 use crate::sensitivity::Sensitivity;
@@ -28,27 +29,72 @@ pub fn sensitivity_csv(out: &mut dyn Write, s: &Sensitivity) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0. All have the grid length of the candidates.
+/// A column of `gauges.csv` that only named spots need: name, and its field for a spot.
+type SpotColumn = (&'static str, fn(&JobGauge) -> Option<String>);
+
+/// Columns of named spots that are written where a chosen spot states them.
+const OF_SPOTS: [SpotColumn; 7] = [
+    ("bridge_factor", |s| {
+        (s.bridge_factor != 1.0).then(|| s.bridge_factor.to_string())
+    }),
+    ("transverse_sensitivity", |s| {
+        let kt = s.transverse_sensitivity;
+        (kt != 0.0).then(|| kt.to_string())
+    }),
+    ("element2", |s| s.pair.map(|p| p.0.to_string())),
+    ("surface2", |s| Some(s.pair?.1?.word().to_owned())),
+    ("point", |s| match s.place {
+        StatedPlace::BeamPoint { point, .. } => {
+            let letters = ["C", "D", "E", "F"];
+            letters.get(usize::from(point)).map(|l| (*l).to_owned())
+        }
+        _ => None,
+    }),
+    ("station", |s| match s.place {
+        StatedPlace::BeamPoint { station, .. } => Some(station.to_string()),
+        _ => None,
+    }),
+    ("member", |s| {
+        (!s.member.is_empty()).then(|| s.member.clone())
+    }),
+];
+
+/// Writes gauges as a job can name them: `dir` is the axis itself, so that `angle_deg` is 0. Gauges have the grid length of the candidates, named
+/// spots their own. A spot stated by its position has a blank `element`: the position decides where its strain is taken.
 ///
 /// # Errors
 /// Errors of `out`.
 pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge], grid_length: f64) -> io::Result<()> {
-    writeln!(
+    let spots = || placed.iter().filter_map(|p| p.spot.as_ref());
+    let more: Vec<SpotColumn> = OF_SPOTS
+        .into_iter()
+        .filter(|(_, field)| spots().any(|s| field(s).is_some()))
+        .collect();
+    write!(
         out,
         "name,element,surface,dir_x,dir_y,dir_z,angle_deg,x,y,z,bridge,angle_from_element_x_deg,angle_seen_deg,leverage,role,grid_length"
     )?;
+    for (name, _) in &more {
+        write!(out, ",{name}")?;
+    }
+    writeln!(out)?;
     for p in placed {
         let g = &p.gauge;
         let (d, x) = (g.direction, g.position);
-        writeln!(
+        let stated = p.spot.as_ref().map(|s| s.place);
+        let element = match stated {
+            Some(StatedPlace::Position(..)) => String::new(),
+            _ => g.element.to_string(),
+        };
+        let direction = match stated {
+            Some(StatedPlace::BeamPoint { .. }) => ",,,".to_owned(),
+            _ => format!("{},{},{},0", d.x, d.y, d.z),
+        };
+        write!(
             out,
-            "{},{},{},{},{},{},0,{},{},{},{},{:.4},{:.4},{:.6},{},{grid_length}",
+            "{},{element},{},{direction},{},{},{},{},{:.4},{:.4},{:.6},{},{}",
             csv_cell(&g.name),
-            g.element,
             g.surface.word(),
-            d.x,
-            d.y,
-            d.z,
             x.x,
             x.y,
             x.z,
@@ -56,8 +102,14 @@ pub fn gauges_csv(out: &mut dyn Write, placed: &[PlacedGauge], grid_length: f64)
             g.angle_rad.to_degrees(),
             p.angle_seen_deg,
             p.leverage,
-            p.role.word()
+            p.role.word(),
+            p.grid_length(grid_length)
         )?;
+        for (_, field) in &more {
+            let text = p.spot.as_ref().and_then(field).unwrap_or_default();
+            write!(out, ",{}", csv_cell(&text))?;
+        }
+        writeln!(out)?;
     }
     Ok(())
 }
@@ -120,7 +172,7 @@ pub fn gluing_sheet_csv(
         let budget = |b: Option<f64>| b.map_or(String::new(), |v| format!("{v:.2}"));
         write!(
             out,
-            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{},{},{},{:.5},{:.5},{:.5},{:.1},{:.1},{},{},{},{},{},{},{grid_length}",
+            "{},{},{},{:.3},{:.3},{:.3},{grid},{},{},{},{},{},{},{:.5},{:.5},{:.5},{:.1},{:.1},{},{},{},{},{},{},{}",
             csv_cell(&g.name),
             g.element,
             g.surface.word(),
@@ -143,7 +195,8 @@ pub fn gluing_sheet_csv(
             p.bridge,
             p.role.word(),
             budget(p.angle_budget_deg),
-            budget(p.position_budget)
+            budget(p.position_budget),
+            p.grid_length(grid_length)
         )?;
         for s in &p.strain_by_load {
             write!(out, ",{:.1}", s.microstrain.abs())?;

@@ -2,6 +2,7 @@
 
 use crate::report::figure::{Line, Scale, lines};
 use crate::report::page::Block;
+use serde_json::json;
 
 /// A signal recovered and measured over one axis; `measured` is empty where it was not measured.
 pub struct Curve {
@@ -15,8 +16,14 @@ pub struct Curve {
     pub measured: Vec<f64>,
 }
 
-/// Curves one at a time, what was measured below what was recovered.
-pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale) -> Block {
+/// Curves one at a time, what was measured below what was recovered; `band` is shaded on the x axis and named.
+pub(super) fn plots(
+    curves: &[Curve],
+    [x_label, y_label]: [&str; 2],
+    scale: Scale,
+    caption: &str,
+    band: Option<([f64; 2], String)>,
+) -> Block {
     let groups: Vec<(String, Vec<Line>)> = curves
         .iter()
         .map(|c| {
@@ -31,5 +38,9 @@ pub(super) fn plots(curves: &[Curve], x_label: &str, y_label: &str, scale: Scale
     if groups.is_empty() {
         return Block::Note("None.".into());
     }
-    Block::Figure(lines(&groups, x_label, y_label, scale))
+    let mut figure = lines(&groups, x_label, y_label, scale, caption);
+    if let Some((ends, name)) = band {
+        figure.layout["band"] = json!({ "ends": ends, "name": name });
+    }
+    Block::Figure(figure)
 }

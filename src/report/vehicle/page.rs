@@ -18,6 +18,8 @@ pub struct Curves {
     pub spectra: Vec<Curve>,
     /// Forces of links over their stretch.
     pub restoring: Vec<Curve>,
+    /// Band of the equations, Hz.
+    pub band_hz: [f64; 2],
 }
 
 /// Parameters, verdicts, fit, a stretch of wheel force over time, spectra, restoring forces; in job units.
@@ -30,6 +32,8 @@ pub fn identify_page(
     chassis: &[ChassisForce],
 ) -> Page {
     let force = &units.force;
+    let [low, high] = curves.band_hz.map(number);
+    let band = format!("band of the equations, {low} to {high} Hz");
     let mut sections = vec![parameters(found)];
     if !found.unidentifiable.is_empty() {
         let blocks = found.unidentifiable.iter().cloned().map(Block::Text);
@@ -43,9 +47,10 @@ pub fn identify_page(
         "Wheel force",
         vec![plots(
             &curves.histories,
-            "time, s",
-            &format!("force, {force}"),
+            ["time, s", &format!("force, {force}")],
             Scale::Linear,
+            &format!("Wheel force in the {band}, recovered and, if known, measured: curves that agree are better."),
+            None,
         )],
     ));
     let rows = chassis.iter().map(|f| {
@@ -70,9 +75,10 @@ pub fn identify_page(
         "Spectra",
         vec![plots(
             &curves.spectra,
-            "frequency, Hz",
-            &format!("density of force, {force}²/Hz"),
+            ["frequency, Hz", &format!("density of force, {force}²/Hz")],
             Scale::LogY,
+            "Spectral density of the wheel force: curves that agree in the shaded band are better. Nothing is fitted outside it.",
+            Some((curves.band_hz, band)),
         )],
     ));
     sections.push(restoring_section(&curves.restoring, units));

@@ -75,7 +75,13 @@ pub fn restoring_section(curves: &[Curve], units: &UnitNames) -> Section {
     let force = format!("force, {}", units.force);
     Section::new(
         "Restoring force over stretch (measured: required by the motion)",
-        vec![plots(curves, &stretch, &force, Scale::Linear)],
+        vec![plots(
+            curves,
+            [&stretch, &force],
+            Scale::Linear,
+            "Mean force of the link by its stretch, from the model and as the motion requires it: curves that agree are better.",
+            None,
+        )],
     )
 }
 

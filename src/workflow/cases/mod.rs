@@ -62,6 +62,12 @@ pub struct UnitLoadDeck {
     /// Title of the job.
     #[serde(skip)]
     pub title: String,
+    /// Model of the deck.
+    #[serde(skip)]
+    pub model: Model,
+    /// The job.
+    #[serde(skip)]
+    pub job: Job,
 }
 
 impl Answer for UnitLoadDeck {
@@ -180,6 +186,8 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
             edits,
         },
         title: job.title.clone(),
+        model: read.model,
+        job: job.clone(),
     };
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }

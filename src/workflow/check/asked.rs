@@ -8,10 +8,8 @@ use crate::job::Job;
 use crate::strain_chain::{WantedAt, has_covariance, prepare, read_fields};
 use crate::workflow::{recover, sensitivity};
 
-/// Grids of a deck up to which `check` solves it: a few seconds of work on one core. `check` is asked often, and answers at once.
+/// Grids of a deck up to which `check` solves it, with a mesh of half the width: a few seconds of work on two cores.
 const MOST_GRIDS: usize = 10_000;
-/// Grids that a mesh half as wide has for each of the deck's.
-const FINER: usize = 4;
 
 /// Runs `sensitivity` and `recover` as far as their findings require. `grids` is the number of grids of the job's deck. The caller has read all other
 /// files.
@@ -27,7 +25,7 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
         false => job.sensitivity.is_none() || has_covariance(job),
     };
     let solves = of_model && job.model.is_some() && !job.loads.is_empty();
-    if solves && grids > most_grids(job) {
+    if solves && grids > MOST_GRIDS {
         work.findings.push(not_asked(job, grids));
         return Ok(());
     }
@@ -54,14 +52,6 @@ pub(super) fn recovers(job: &Job) -> bool {
     taught && !others && job.study.is_none() && job.ballast.is_none()
 }
 
-/// Grids up to which a job is solved.
-fn most_grids(job: &Job) -> usize {
-    match job.model.as_ref().is_some_and(|m| m.mesh_error) {
-        true => MOST_GRIDS / FINER,
-        false => MOST_GRIDS,
-    }
-}
-
 /// Returns the finding that the deck is not solved, with the checks that only the commands make.
 fn not_asked(job: &Job, grids: usize) -> Finding {
     let readings = match job.measured {
@@ -77,5 +67,5 @@ fn not_asked(job: &Job, grids: usize) -> Finding {
         ),
         "run `sensitivity` or `place` on the job: later commands use the stored solution",
     )
-    .with_numbers(grids as f64, most_grids(job) as f64)
+    .with_numbers(grids as f64, MOST_GRIDS as f64)
 }

@@ -22,6 +22,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
 use crate::host::words::count_of;
 use crate::host::work::Work;
+use crate::job::Job;
 use crate::model::{Model, Shell};
 use crate::strain_chain::deck::{DeckModel, moduli_and_densities, read_model};
 use crate::strain_chain::job_deck::against_suggested_units;
@@ -35,7 +36,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 pub use text::JOB;
 use text::{JobPlan, usual_spacing};
-use trial::{Verdict, first_that_places};
+use trial::{Verdict, WithJob, first_that_places};
 
 /// A commented job made from an analyst's files.
 #[derive(Serialize)]
@@ -54,6 +55,9 @@ pub struct Proposal {
     /// The job itself.
     #[serde(skip)]
     pub text: String,
+    /// The job as read, and the model of the deck; `None` without a deck, or if `text` needs a correction before it can be read.
+    #[serde(skip)]
+    pub read: Option<(Job, Model)>,
     /// Path of the proposed job.
     #[serde(skip)]
     pub path: PathBuf,
@@ -171,6 +175,8 @@ pub fn init(
         None => work.stage("try", |w| first_that_places(&w.cx, &plan, &found)),
     };
     work.findings.extend(verdict.finding);
+    let files = WithJob::new(cx.files, &target, &verdict.text);
+    let job = Job::read(&target, &files).ok();
     let answer = Proposal {
         job: JOB,
         loads: verdict.loads,
@@ -178,6 +184,7 @@ pub fn init(
         placeable: verdict.places,
         zones: named_zones(&deck.model),
         text: verdict.text,
+        read: job.map(|job| (job, deck.model)),
         path: target,
         purpose: None,
     };

@@ -217,6 +217,7 @@ pub fn init_for(
         placeable: false,
         zones: BTreeMap::new(),
         text,
+        read: None,
         path,
         purpose: Some(purpose.command()),
     };

@@ -133,11 +133,7 @@ fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
         angle_step_deg: 45,
         ..trial.clone()
     };
-    let files = WithJob {
-        inner: cx.files,
-        path: path.clone(),
-        text: trial.text(),
-    };
+    let files = WithJob::new(cx.files, &path, &trial.text());
     let cx = Context {
         files: &files,
         store: cx.store.clone(),
@@ -163,10 +159,21 @@ fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
 }
 
 /// The files of a context and a job that isn't written yet.
-struct WithJob<'a> {
+pub(super) struct WithJob<'a> {
     inner: &'a dyn Files,
     path: PathBuf,
     text: String,
+}
+
+impl<'a> WithJob<'a> {
+    /// The files of `inner` and `text` at `path`.
+    pub(super) fn new(inner: &'a dyn Files, path: &Path, text: &str) -> Self {
+        Self {
+            inner,
+            path: path.to_owned(),
+            text: text.to_owned(),
+        }
+    }
 }
 
 impl Files for WithJob<'_> {

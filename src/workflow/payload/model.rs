@@ -19,7 +19,7 @@ use crate::payload::PayloadModel;
 use crate::sensitivity::{Sensitivity, Uncertainty, check_separability};
 use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::solved::{stands_on_wheels, support_of_job, unit_loads_kept};
-use crate::strain_chain::{Fields, Prepared, has_covariance};
+use crate::strain_chain::{Fields, Prepared, has_covariance, take_out_beside};
 use crate::units::MICROSTRAIN;
 
 /// The model of the payload with what the report draws.
@@ -229,10 +229,12 @@ fn held(
         id,
         axis: own.unwrap_or(2),
     };
-    let solution = work.stage("solve on the supports", |w| {
+    let loads = place.unit_loads();
+    let mut solution = work.stage("solve on the supports", |w| {
         let made = (&fields.deck, "payload on supports");
-        unit_loads_kept(w, made, (fields.model(), support), &place.unit_loads())
+        unit_loads_kept(w, made, (fields.model(), support), &loads)
     })?;
+    take_out_beside(work, job, fields, (&loads, &mut solution.cases))?;
     let [_, b, c] = place.axes();
     let at = fields.model().grids.get(grid.us());
     let at = at.map_or_else(Vec3::zeros, |g| g.x);
@@ -281,11 +283,14 @@ fn standing(
     let place = Place { grid, id, axis: a };
     let others = place.parts();
     let loads = place.unit_loads();
-    let standing = work
+    let mut standing = work
         .stage("solve on the floor", |_| {
             solve_standing(model, a, &wheels.grids, &loads, None)
         })
         .map_err(|e| floor_fault(job, &e))?;
+    if let Some(fields) = prepared.and_then(|p| p.fields.as_ref()) {
+        take_out_beside(work, job, fields, (&loads, &mut standing.others))?;
+    }
     let at = model.grids.get(grid.us()).map_or_else(Vec3::zeros, |g| g.x);
     let n = wheels.grids.len();
     let mut floor = Matrix::zeros(n, 3);

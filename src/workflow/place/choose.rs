@@ -1,7 +1,9 @@
 //! The choice: single gauges through the tensors, or bundles (rosettes, pairs, unlike costs) within a budget.
 
+use super::chosen::{Channel, Chosen, Refused};
 use super::misfits::fitting;
 use super::pool::Kind;
+use super::spot_layout;
 use super::task::{Task, know_the_loads, position};
 use super::wanted::on_wanted;
 use crate::gauge::{Bridge, CornerRows, Gauge, GaugeSpec, build};
@@ -17,46 +19,15 @@ use crate::placement::wanted::value;
 use crate::placement::{Layout, PlaceError, Spec, condition, place};
 use std::collections::HashMap;
 
-/// A channel chosen.
-pub(super) struct Channel {
-    /// On the model.
-    pub gauge: Gauge,
-    /// Wiring, as a job names it.
-    pub bridge: &'static str,
-    /// Index of the site.
-    pub site: usize,
-    /// Row over its standard deviation, columns in the candidates' order.
-    pub row: Vec<f64>,
-    /// Standard deviation of its reading, microstrain.
-    pub sd: f64,
-    /// Change of its reading with its angle, microstrain a radian, rms over the expected loads.
-    pub turn: f64,
-    /// The angle of its first grid.
-    pub angle: f64,
-    /// The refusal of a grid that does not fit on the part there; its strain is then that at its middle.
-    pub misfit: Option<Fault>,
-}
-
-/// A layout chosen.
-pub(super) struct Chosen {
-    pub channels: Vec<Channel>,
-    pub log_det: f64,
-    pub upper_bound: f64,
-    pub efficiency_bound: f64,
-    pub proved: bool,
-    pub nodes: usize,
-    /// Costs, where they were counted.
-    pub cost: Option<f64>,
-    /// The least condition number met, where that was looked for.
-    pub least_condition: Option<f64>,
-}
-
 /// Bundles at most: memory for their rows.
 const MOST_BUNDLES: usize = 4_000_000;
 
 /// Whether single gauges of one wiring are all there is to choose.
 pub(super) fn is_plain(task: &Task) -> bool {
     let (c, p) = (&task.job.candidates, &task.job.placement);
+    if let Some(spots) = &task.spots {
+        return !c.has_costs() && p.budget.is_none() && spots.iter().all(|s| s.legs.len() == 1);
+    }
     c.bridges.len() == 1
         && c.rosette.is_none()
         && p.symmetric.is_none()
@@ -91,12 +62,6 @@ pub(super) fn choose(
     })
 }
 
-/// Reason of a refused choice.
-pub(super) enum Refused {
-    By(PlaceError),
-    Job(Fault),
-}
-
 /// Chooses gauges by the spec.
 pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Chosen, Refused> {
     if is_plain(task)
@@ -104,6 +69,9 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
     {
         let mut layout = place(&kind.candidates, spec).map_err(Refused::By)?;
         let least_condition = well_conditioned(task, kind, spec, &mut layout);
+        if let Some(spots) = &task.spots {
+            return Ok(spot_layout::of_layout(spots, &layout, least_condition));
+        }
         if let Some(gauges) = on_wanted(task, kind, spec, &layout).map_err(Refused::Job)? {
             put_instead(kind, spec, &mut layout, gauges);
         }
@@ -146,7 +114,10 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
             "delete those keys, or state the gauges of these elements as [[gauge]] and keep them",
         ));
     }
-    within_budget(task, kinds, spec)
+    match &task.spots {
+        Some(spots) => spot_layout::within_budget(task, spots, spec),
+        None => within_budget(task, kinds, spec),
+    }
 }
 
 /// Puts the layout of least condition number in place of the best one by D, where the job asks for it.
@@ -178,7 +149,8 @@ fn put_instead(kind: &Kind, spec: &Spec, layout: &mut Layout, gauges: Vec<Choice
     Some(())
 }
 
-fn name(i: usize, n: usize) -> String {
+/// Returns the name of gauge `i`, from 0, of a layout of `n`.
+pub(in crate::workflow) fn name(i: usize, n: usize) -> String {
     let digits = n.to_string().len().max(2);
     format!("P{:0digits$}", i + 1)
 }
@@ -227,7 +199,8 @@ fn channel(task: &Task, kind: &Kind, choice: Choice, name: String) -> Result<Cha
             ..lay(&by_direction)?
         },
         bridge: kind.bridge.name(),
-        site,
+        site: Some((shell, surface)),
+        spot: None,
         row: kind.candidates.row(choice),
         sd: kind.candidates.sd(choice),
         turn: kind.candidates.turn_rms(choice),

@@ -1,6 +1,7 @@
 //! How many gauges: what each number of them gives, and what the next one buys.
 
-use super::choose::{Refused, choose_once};
+use super::choose::choose_once;
+use super::chosen::Refused;
 use super::judge::{chosen_as_recovered, in_job_order, sigma_of, terms_listed};
 use super::outcome::{BoughtSigma, CurvePoint};
 use super::pool::Kind;

@@ -1,6 +1,6 @@
 //! Findings on a layout.
 
-use super::choose::{Channel, Chosen};
+use super::chosen::{Channel, Chosen};
 use super::outcome::PlacedGauge;
 use super::task::Task;
 use crate::finding::{Finding, Severity};
@@ -80,6 +80,18 @@ pub(super) fn chosen_as_recovered(
     channels: &[Channel],
 ) -> Option<Vec<f64>> {
     let p = &task.job.placement;
+    if task.spots.is_some() {
+        // Spots may have rows of a given S, and errors in common.
+        let gauges = channels.iter().map(|c| c.gauge.clone());
+        let gauges: Vec<_> = gauges.chain(task.kept.clone()).collect();
+        let s = task.s_of(&gauges).ok()?;
+        let rows = task.rows_of(&gauges, &s, p.model_uncertainty_rel, &[]);
+        let u = match task.all_calibrated(&gauges) {
+            true => 0.0,
+            false => p.model_uncertainty_rel,
+        };
+        return as_recovered(task, &task.without_kept(spec), &rows.over_sd, u);
+    }
     let chosen = channels.iter().map(|c| {
         let own = p.noise_by_bridge.iter().find(|(b, _)| b.name() == c.bridge);
         let strain: Vec<f64> = c.row.iter().map(|v| v * c.sd).collect();

@@ -5,10 +5,10 @@ use super::task::Task;
 use crate::gauge::{Bridge, Gauge};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
-use crate::job::{Job, JobGauge};
+use crate::job::{Job, JobGauge, StatedPlace};
 use crate::linalg::spd;
 use crate::placement::candidates::{Angles, Choice, Scatter};
-use crate::placement::sites::bridges;
+use crate::placement::sites::{Site, bridges};
 use crate::sensitivity::{NoStrain, Sensitivity, from_cases};
 use crate::strain_chain::read_given;
 use crate::units::MICROSTRAIN;
@@ -33,6 +33,8 @@ pub(super) struct Rows {
     pub strain: Vec<Vec<f64>>,
     /// `W^-1/2` times `strain`, with `W` the covariance of readings: independent rows of unit variance with the same information on the loads.
     pub over_sd: Vec<Vec<f64>>,
+    /// Standard deviation of each reading, microstrain.
+    pub sd: Vec<f64>,
 }
 
 impl Task<'_> {
@@ -65,6 +67,16 @@ impl Task<'_> {
         gauges.iter().all(has)
     }
 
+    /// Returns the noise of a gauge, microstrain: for a spot the noise of its wiring.
+    fn noise_of(&self, gauge: &Gauge) -> f64 {
+        let p = &self.job.placement;
+        let spots = self.job.candidates.spots.iter().flatten();
+        let mut stated = spots.map(|s| &s.gauge).filter(|g| is_of(gauge, g));
+        let bridge = stated.next().map(|g| g.bridge);
+        let own = p.noise_by_bridge.iter().find(|n| Some(n.0) == bridge);
+        own.map_or(p.noise_microstrain, |n| n.1)
+    }
+
     fn given_row(&self, gauge: &Gauge) -> Option<(&Sensitivity, usize)> {
         let own = self.given.as_ref()?;
         let row = own.gauges.iter().position(|n| *n == gauge.name)?;
@@ -75,7 +87,6 @@ impl Task<'_> {
     /// Strain of a calibrated S has the covariance of S, with loads of expected size that are independent of each other. `more`: an additional
     /// variance of each gauge, microstrain squared; empty: none.
     pub fn rows_of(&self, gauges: &[Gauge], s: &Sensitivity, model_rel: f64, more: &[f64]) -> Rows {
-        let noise = self.job.placement.noise_microstrain;
         let row = |g: usize| -> Vec<f64> {
             let of = |&l: &usize| s.values[(g, l)] * self.scales[l] / MICROSTRAIN;
             self.order.iter().map(of).collect()
@@ -84,6 +95,7 @@ impl Task<'_> {
         let n = gauges.len();
         let mut w = vec![0.0; n * n];
         for (g, (gauge, row)) in gauges.iter().zip(&strain).enumerate() {
+            let noise = self.noise_of(gauge);
             let sd = match self.given_row(gauge) {
                 Some((own, _)) => match &own.uncertainty {
                     // As runs that were left out have it: `scale` is a factor on all of sigma.
@@ -120,51 +132,87 @@ impl Task<'_> {
             }
         }
         let over_sd = whitened(&w, &strain, self.order.len());
-        Rows { strain, over_sd }
+        let sd = (0..n).map(|g| w[g * n + g].sqrt()).collect();
+        Rows {
+            strain,
+            over_sd,
+            sd,
+        }
     }
+}
+
+/// Whether a gauge on the model is a reading of this gauge of the job.
+fn is_of(gauge: &Gauge, stated: &JobGauge) -> bool {
+    gauge.name == stated.name || gauge.name.starts_with(&format!("{}.", stated.name))
 }
 
 /// Returns the variance that the tolerances of gluing add to the reading of each gauge, microstrain squared at the expected loads, as for
 /// candidates at the same place; 0 for gauges whose S is calibrated as they are glued, and for gauges on bars.
 pub(super) fn gluing_variance(task: &Task, gauges: &[Gauge]) -> Vec<f64> {
-    let (job, model) = (task.job, task.fields.model());
-    let (loads, scales) = task.nuisance_first();
-    let of = |gauge: &Gauge| -> Option<f64> {
-        let is_calibrated = task
-            .given_row(gauge)
-            .is_some_and(|(s, _)| s.uncertainty.is_some());
-        let site = (model.shell_ix(gauge.element)?, gauge.surface);
-        let is_of =
-            |g: &&JobGauge| g.name == gauge.name || gauge.name.starts_with(&format!("{}.", g.name));
-        let stated = job.gauges.iter().find(is_of)?;
-        let scatter = Scatter {
-            noise: 0.0,
-            model_rel: job.placement.gauge_factor_rel,
-            ..scatter(job, model, &[site], stated.bridge, &loads, &scales)
-        };
-        let angles = Angles::Continuous;
-        let here = bridges(
-            model,
-            &[site],
-            stated.bridge,
-            &loads,
-            &scales,
-            angles,
-            scatter,
-        );
-        // A candidate for a shear bridge has the angle of its first grid.
-        let turn = match stated.bridge {
-            Bridge::Shear => std::f64::consts::FRAC_PI_4,
-            _ => 0.0,
-        };
-        let sd = here.sd(Choice {
-            place: 0,
-            step: 0,
-            angle: gauge.angle_rad + turn,
-        });
-        (!is_calibrated).then_some((sd / stated.bridge_factor).powi(2))
+    let of = |gauge: &Gauge| {
+        let stated = task.job.gauges.iter().find(|g| is_of(gauge, g))?;
+        Some(glued(task, gauge, stated)?.variance)
     };
     gauges.iter().map(|g| of(g).unwrap_or(0.0)).collect()
+}
+
+/// Effect of gluing on the reading of a gauge.
+pub(super) struct Glued {
+    /// Variance by the tolerances of gluing, microstrain squared at the expected loads.
+    pub variance: f64,
+    /// Change of the reading with its angle, microstrain a radian, rms over the expected loads.
+    pub turn: f64,
+    /// Angle of the first grid, radians from the element x axis.
+    pub angle: f64,
+    /// Side of the shell.
+    pub site: Site,
+}
+
+/// Returns the effect of gluing on a gauge of a shell; `None` on bars.
+pub(super) fn glued(task: &Task, gauge: &Gauge, stated: &JobGauge) -> Option<Glued> {
+    let (job, model) = (task.job, task.fields.model());
+    if matches!(stated.place, StatedPlace::BeamPoint { .. }) {
+        return None;
+    }
+    let (loads, scales) = task.nuisance_first();
+    let is_calibrated = task
+        .given_row(gauge)
+        .is_some_and(|(s, _)| s.uncertainty.is_some());
+    let site = (model.shell_ix(gauge.element)?, gauge.surface);
+    let scatter = Scatter {
+        noise: 0.0,
+        model_rel: job.placement.gauge_factor_rel,
+        ..scatter(job, model, &[site], stated.bridge, &loads, &scales)
+    };
+    let here = bridges(
+        model,
+        &[site],
+        stated.bridge,
+        &loads,
+        &scales,
+        Angles::Continuous,
+        scatter,
+    );
+    // A candidate for a shear bridge has the angle of its first grid.
+    let turn = match stated.bridge {
+        Bridge::Shear => std::f64::consts::FRAC_PI_4,
+        _ => 0.0,
+    };
+    let choice = Choice {
+        place: 0,
+        step: 0,
+        angle: gauge.angle_rad + turn,
+    };
+    let factor = stated.bridge_factor;
+    Some(Glued {
+        variance: match is_calibrated {
+            true => 0.0,
+            false => (here.sd(choice) / factor).powi(2),
+        },
+        turn: here.turn_rms(choice) / factor.abs(),
+        angle: choice.angle,
+        site,
+    })
 }
 
 /// `L^-1 A` with `L L' = w`; over the roots of the diagonal where rounding leaves `w` without a factor.

@@ -5,7 +5,7 @@ use crate::finding::Finding;
 use crate::gauge::{Gauge, GaugeError, GaugeSpec};
 use crate::host::fault::Fault;
 use crate::job::Job;
-use std::collections::BTreeSet;
+use crate::placement::sites::Site;
 
 /// Gauges on the model with their findings, or the reason why they can't be built.
 type Built = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
@@ -67,11 +67,11 @@ fn misfit(job: &Job, built: &Built) -> Option<Fault> {
 /// The refusal of such a gauge, where no further round is allowed or its element is wanted.
 pub(super) fn leave_out<'a>(
     task: &mut Task,
-    chosen: impl Iterator<Item = (usize, u32, Option<&'a Fault>)>,
+    chosen: impl Iterator<Item = (Option<Site>, u32, Option<&'a Fault>)>,
     is_allowed: bool,
 ) -> Result<Option<Fault>, Fault> {
     let wanted = task.job.candidates.wanted_elements.as_ref();
-    let mut out = BTreeSet::new();
+    let mut out: Vec<Site> = Vec::new();
     let mut last = None;
     for (site, element, misfit) in chosen {
         let Some(misfit) = misfit else {
@@ -80,11 +80,9 @@ pub(super) fn leave_out<'a>(
         if !is_allowed || wanted.is_some_and(|w| w.contains(element)) {
             return Err(misfit.clone());
         }
-        out.insert(site);
+        out.extend(site);
         last = Some(misfit.clone());
     }
-    let mut site = 0..task.sites.len();
-    task.sites
-        .retain(|_| site.next().is_some_and(|i| !out.contains(&i)));
+    task.sites.retain(|site| !out.contains(site));
     Ok(last)
 }

@@ -1,6 +1,7 @@
 //! `place`: gauges chosen from the candidates, in addition to the installed gauges of the job, with the certificate.
 
 mod choose;
+mod chosen;
 mod curve;
 mod installed;
 mod judge;
@@ -10,9 +11,12 @@ mod outcome;
 mod pool;
 mod region;
 mod sheet;
+mod spot_layout;
+mod spots;
 mod task;
 mod wanted;
 
+pub(super) use choose::name as placed_name;
 pub use outcome::*;
 pub(super) use pool::{angles, column_order, scales, scatter};
 pub(super) use region::allowed_sites;
@@ -70,24 +74,22 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let cases = fields.load_cases(job);
     let (common, findings) = common_shells(&cases);
     work.findings.extend(findings);
-    let (sites, cleared) = region::allowed_sites_and_rule(job, fields, &common)?;
+    let (sites, strict) = match &job.candidates.spots {
+        Some(_) => (Vec::new(), None),
+        None => region::allowed_sites_and_rule(job, fields, &common)?,
+    };
     let k = cases.len();
     let scales = scales(work, &cases, &common);
     let given = known::read_given_sensitivity(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
-    task.cleared = cleared;
+    task.strict = strict;
+    task.lay_spots(work)?;
     task.keep(work)?;
-    let (ordered, scales) = task.nuisance_first();
-    let errors = task.errors_nuisance_first();
     let mut spec = task.spec(work);
-    let places = task.sites.len();
+    let places = task.n_places();
     let (mut misfit, mut rounds): (Option<Fault>, usize) = (None, 0);
     let (kinds, chosen) = loop {
-        let kinds = work.stage("candidates", |_| {
-            let angles = angles(job.candidates.angles);
-            let strain = (ordered.as_slice(), errors.as_slice());
-            pool::kinds(job, fields.model(), &task.sites, strain, &scales, &angles)
-        });
+        let kinds = work.stage("candidates", |_| kinds_of(&task));
         let chosen = work.stage("place", |w| choose::choose(w, &task, &kinds, &mut spec));
         work.go_on()?;
         let chosen = match (chosen, misfit.take()) {
@@ -104,10 +106,10 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
         }
         rounds += 1;
     };
-    if task.sites.len() < places {
+    if task.n_places() < places {
         work.notes.push(format!(
             "{} places were chosen and left out: a grid of {} does not fit on the part there",
-            places - task.sites.len(),
+            places - task.n_places(),
             job.candidates.grid_length
         ));
     }
@@ -166,7 +168,7 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     Ok(LayoutOf {
         reserved: reserved.collect(),
         candidates: Candidates {
-            places: task.sites.len(),
+            places: task.n_places(),
             rows: kinds.iter().map(|k| k.candidates.n_rows()).sum(),
         },
         load_sigma,
@@ -185,11 +187,24 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     })
 }
 
+/// Returns the candidates of every wiring, or the named spots.
+fn kinds_of(task: &task::Task) -> Vec<pool::Kind> {
+    if let Some(spots) = &task.spots {
+        return vec![spot_layout::kind(task, spots)];
+    }
+    let (ordered, scales) = task.nuisance_first();
+    let errors = task.errors_nuisance_first();
+    let angles = angles(task.job.candidates.angles);
+    let strain = (ordered.as_slice(), errors.as_slice());
+    let model = task.fields.model();
+    pool::kinds(task.job, model, &task.sites, strain, &scales, &angles)
+}
+
 /// A layout before model and job are handed to the outcome.
 struct LayoutOf {
     gauges: Vec<PlacedGauge>,
     candidates: Candidates,
-    chosen: choose::Chosen,
+    chosen: chosen::Chosen,
     kept: Vec<String>,
     mesh_error: Vec<GaugeMeshError>,
     sensitivity: Sensitivity,

@@ -5,7 +5,7 @@ use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::host::outcome::Answer;
 use crate::host::words::count_of;
-use crate::job::Job;
+use crate::job::{Job, JobGauge};
 use crate::placement::Role;
 use crate::sensitivity::Sensitivity;
 use crate::strain_chain::{Conditioning, Fields, GaugeMeshError, LoadSigma};
@@ -168,12 +168,20 @@ pub struct PlacedGauge {
     /// Nearest reference point, and the way from there, basic frame.
     #[serde(skip)]
     pub reference: Option<(String, [f64; 3])>,
+    /// The spot of the job's table, as it is stated there; `None` for a gauge of the search.
+    #[serde(skip)]
+    pub spot: Option<JobGauge>,
     /// Gauge as laid onto the model.
     #[serde(skip)]
     pub gauge: Gauge,
 }
 
 impl PlacedGauge {
+    /// Returns the length of its grid: as its spot states it, else that of the candidates.
+    pub fn grid_length(&self, of_candidates: f64) -> f64 {
+        self.spot.as_ref().map_or(of_candidates, |s| s.grid_length)
+    }
+
     /// The angle as the technician sees that side.
     pub(super) fn seen_deg(gauge: &Gauge) -> f64 {
         let deg = gauge.angle_rad.to_degrees();

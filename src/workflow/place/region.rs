@@ -2,8 +2,8 @@
 
 use crate::gauge::centre;
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::job::{Job, LoadActs, PropertyIds, Region};
-use crate::model::{Model, ShellIx, Vec3};
+use crate::job::{Ids, Job, LoadActs, PropertyIds, Region};
+use crate::model::{Model, Shell, ShellIx, Vec3};
 use crate::placement::region::{
     Segment, attachments, borders, clear_of, free_edges, hole_rims, joints,
 };
@@ -19,15 +19,15 @@ pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<V
     allowed_sites_and_rule(job, fields, common).map(|(sites, _)| sites)
 }
 
-/// Rule of `clear_of` that excludes the most shells, with the number of shells before and after it.
-pub(super) struct ClearRule {
-    /// The rule, as in `joints = 110`.
+/// Rule of `[candidates]` that excludes the most shells, with the number of shells before and after it.
+pub(super) struct StrictRule {
+    /// The rule, as in "`boxes`" or "`clear_of` joints = 110".
     pub rule: String,
     pub left: usize,
     pub of: usize,
 }
 
-impl ClearRule {
+impl StrictRule {
     /// Whether the rule, not the spacing, is what most places are lost to.
     pub(super) fn takes_most(&self) -> bool {
         2 * self.left < self.of
@@ -36,47 +36,79 @@ impl ClearRule {
     /// Returns a clause on the rule: "`clear_of` loads = 200 leaves 3 of 80 shells".
     pub(super) fn words(&self) -> String {
         let Self { rule, left, of } = self;
-        format!("`clear_of` {rule} leaves {left} of {of} shells")
+        format!("{rule} leaves {left} of {of} shells")
+    }
+
+    /// Returns the stricter of two rules: the one that leaves no shell, else the one that excludes more.
+    fn stricter(a: Option<Self>, b: Self) -> Self {
+        match a {
+            Some(a) if a.left == 0 || b.left > 0 && a.of - a.left >= b.of - b.left => a,
+            _ => b,
+        }
     }
 }
 
-/// [`allowed_sites`] with the rule of `clear_of` that excludes the most.
+/// Whether a shell, with its id, its property and its centre, follows a rule.
+type Follows<'a> = &'a dyn Fn(&Shell, u32, Vec3) -> bool;
+
+/// [`allowed_sites`] with the rule that excludes the most.
 pub(super) fn allowed_sites_and_rule(
     job: &Job,
     fields: &Fields,
     common: &[ShellIx],
-) -> Result<(Vec<Site>, Option<ClearRule>), Faults> {
+) -> Result<(Vec<Site>, Option<StrictRule>), Faults> {
     let rule = &job.candidates;
     let model = fields.model();
     check_ids(job, model)?;
     let sets = sets_of(job, fields)?;
     let mut shells: Vec<(ShellIx, Vec3)> = Vec::new();
     for &ix in common {
-        let Some(shell) = model.shells.get(ix.us()) else {
-            continue;
-        };
-        let property = model
-            .shell_properties
-            .get(shell.property.us())
-            .map_or(0, |p| p.id);
-        let among =
-            |ids: &Option<crate::job::Ids>, id: u32| ids.as_ref().map(|list| list.contains(id));
-        let of = |ids: &Option<PropertyIds>| ids.as_ref().map(|list| list.contains(property));
-        let allowed = of(&rule.properties) != Some(false)
-            && among(&rule.elements, shell.id) != Some(false)
-            && of(&rule.exclude_properties) != Some(true)
-            && among(&rule.exclude_elements, shell.id) != Some(true)
-            && (sets.is_empty()
-                || sets
-                    .iter()
-                    .any(|s| s.has_element(shell.id, shell.shape.card())));
-        let Some(x) = centre(model, shell).filter(|_| allowed) else {
-            continue;
-        };
-        let inside = rule.boxes.is_empty() || rule.boxes.iter().any(|b| holds(b, x));
-        if inside && !rule.exclude_boxes.iter().any(|b| holds(b, x)) {
-            shells.push((ix, x));
-        }
+        let shell = model.shells.get(ix.us());
+        shells.extend(shell.and_then(|s| Some((ix, centre(model, s)?))));
+    }
+    let of = |ids: &Option<PropertyIds>, id: u32| ids.as_ref().is_some_and(|l| l.contains(id));
+    let among = |ids: &Option<Ids>, id: u32| ids.as_ref().is_some_and(|l| l.contains(id));
+    let in_set = |s: &Shell| sets.iter().any(|l| l.has_element(s.id, s.shape.card()));
+    let in_box = |boxes: &[Region], x: Vec3| boxes.iter().any(|b| holds(b, x));
+    let rules: [(&str, bool, Follows); 7] = [
+        ("properties", rule.properties.is_some(), &|_, p, _| {
+            of(&rule.properties, p)
+        }),
+        ("elements", rule.elements.is_some(), &|s, _, _| {
+            among(&rule.elements, s.id)
+        }),
+        (
+            "exclude_properties",
+            rule.exclude_properties.is_some(),
+            &|_, p, _| !of(&rule.exclude_properties, p),
+        ),
+        (
+            "exclude_elements",
+            rule.exclude_elements.is_some(),
+            &|s, _, _| !among(&rule.exclude_elements, s.id),
+        ),
+        ("sets", !sets.is_empty(), &|s, _, _| in_set(s)),
+        ("boxes", !rule.boxes.is_empty(), &|_, _, x| {
+            in_box(&rule.boxes, x)
+        }),
+        (
+            "exclude_boxes",
+            !rule.exclude_boxes.is_empty(),
+            &|_, _, x| !in_box(&rule.exclude_boxes, x),
+        ),
+    ];
+    let mut most: Option<StrictRule> = None;
+    for (key, _, follows) in rules.into_iter().filter(|r| r.1) {
+        let of = shells.len();
+        shells.retain(|(ix, x)| {
+            let shell = model.shells.get(ix.us());
+            shell.is_some_and(|s| {
+                let property = model.shell_properties.get(s.property.us());
+                follows(s, property.map_or(0, |p| p.id), *x)
+            })
+        });
+        let (rule, left) = (format!("`{key}`"), shells.len());
+        most = Some(StrictRule::stricter(most, StrictRule { rule, left, of }));
     }
     let clear = rule.clear;
     let rims = clear.holes.unwrap_or(clear.edges);
@@ -96,18 +128,15 @@ pub(super) fn allowed_sites_and_rule(
         ("loads", clear.loads, &|| load_points(job, fields)),
         ("attachments", clear.attachments, &|| attachments(model)),
     ];
-    let mut most: Option<ClearRule> = None;
     for (key, distance, segments) in limits.into_iter().filter(|l| l.1 > 0.0) {
         let of = shells.len();
         let points: Vec<Vec3> = shells.iter().map(|s| s.1).collect();
         let clear = clear_of(&points, &segments(), distance);
         let mut flags = clear.into_iter();
         shells.retain(|_| flags.next().unwrap_or(false));
+        let rule = format!("`clear_of` {key} = {distance}");
         let left = shells.len();
-        if most.as_ref().is_none_or(|m| of - left > m.of - m.left) {
-            let rule = format!("{key} = {distance}");
-            most = Some(ClearRule { rule, left, of });
-        }
+        most = Some(StrictRule::stricter(most, StrictRule { rule, left, of }));
     }
     let sites: Vec<Site> = shells
         .iter()
@@ -115,17 +144,18 @@ pub(super) fn allowed_sites_and_rule(
         .collect();
     if sites.is_empty() {
         let wrong = "no shell with strain in every load's subcase is among the candidates";
-        let wrong = match most.filter(ClearRule::takes_most) {
-            Some(cleared) => format!("{wrong}: {}", cleared.words()),
-            None => wrong.to_owned(),
+        let (wrong, remedy) = match &most {
+            Some(strict) if strict.of > 0 && strict.left == 0 => (
+                format!("{wrong}: {}", strict.words()),
+                format!("widen or delete {}", strict.rule),
+            ),
+            _ => (
+                wrong.to_owned(),
+                "ask for STRAIN of shells in every subcase".to_owned(),
+            ),
         };
-        return Err(Faults::from(Fault::at(
-            &*job.file,
-            rule.line,
-            "candidates",
-            wrong,
-            "widen `properties`, `elements` or `boxes`, reduce `clear_of`, or ask for STRAIN of more elements",
-        )));
+        let fault = Fault::at(&*job.file, rule.line, "candidates", wrong, remedy);
+        return Err(Faults::from(fault));
     }
     Ok((sites, most))
 }

@@ -1,6 +1,6 @@
 //! Data on each gauge for the technician: reference point, tolerance budget, strain by load.
 
-use super::choose::Chosen;
+use super::chosen::Chosen;
 use super::outcome::{PlacedGauge, StrainOfLoad};
 use super::task::{Task, by_load};
 use crate::gauge::{Bridge, Gauge};
@@ -70,6 +70,7 @@ pub(super) fn list_placed_gauges(
                     })
                     .collect(),
                 reference: reference_of(task, g),
+                spot: c.spot.clone(),
                 gauge: g.clone(),
             }
         })
@@ -85,7 +86,7 @@ fn steepness(task: &Task, chosen: &Chosen, ordered: &[LoadCaseOf], scales: &[f64
             .iter()
             .enumerate()
             .filter(|(_, c)| c.bridge == bridge.name())
-            .map(|(i, c)| (i, task.sites[c.site]))
+            .filter_map(|(i, c)| Some((i, c.site?)))
             .unzip();
         if sites.is_empty() {
             continue;

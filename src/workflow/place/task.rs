@@ -1,7 +1,8 @@
 //! Inputs of placing: the job resolved on its model.
 
 use super::pool::column_order;
-use super::region::ClearRule;
+use super::region::StrictRule;
+use super::spots::LaidSpot;
 use crate::finding::{Finding, Severity};
 use crate::gauge::{Bridge, Gauge, reading};
 use crate::host::fault::{Fault, Faults};
@@ -30,8 +31,10 @@ pub(super) struct Task<'a> {
     pub order: Vec<usize>,
     /// Where gauges can go.
     pub sites: Vec<Site>,
-    /// Rule of `clear_of` that excludes the most shells.
-    pub cleared: Option<ClearRule>,
+    /// Named spots to choose from, where the job states a table of them; `sites` are then those of spots on shells.
+    pub spots: Option<Vec<LaidSpot>>,
+    /// Rule of `[candidates]` that excludes the most shells.
+    pub strict: Option<StrictRule>,
     /// Gauges that stay.
     pub kept: Vec<Gauge>,
     /// Rows of these gauges, columns in the candidates' order, made independent and of unit variance.
@@ -104,6 +107,9 @@ impl<'a> Task<'a> {
             .collect();
         let mut flags = clear_of(&here, &points, p.spacing).into_iter();
         self.sites.retain(|_| flags.next().unwrap_or(false));
+        if let Some(spots) = &mut self.spots {
+            spots.retain(|s| s.is_clear_of(&points, p.spacing));
+        }
         self.kept = laid;
         Ok(())
     }
@@ -112,6 +118,9 @@ impl<'a> Task<'a> {
     pub fn spec(&self, work: &mut Work) -> Spec {
         let (job, k) = (self.job, self.cases.len());
         let gauges = job.placement.gauges.unwrap_or_else(|| {
+            if job.placement.budget.is_some() {
+                return 2 * k;
+            }
             work.findings.push(Finding::new(
                 Severity::Info,
                 "gauges-assumed",
@@ -206,9 +215,14 @@ impl<'a> Task<'a> {
     pub fn refusal(&self, e: &PlaceError) -> Fault {
         let (mut wrong, mut remedy) = e.parts();
         let too_few = !matches!(e, PlaceError::Singular { .. });
-        if let Some(cleared) = self.cleared.as_ref().filter(|c| too_few && c.takes_most()) {
-            wrong = format!("{wrong}: {}", cleared.words());
-            remedy = format!("reduce `clear_of` {} first; else {remedy}", cleared.rule);
+        if let Some(strict) = self.strict.as_ref().filter(|c| too_few && c.takes_most()) {
+            wrong = format!("{wrong}: {}", strict.words());
+            remedy = format!("widen or delete {} first; else {remedy}", strict.rule);
+        }
+        if let (PlaceError::TooFewPlaces { .. }, Some(file)) = (e, &self.job.candidates.file)
+            && self.spots.is_some()
+        {
+            remedy = format!("ask for fewer, or add spots to `{}`", file.given);
         }
         let line = self.job.placement.line;
         Fault::at(&*self.job.file, line, "placement", wrong, remedy)
@@ -267,7 +281,8 @@ pub(super) fn task<'a>(
         scales,
         order: column_order(job),
         sites,
-        cleared: None,
+        spots: None,
+        strict: None,
         kept: Vec::new(),
         kept_rows: Vec::new(),
         kept_recovered: Vec::new(),

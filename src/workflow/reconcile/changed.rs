@@ -1,7 +1,8 @@
 //! The deck with another stiffness somewhere, and what that does to the influence matrix.
 
 use super::deck_frame::DeckFrame;
-use super::influence::{influence, solve_each};
+use super::influence::{blank_payload, influence, small_changes, solve_each};
+use crate::gauge::{Gauge, strain_terms};
 use crate::host::fault::Faults;
 use crate::job::Job;
 use crate::model::{MaterialIx, MaterialKind, Model, ShellKind, ShellPropertyIx};
@@ -20,6 +21,9 @@ pub(super) enum Changed {
 impl DeckFrame {
     /// Change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh of the deck.
     pub(super) fn changes_by(&self, job: &Job, all: &[Changed]) -> Result<Vec<Vec<f64>>, Faults> {
+        if all.is_empty() {
+            return Ok(Vec::new());
+        }
         let models = all.iter().map(|c| self.model_with(c));
         let (model, n) = (self.fields.model(), self.columns.len());
         solve_each(
@@ -33,6 +37,30 @@ impl DeckFrame {
                 now.iter().zip(&self.base).map(|(a, b)| a - b).collect()
             },
         )
+    }
+
+    /// Returns the change of the influence matrix by each change of the deck from one factor, where all gauges lie on shells: exact for bushes, to
+    /// first order for shells. Else as [`Self::changes_by`] does.
+    pub(super) fn small_changes_by(
+        &self,
+        job: &Job,
+        all: &[Changed],
+    ) -> Result<Vec<Vec<f64>>, Faults> {
+        let n = self.columns.len();
+        let terms: Vec<_> = self.gauges.iter().map(strain_terms).collect();
+        let on_shells = |(g, terms): (&Gauge, &Vec<_>)| terms.len() == g.arms.len();
+        if !self.gauges.iter().zip(&terms).all(on_shells) {
+            return self.changes_by(job, all);
+        }
+        let models = all.iter().map(|c| self.model_with(c));
+        let (model, asked) = (self.fields.model(), (&*self.columns, &*terms));
+        let Some(mut changes) = small_changes(job, model, asked, models, &self.stop)? else {
+            return self.changes_by(job, all);
+        };
+        for change in &mut changes {
+            blank_payload(job, model, change, n);
+        }
+        Ok(changes)
     }
 
     fn model_with(&self, changed: &Changed) -> Model {

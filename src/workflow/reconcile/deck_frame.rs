@@ -116,10 +116,15 @@ pub(super) fn read(
         asked.thermal(&heated, &apparent, &heated.rises(&gauges), column);
     let along = gradients(job, model, &gauges, &own, n_c, Axis::Along);
     let across = gradients(job, model, &gauges, &own, n_c, Axis::Across);
+    // An S whose mesh error is subtracted hardly differs from the finer mesh: what may remain follows from the change by halving the width.
+    let own_mesh = match fields.mesh_error {
+        Some(_) => &by_solver,
+        None => &base,
+    };
     part.scatter = background(
         job,
         &part,
-        finer.as_ref().map(|f| (&base, f.refined.is_whole())),
+        finer.as_ref().map(|f| (own_mesh, f.refined.is_whole())),
         [&along, &across],
     );
     part.per_mm = Some(along);

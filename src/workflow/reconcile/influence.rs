@@ -1,8 +1,8 @@
 //! Rows of the influence matrix: readings of the gauges in a solution.
 
 use crate::fe::{
-    Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, solve_unit_loads_on,
-    solve_variants,
+    Adjoint, FeError, Solution, SolveOptions, StrainTerm, UnitLoad, reading_changes,
+    solve_unit_loads_on, solve_variants,
 };
 use crate::gauge::{Gauge, reading};
 use crate::host::fault::{Fault, Faults};
@@ -85,6 +85,25 @@ pub(super) fn solve_each<T>(
     let support = support_of_job(job, model)?;
     let solved = solve_variants(model, support, loads, variants, &until(stop), read);
     solved.map_err(|e| of_solver(job, &e))
+}
+
+/// Returns the changes of these readings on variants of the model: by variant, microstrain, `n_readings x n_loads` by rows. They are exact for
+/// bushes and of first order for shells. `None` where no single factor serves the variants.
+///
+/// # Errors
+/// What stops the solver.
+pub(super) fn small_changes(
+    job: &Job,
+    model: &Model,
+    (loads, readings): (&[UnitLoad], &[Vec<StrainTerm>]),
+    variants: impl ExactSizeIterator<Item = Model>,
+    stop: &Stop,
+) -> Result<Option<Vec<Vec<f64>>>, Faults> {
+    let support = support_of_job(job, model)?;
+    let changes = reading_changes(model, support, loads, readings, variants, &until(stop))
+        .map_err(|e| of_solver(job, &e))?;
+    let in_microstrain = |rows: Vec<f64>| rows.iter().map(|v| v / MICROSTRAIN).collect();
+    Ok(changes.map(|all| all.into_iter().map(in_microstrain).collect()))
 }
 
 /// Displacements of the model under these loads and for these readings.

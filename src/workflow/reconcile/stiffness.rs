@@ -8,8 +8,8 @@ use crate::job::Job;
 use crate::model::Model;
 use crate::reconcile::strain::{StiffnessOf, StiffnessSignature};
 
-/// Thickness change at which a zone's signature is computed first, percent.
-const ZONE_PERCENT: f64 = 10.0;
+/// Small thickness change at which a zone's signature is computed first, percent: its derivative. The size that is found is solved exactly.
+const ZONE_PERCENT: f64 = 0.1;
 /// Stiffness of a joint at which its signature is computed first, natural log times 100: half and double.
 const JOINT_PERCENT: [f64; 2] = [-69.314_718_055_994_53, 69.314_718_055_994_53];
 /// Prior sd of a thickness, percent.
@@ -70,7 +70,7 @@ impl DeckFrame {
                 models.push(self.changed(job, *of, place, *percent)?);
             }
         }
-        let mut changes = self.changes_by(job, &models)?.into_iter();
+        let mut changes = self.small_changes_by(job, &models)?.into_iter();
         let signature =
             |(of, place, sizes, prior_percent): (_, _, Vec<f64>, _)| StiffnessSignature {
                 of,

@@ -1,6 +1,7 @@
 //! Layouts of a study: the gauges given, random ones, the best ones.
 
-use super::pool::{Prepared, on_model};
+use super::gauges::LayoutGauge;
+use super::pool::{Pool, Prepared, on_model};
 use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::GaugeSpec;
 use crate::host::fault::{Fault, Faults};
@@ -11,7 +12,7 @@ use crate::placement::sites::{Site, candidates};
 use crate::placement::{self, PlaceError, Spec, place};
 use crate::sensitivity::{LoadCaseOf, common_shells};
 use crate::study::PoolGauge;
-use crate::workflow::place::{allowed_sites, angles, column_order, scales, scatter};
+use crate::workflow::place::{allowed_sites, angles, column_order, placed_name, scales, scatter};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -25,7 +26,7 @@ pub(super) struct LayoutOf {
     /// Number of gauges.
     pub gauges: usize,
     /// Gauges that `members` index.
-    pub pool: Vec<PoolGauge>,
+    pub pool: Pool,
     /// One layout, or many random ones.
     pub members: Vec<Vec<usize>>,
 }
@@ -40,8 +41,10 @@ pub(super) fn of(
     study: &Study,
     prepared: &Prepared,
 ) -> Result<Vec<LayoutOf>, Faults> {
+    // Named spots are the pool for every layout but the given one.
+    let pool = prepared.spots.as_ref().unwrap_or(&prepared.pool);
     let counts = if study.gauges.is_empty() {
-        let all = prepared.pool.len();
+        let all = pool.len();
         vec![if all > 0 {
             all
         } else {
@@ -51,8 +54,9 @@ pub(super) fn of(
         study.gauges.clone()
     };
     // The job's gauges are the pool unless it says where others could go.
-    let from_model =
-        prepared.fields.is_some() && (job.candidates.line > 0 || prepared.pool.is_empty());
+    let from_model = prepared.fields.is_some()
+        && prepared.spots.is_none()
+        && (job.candidates.line > 0 || prepared.pool.is_empty());
     let mut out = Vec::new();
     let mut skipped: Vec<String> = Vec::new();
     let wide = if from_model {
@@ -70,18 +74,16 @@ pub(super) fn of(
                     pool: prepared.pool.clone(),
                     members: vec![(0..n).collect()],
                 }),
-                ("random", _) if n <= prepared.pool.len() => Some(LayoutOf {
+                ("random", _) if n <= pool.len() => Some(LayoutOf {
                     name: name.clone(),
                     gauges: n,
-                    pool: prepared.pool.clone(),
-                    members: random_subsets(prepared.pool.len(), n, study.seed),
+                    pool: pool.clone(),
+                    members: random_subsets(pool.len(), n, study.seed),
                 }),
                 ("random", Some(w)) => w.random(job, prepared, n, study.seed),
                 ("random", None) => None,
                 (_, Some(w)) => Some(w.best(job, prepared, name, n)?),
-                (_, None) if n <= prepared.pool.len() => {
-                    Some(best_of_pool(job, prepared, name, n)?)
-                }
+                (_, None) if n <= pool.len() => Some(best_of_pool(job, prepared, pool, name, n)?),
                 _ => None,
             };
             match layout {
@@ -95,10 +97,7 @@ pub(super) fn of(
             Severity::Warning,
             "layouts-skipped",
             list_few(&skipped),
-            format!(
-                "the job has {} gauges: these layouts need more",
-                prepared.pool.len()
-            ),
+            format!("the job has {} gauges: these layouts need more", pool.len()),
             "name more gauges, or a [candidates] section",
         ));
     }
@@ -125,6 +124,19 @@ fn random_subsets(all: usize, n: usize, seed: u64) -> Vec<Vec<usize>> {
                 .collect()
         })
         .collect()
+}
+
+impl LayoutOf {
+    /// Returns the gauges of the layout; none for random layouts, of which there are many.
+    pub fn chosen(&self) -> Vec<LayoutGauge> {
+        match self.members.as_slice() {
+            [one] if self.name != "random" => {
+                let places = one.iter().filter_map(|&i| self.pool.places.get(i));
+                places.cloned().collect()
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
 fn spec_of(job: &Job, name: &str, n: usize, k: usize, order: &[usize]) -> Spec {
@@ -156,7 +168,13 @@ fn refused(job: &Job, study: &str, e: &PlaceError) -> Faults {
 }
 
 /// The D-optimal part of the job's own gauges.
-fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<LayoutOf, Faults> {
+fn best_of_pool(
+    job: &Job,
+    prepared: &Prepared,
+    pool: &Pool,
+    name: &str,
+    n: usize,
+) -> Result<LayoutOf, Faults> {
     let k = prepared.loads.len();
     let mut order: Vec<usize> = (0..k).collect();
     order.sort_by_key(|&l| prepared.loads[l].wanted);
@@ -166,8 +184,8 @@ fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<
         .iter()
         .enumerate()
         .map(|(l, load)| {
-            let norm = prepared
-                .pool
+            let norm = pool
+                .gauges
                 .iter()
                 .map(|g| g.row[l].powi(2))
                 .sum::<f64>()
@@ -177,9 +195,9 @@ fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<
                 .unwrap_or(if norm > 0.0 { 1.0 / norm } else { 1.0 })
         })
         .collect();
-    let c = Candidates::from_rows(k, prepared.pool.len(), Scatter::uniform(noise), |g, out| {
+    let c = Candidates::from_rows(k, pool.len(), Scatter::uniform(noise), |g, out| {
         for (o, &l) in out.iter_mut().zip(&order) {
-            *o = prepared.pool[g].row[l] * scale[l];
+            *o = pool.gauges[g].row[l] * scale[l];
         }
     });
     let mut spec = spec_of(job, name, n, k, &order);
@@ -188,7 +206,7 @@ fn best_of_pool(job: &Job, prepared: &Prepared, name: &str, n: usize) -> Result<
     Ok(LayoutOf {
         name: name.to_owned(),
         gauges: n,
-        pool: prepared.pool.clone(),
+        pool: pool.clone(),
         members: vec![layout.gauges.iter().map(|g| g.place as usize).collect()],
     })
 }
@@ -235,7 +253,12 @@ impl Wide {
         })
     }
 
-    fn gauge(&self, job: &Job, prepared: &Prepared, choice: &Choice) -> Option<PoolGauge> {
+    fn gauge(
+        &self,
+        job: &Job,
+        prepared: &Prepared,
+        choice: &Choice,
+    ) -> Option<(PoolGauge, LayoutGauge)> {
         let fields = prepared.fields.as_ref()?;
         let (shell, surface) = *self.sites.get(choice.place as usize)?;
         let spec = GaugeSpec {
@@ -256,11 +279,16 @@ impl Wide {
     ) -> Result<LayoutOf, Faults> {
         let spec = spec_of(job, name, n, prepared.loads.len(), &self.order);
         let layout = place(&self.candidates, &spec).map_err(|e| refused(job, name, &e))?;
-        let pool: Vec<PoolGauge> = layout
-            .gauges
-            .iter()
-            .filter_map(|c| self.gauge(job, prepared, c))
-            .collect();
+        let mut pool = Pool::default();
+        for (i, choice) in layout.gauges.iter().enumerate() {
+            if let Some((gauge, place)) = self.gauge(job, prepared, choice) {
+                pool.gauges.push(gauge);
+                pool.places.push(LayoutGauge {
+                    name: placed_name(i, layout.gauges.len()),
+                    ..place
+                });
+            }
+        }
         Ok(LayoutOf {
             name: name.to_owned(),
             gauges: n,
@@ -272,7 +300,7 @@ impl Wide {
     /// Random places and angles among the candidates.
     fn random(&self, job: &Job, prepared: &Prepared, n: usize, seed: u64) -> Option<LayoutOf> {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let pool: Vec<PoolGauge> = (0..n * RANDOM_LAYOUTS)
+        let gauges: Vec<PoolGauge> = (0..n * RANDOM_LAYOUTS)
             .filter_map(|_| {
                 let angle = match self.candidates.angles() {
                     Angles::Grid(a) => a[random.random_range(0..a.len())],
@@ -283,9 +311,13 @@ impl Wide {
                     step: 0,
                     angle,
                 };
-                self.gauge(job, prepared, &choice)
+                Some(self.gauge(job, prepared, &choice)?.0)
             })
             .collect();
+        let pool = Pool {
+            gauges,
+            places: Vec::new(),
+        };
         let all: Vec<usize> = (0..pool.len()).collect();
         Some(LayoutOf {
             name: "random".into(),

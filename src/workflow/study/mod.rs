@@ -1,7 +1,10 @@
 //! `study`: recovery repeated under stated errors, for a range of gauge counts and layouts.
 
+mod gauges;
 mod layouts;
 mod pool;
+
+pub use gauges::{LayoutGauge, LayoutGauges, LayoutPlace};
 
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
@@ -22,6 +25,7 @@ use serde::Serialize;
 struct Line {
     layout: String,
     gauges: usize,
+    names: Vec<String>,
     error: String,
     row: StudyRow,
 }
@@ -31,6 +35,8 @@ struct Line {
 pub struct Studied {
     /// A row a layout, number of gauges and error.
     pub study: Vec<StudiedLayout>,
+    /// The gauges of each layout, of random ones none.
+    pub layouts: Vec<LayoutGauges>,
     /// Rank and condition numbers of the gauges that the job has.
     #[serde(flatten)]
     pub conditioning: Option<Conditioning>,
@@ -78,6 +84,8 @@ pub struct StudiedLayout {
     pub layout: String,
     /// Number of gauges.
     pub gauges: usize,
+    /// Names of the gauges; empty for random layouts.
+    pub names: Vec<String>,
     /// Kind and size of the error.
     pub error: String,
     /// S in strain per job unit.
@@ -188,8 +196,9 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
                 lines.push(Line {
                     layout: l.name.clone(),
                     gauges: l.gauges,
+                    names: l.chosen().into_iter().map(|g| g.name).collect(),
                     error: word.clone(),
-                    row: study_layout(&l.pool, &l.members, *error, &spec),
+                    row: study_layout(&l.pool.gauges, &l.members, *error, &spec),
                 });
                 w.cx.progress.advance(1);
             }
@@ -197,7 +206,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
         Ok(())
     })?;
     if let Some(s) = &prepared.installed {
-        work.findings.extend(check_separability(s));
+        work.findings.extend(check_separability(&s.unconditioned()));
     }
     findings(&mut work, &lines, loads);
     let rows = lines
@@ -205,6 +214,15 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
         .map(|line| studied(line, loads, &units, &truth));
     let answer = Studied {
         study: rows.collect(),
+        layouts: layouts
+            .iter()
+            .filter(|l| l.name != "random")
+            .map(|l| LayoutGauges {
+                layout: l.name.clone(),
+                gauges: l.gauges,
+                chosen: l.chosen(),
+            })
+            .collect(),
         conditioning: prepared.installed.as_ref().map(Conditioning::of),
         job: job.clone(),
     };
@@ -380,6 +398,7 @@ fn studied(line: &Line, loads: &[Load], units: &[LoadUnits], truth: &[TrueLoad])
     StudiedLayout {
         layout: line.layout.clone(),
         gauges: line.gauges,
+        names: line.names.clone(),
         error: line.error.clone(),
         condition_number: finite(line.row.condition_number),
         mean_relative_rms: finite(mean_relative(&line.row, truth, loads)),

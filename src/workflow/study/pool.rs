@@ -1,21 +1,53 @@
 //! Gauges that a study can choose from, with how their rows change when they are turned or shifted.
 
+use super::gauges::LayoutGauge;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::gauge::{Gauge, GaugePlace, GaugeSpec, build, reading, to_side};
-use crate::host::fault::Faults;
+use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
-use crate::job::Job;
+use crate::job::readings::readings_of;
+use crate::job::{Job, suggest};
 use crate::model::{Model, Vec3};
-use crate::sensitivity::{Load, LoadCaseOf, Sensitivity};
-use crate::strain_chain::{Fields, WantedAt, corrected_spec_of, read_fields};
+use crate::sensitivity::{Load, LoadCaseOf, Sensitivity, from_cases};
+use crate::strain_chain::{
+    Fields, WantedAt, corrected_spec_of, lay_gauges, read_fields, without_strain,
+};
 use crate::study::PoolGauge;
+
+/// Gauges with the place of each.
+#[derive(Clone, Default)]
+pub(super) struct Pool {
+    /// Rows of S.
+    pub gauges: Vec<PoolGauge>,
+    /// Name and place by gauge.
+    pub places: Vec<LayoutGauge>,
+}
+
+impl Pool {
+    /// Returns the number of gauges.
+    pub fn len(&self) -> usize {
+        self.gauges.len()
+    }
+
+    /// Returns whether there is no gauge.
+    pub fn is_empty(&self) -> bool {
+        self.gauges.is_empty()
+    }
+
+    fn push(&mut self, (gauge, place): (PoolGauge, LayoutGauge)) {
+        self.gauges.push(gauge);
+        self.places.push(place);
+    }
+}
 
 /// Gauges, loads and model for the layouts.
 pub(super) struct Prepared {
     /// Columns.
     pub loads: Vec<Load>,
     /// The job's gauges; empty without.
-    pub pool: Vec<PoolGauge>,
+    pub pool: Pool,
+    /// The spots of `[candidates] file`; `None` without a table of spots.
+    pub spots: Option<Pool>,
     /// S of the job's gauges.
     pub installed: Option<Sensitivity>,
     /// Model and fields; `None` where S is given.
@@ -31,8 +63,9 @@ pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
         let fields = read_fields(work, job, WantedAt::Anywhere)?;
         let cases = fields.load_cases(job);
         return Ok(Prepared {
+            spots: spots_on_model(work, job, &fields)?,
             loads: cases.into_iter().map(|c| c.load).collect(),
-            pool: Vec::new(),
+            pool: Pool::default(),
             installed: None,
             fields: Some(fields),
         });
@@ -41,47 +74,106 @@ pub(super) fn prepare(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let s = prepared.sensitivity;
     // Beside a given S the model says nothing of gauges turned or moved.
     let fields = prepared.fields.filter(|_| job.sensitivity.is_none());
-    let row = |g: usize| -> Vec<f64> { s.values.row(g).iter().copied().collect() };
-    let pool = match &fields {
-        None => (0..s.gauges.len())
-            .map(|g| PoolGauge {
-                row: row(g),
-                turned: None,
-                slope: None,
-            })
-            .collect(),
-        Some(fields) => {
-            let cases = fields.load_cases(job);
-            let mut pool = Vec::new();
-            for g in &job.gauges {
-                let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
-                let n = spec.rosette.map_or(1, |r| r.legs().len());
-                for leg in 0..n {
-                    let row = row(pool.len());
-                    pool.push(variants(fields, job, &cases, &spec, leg, row));
-                }
-            }
-            pool
-        }
+    let (pool, spots) = match &fields {
+        None => (of_table(&s, 0..s.gauges.len()), spots_in_table(job, &s)?),
+        Some(fields) => (
+            pool_on_model(fields, job, &prepared.gauges, &s)?,
+            spots_on_model(work, job, fields)?,
+        ),
     };
     Ok(Prepared {
         loads: s.loads.clone(),
         pool,
+        spots,
         installed: Some(s),
         fields,
     })
 }
 
-/// The pool gauge of a specification on the model.
+/// Returns rows of a given S, which states no places.
+fn of_table(s: &Sensitivity, rows: impl Iterator<Item = usize>) -> Pool {
+    let mut pool = Pool::default();
+    for g in rows {
+        let row = s.values.row(g).iter().copied().collect();
+        let gauge = PoolGauge {
+            row,
+            turned: None,
+            slope: None,
+        };
+        pool.push((gauge, LayoutGauge::named(&s.gauges[g])));
+    }
+    pool
+}
+
+/// Returns the spots of the job's table by their rows in a given S.
+fn spots_in_table(job: &Job, s: &Sensitivity) -> Result<Option<Pool>, Faults> {
+    let Some(spots) = &job.candidates.spots else {
+        return Ok(None);
+    };
+    let (mut rows, mut faults) = (Vec::new(), FaultList::new());
+    for spot in spots.iter().map(|s| &s.gauge) {
+        for name in readings_of(spot) {
+            match s.gauges.iter().position(|g| *g == name) {
+                Some(row) => rows.push(row),
+                None => faults.push(Fault::at(
+                    &*spot.file,
+                    spot.line,
+                    "name",
+                    format!("the table of [sensitivity] has no row `{name}`"),
+                    suggest::remedy(&name, s.gauges.iter().map(String::as_str)),
+                )),
+            }
+        }
+    }
+    Faults::check(faults)?;
+    Ok(Some(of_table(s, rows.into_iter())))
+}
+
+/// Returns the spots of the job's table on the model.
+fn spots_on_model(work: &mut Work, job: &Job, fields: &Fields) -> Result<Option<Pool>, Faults> {
+    let Some(as_gauges) = job.with_spots_as_gauges() else {
+        return Ok(None);
+    };
+    let laid = lay_gauges(work, &as_gauges, fields)?;
+    let s = from_cases(&laid, &fields.load_cases(job))
+        .map_err(|missing| without_strain(&as_gauges, &missing))?;
+    pool_on_model(fields, &as_gauges, &laid, &s).map(Some)
+}
+
+/// Returns the gauges of a job, laid onto the model, with their rows of S.
+fn pool_on_model(
+    fields: &Fields,
+    job: &Job,
+    laid: &[Gauge],
+    s: &Sensitivity,
+) -> Result<Pool, Faults> {
+    let cases = fields.load_cases(job);
+    let mut pool = Pool::default();
+    for g in &job.gauges {
+        let spec = corrected_spec_of(fields.model(), job, g).map_err(Faults::from)?;
+        let n = spec.rosette.map_or(1, |r| r.legs().len());
+        for leg in 0..n {
+            let i = pool.len();
+            let row = s.values.row(i).iter().copied().collect();
+            let place = LayoutGauge::of(&laid[i], &spec);
+            pool.push((variants(fields, job, &cases, &spec, leg, row), place));
+        }
+    }
+    Ok(pool)
+}
+
+/// The pool gauge of a specification on the model, with its place.
 pub(super) fn on_model(
     fields: &Fields,
     job: &Job,
     cases: &[LoadCaseOf],
     spec: &GaugeSpec,
-) -> Option<PoolGauge> {
+) -> Option<(PoolGauge, LayoutGauge)> {
     let (gauges, _) = build(fields.model(), spec, fields.corner_rows(job)).ok()?;
-    let row = row_of(gauges.first()?, cases)?;
-    Some(variants(fields, job, cases, spec, 0, row))
+    let gauge = gauges.first()?;
+    let row = row_of(gauge, cases)?;
+    let place = LayoutGauge::of(gauge, spec);
+    Some((variants(fields, job, cases, spec, 0, row), place))
 }
 
 fn row_of(gauge: &Gauge, cases: &[LoadCaseOf]) -> Option<Vec<f64>> {
