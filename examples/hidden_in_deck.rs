@@ -1,7 +1,7 @@
 //! Hides effects in a frame whose truth is made on a mesh four times as wide each way as the analyst's is fine, and lets `reconcile`
 //! look for them from the analyst's deck alone.
 //!
-//! `cargo build --release && cargo run --release --example hidden_in_deck [SEEDS] [EFFECT,EFFECT..]` prints a row an effect: five sizes, one seed by default. The
+//! `cargo build --release && cargo run --release --example hidden_in_deck [SEEDS] [EFFECT,EFFECT..]` prints one row for each effect: five sizes, one seed by default. The
 //! deck and its gauges are those of `../shared/hidden_effects/deck/dev-f1`; loads, noise, background and effect are new in every case:
 //! 1 % of gain scatter, 1 degree of placement scatter, coefficients off by a fraction of a percent, the mesh. What goes wrong is listed
 //! on standard error.

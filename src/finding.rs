@@ -2,9 +2,11 @@
 
 mod bounded;
 pub mod explain;
+mod sentence;
 mod severity;
 
-pub use bounded::bounded;
+pub use bounded::shorten_names;
+pub use sentence::capital;
 use serde::{Deserialize, Deserializer, Serialize};
 pub use severity::Severity;
 use std::fmt::Display;
@@ -22,7 +24,7 @@ pub struct Finding {
     pub code: CodeName,
     /// Subject: a gauge, a load, a file, an element.
     pub subject: String,
-    /// A plain sentence with the consequence.
+    /// Sentences with the consequence.
     pub message: String,
     /// The measured number, where there is one.
     pub measured: Option<f64>,
@@ -43,7 +45,7 @@ fn read_code<'de, D: Deserializer<'de>>(from: D) -> Result<CodeName, D::Error> {
 }
 
 impl Finding {
-    /// A finding without numbers, its words [`bounded`].
+    /// Creates a finding without numbers. Message and remedy become sentences, with a capital letter and a full stop, and are [`shorten_names`].
     pub fn new(
         severity: Severity,
         code: &'static str,
@@ -51,16 +53,22 @@ impl Finding {
         message: impl Into<String>,
         remedy: impl Into<String>,
     ) -> Self {
+        let subject = shorten_names(subject);
         Self {
             severity,
             code,
-            subject: bounded(subject),
-            message: bounded(message),
+            message: sentence::sentence(&shorten_names(message), &subject),
             measured: None,
             limit: None,
             chance: None,
-            remedy: bounded(remedy),
+            remedy: sentence::sentence(&shorten_names(remedy), ""),
+            subject,
         }
+    }
+
+    /// Returns the message without its full stop, for a text that continues it.
+    pub fn clause(&self) -> &str {
+        self.message.trim_end_matches('.')
     }
 
     /// Adds the probability that correct data produce a finding as large as this one.
@@ -90,7 +98,7 @@ impl Finding {
 pub const LISTED: usize = 8;
 
 /// Returns the first names or ids of a list and the number of the others: `P01, P02 and 5 more`, or `none`.
-pub fn few(names: &[impl Display]) -> String {
+pub fn list_few(names: &[impl Display]) -> String {
     few_of(names, names.len())
 }
 
@@ -105,7 +113,7 @@ pub fn few_of(names: &[impl Display], count: usize) -> String {
 }
 
 /// The worst severity of a list.
-pub fn worst(findings: &[Finding]) -> Option<Severity> {
+pub fn worst_severity(findings: &[Finding]) -> Option<Severity> {
     findings.iter().map(|f| f.severity).max()
 }
 
@@ -115,12 +123,12 @@ mod tests {
 
     #[test]
     fn a_list_of_many_names_a_few_and_how_many_more() {
-        assert_eq!(few(&["A", "B"]), "A, B");
+        assert_eq!(list_few(&["A", "B"]), "A, B");
         let times: Vec<String> = (0..1600).map(|i| format!("t = {i}")).collect();
-        let text = few(&times);
+        let text = list_few(&times);
         assert!(text.starts_with("t = 0, t = 1, "), "{text}");
         assert!(text.ends_with(" and 1592 more"), "{text}");
-        assert_eq!(few(&[11, 12]), "11, 12");
+        assert_eq!(list_few(&[11, 12]), "11, 12");
         assert_eq!(few_of(&["A", "B"], 5), "A, B and 3 more");
     }
 

@@ -148,7 +148,7 @@ fn an_export_comes_to_a_gauge_plan_in_three_commands_and_three_edited_lines() {
     assert!(of("loads-weakly-separable").is_some());
     // The tolerance is stated: nobody is told to state it.
     let remedy = of("position-budget-small").unwrap()["remedy"].as_str();
-    assert!(remedy.unwrap().starts_with("place more gauges"));
+    assert!(remedy.unwrap().starts_with("Place more gauges"));
     let sigma = &plan["load_sigma"][0];
     assert!(sigma["sigma_as_glued"].as_f64() > sigma["sigma"].as_f64());
 }

@@ -349,7 +349,7 @@ fn causes_that_changed_together_come_as_rivals_of_the_same_type() {
     let job = Job::read("job.toml", &files).unwrap();
     let found = reconcile(&job, &Context::new(&files)).unwrap();
     let unread = found.findings.iter().find(|f| f.code == "column-not-read");
-    assert!(unread.unwrap().message.ends_with(": `driver`"));
+    assert!(unread.unwrap().message.ends_with(": `driver`."));
 }
 
 #[test]
@@ -687,7 +687,7 @@ fn wanted_elements_and_picked_lists_are_kept() {
     let Err(faults) = plan("none.toml") else {
         panic!("element 99 is none of the deck");
     };
-    assert!(faults.to_string().contains("element 99 is no candidate"));
+    assert!(faults.to_string().contains("element 99 is not a candidate"));
 }
 
 /// A gauge drawn at 30 degrees and known to be turned by 60 reads what one drawn at 90 does.
@@ -810,7 +810,7 @@ fn a_folder_is_verified_by_whoever_can_answer_again() {
     std::fs::remove_file(folder.join("job.toml")).unwrap();
     let none = |_: &strainbridge::workflow::verify::Made, _: &std::path::Path| Ok(anew.clone());
     let fault = strainbridge::verify(&kept, none, &context).unwrap_err();
-    assert!(fault.to_string().contains("isn't found"), "{fault}");
+    assert!(fault.to_string().contains("is not found"), "{fault}");
     std::fs::remove_dir_all(folder).unwrap();
 }
 

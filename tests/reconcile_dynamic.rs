@@ -495,7 +495,7 @@ fn a_name_needs_a_gap_that_falls_by_it_on_the_second_record() {
     assert_eq!(tried, ["coulomb_friction"], "{}", o.remains);
     assert_eq!(o.verdict, Verdict::Unknown);
     // Which of the two accelerometers: a zero of a load cell of 1 % leaves that open where friction and a gain mix.
-    let said = "explains more of the fitted record, but the gap that judges does not fall by it";
+    let said = "explains more of the fitted record, but does not reduce the gap of the proof";
     let either = ["a_body", "a_wheel"].map(|c| format!("accel_gain:{c} {said}"));
     assert!(
         either.iter().any(|w| o.remains.contains(w.as_str())),
@@ -546,11 +546,11 @@ fn in_order(page: &str) {
     let at = |title: &str| page.find(&format!("<h2>{title}</h2>"));
     let places = [
         "Verdict",
-        "Where the gap sits",
+        "Largest gaps",
         "What was added",
         "Gap before and after",
         "Scatter before and after",
-        "What remains",
+        "Remaining gap",
     ]
     .map(|t| at(t).unwrap_or_else(|| panic!("no heading {t}")));
     assert!(places.is_sorted(), "{places:?}");

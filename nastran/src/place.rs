@@ -1,4 +1,4 @@
-//! Where an entry stands in its file, so that every message can name file and line.
+//! Place of an entry in its file, so that every message can name file and line.
 
 /// Which of the files that were read; an index into the list that the reader returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -13,7 +13,7 @@ pub struct Place {
     pub line: u32,
 }
 
-/// A card and where it stands.
+/// A card and its place in the deck.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed<T> {
     /// The card.

@@ -34,7 +34,7 @@ impl Named<'_> {
         if !array.dtype().is_equiv_to(&numpy::dtype::<f64>(a.py())) {
             let dtype = array.dtype().str()?;
             return Err(PyTypeError::new_err(format!(
-                "{name} holds {dtype}, and float64 is needed: {remedy}"
+                "{name} contains {dtype}, and float64 is needed: {remedy}"
             )));
         }
         if array.ndim() != ndim {
@@ -42,7 +42,7 @@ impl Named<'_> {
             return Err(self.fault(a.py(), &said, &format!("give it the shape {axes}")));
         }
         if !array.is_c_contiguous() {
-            let said = "its rows do not lie one after the other in memory (it is a view, a transpose, or in Fortran order)";
+            let said = "its rows are not contiguous in memory (it is a view, a transpose, or in Fortran order)";
             return Err(self.fault(a.py(), said, &remedy));
         }
         Ok(array)

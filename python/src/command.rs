@@ -110,7 +110,7 @@ pub(crate) fn ask(
 
 fn shard_of(py: Python, text: &str) -> PyResult<Shard> {
     Shard::of(text).ok_or_else(|| {
-        let said = format!("`{text}` is no part of a whole");
+        let said = format!("`{text}` is not a part such as 3/64");
         raise(
             py,
             wrong("fleet", "shard", &said, "write it as 3/64").into(),
@@ -165,7 +165,7 @@ fn answer(
 /// The command that wrote a folder, the job or deck that it was given, and the results it names.
 #[pyfunction]
 pub(crate) fn made(py: Python, folder: PathBuf) -> PyResult<(String, PathBuf, Vec<String>)> {
-    let made = verify::made(&folder).map_err(|f| raise(py, f.into()))?;
+    let made = verify::read_made(&folder).map_err(|f| raise(py, f.into()))?;
     let main = verify::main_input(&folder, &made).map_err(|f| raise(py, f.into()))?;
     let results = made.results().iter().map(|r| (*r).to_owned()).collect();
     Ok((made.command, main, results))

@@ -44,7 +44,7 @@ impl Rows<'_, '_> {
         let row = slice.and_then(|v| v.get(i * N..(i + 1) * N));
         let row = row.and_then(|r| <[f64; N]>::try_from(r).ok());
         row.ok_or_else(|| {
-            let said = format!("the column is missing or has not {N} numbers a row");
+            let said = format!("the column is missing or does not have {N} numbers in each row");
             self.fault(column, &said, "keep the columns of `Deck.cards`")
         })
     }
@@ -94,7 +94,7 @@ pub(crate) fn edit(
             let shape = SHAPES.into_iter().find(|s| s.card() == name);
             let shape = shape.ok_or_else(|| {
                 let remedy = "GRID, CONM2 and shells can be changed; others by their text";
-                rows.fault("id", "these cards can't be changed here", remedy)
+                rows.fault("id", "these cards cannot be changed here", remedy)
             })?;
             let list = cards.shells.iter().filter(|c| c.card.shape == shape);
             let list: Vec<Placed<Shell>> = list.cloned().collect();
@@ -201,7 +201,7 @@ fn shell(rows: &Rows, i: usize, old: Option<&Shell>, shape: ShellShape) -> Resul
     let angle = match kept {
         Some(system @ MaterialAngle::Mcid(_)) if theta.is_nan() => system,
         _ if theta.is_finite() => MaterialAngle::Theta(theta),
-        _ => return Err(rows.fault("theta", &format!("row {i} is no angle"), "give degrees")),
+        _ => return Err(rows.fault("theta", &format!("row {i} is not an angle"), "give degrees")),
     };
     Ok(Shell {
         id,

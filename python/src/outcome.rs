@@ -8,7 +8,7 @@ use pyo3::types::PyDict;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use strainbridge::host::outcome::Answer;
-use strainbridge::report::command::{Report, save, unsaved, words};
+use strainbridge::report::command::{Report, result_text, save, words};
 use strainbridge::report::notebook::piece;
 use strainbridge::sensitivity::Sensitivity;
 use strainbridge::workflow::calibrate::Calibrated;
@@ -162,7 +162,7 @@ where
     Outcome<A>: Report,
 {
     Ok(AnyOutcome {
-        json: unsaved(&outcome)?,
+        json: result_text(&outcome)?,
         words: words(&outcome),
         notes: outcome.notes.clone(),
         kept: Mutex::new(keep(outcome)),

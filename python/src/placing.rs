@@ -79,7 +79,7 @@ fn points(a: &Bound<PyAny>, n: usize) -> PyResult<Vec<[f64; 3]>> {
     if !rows.as_flattened().iter().all(|v| v.is_finite()) {
         return Err(POSITIONS.fault(
             a.py(),
-            "it holds numbers that are not finite",
+            "it contains numbers that are not finite",
             "drop those rows",
         ));
     }
@@ -110,7 +110,7 @@ fn layout(
     if !(spec.spacing >= 0.0 && spec.spacing.is_finite()) {
         return Err(fault(
             "spacing",
-            "it is no distance",
+            "it is not a distance",
             "give a number of 0 or more",
         ));
     }
@@ -118,7 +118,7 @@ fn layout(
         let remedy = "pass positions=, rows x 3, in the unit of the spacing";
         return Err(fault(
             "spacing",
-            "a spacing needs to know where the rows are",
+            "a spacing needs the positions of the rows",
             remedy,
         ));
     }
@@ -137,7 +137,7 @@ fn layout(
     let chosen = Matrix::from_fn(found.gauges.len(), k, |i, l| rows[place_of(i) * k + l]);
     if dense::rank(&dense::unit_columns(&chosen)) < k {
         let said = format!("no {} of its rows separate the {k} loads", spec.gauges);
-        let remedy = "drop loads that act alike, or ask for more gauges";
+        let remedy = "drop loads with the same effect, or ask for more gauges";
         return Err(fault("S", &said, remedy));
     }
     let condition = dense::condition(&chosen);

@@ -130,7 +130,7 @@ fn recovered(
 ) -> Result<Recovered, Faults> {
     if !(noise > 0.0 && noise.is_finite()) {
         let remedy = "give one standard deviation of a reading, in the unit of the readings";
-        return Err(wrong(S.function, "noise", "it is no positive number", remedy).into());
+        return Err(wrong(S.function, "noise", "it is not a positive number", remedy).into());
     }
     let n = rows.len().checked_div(k).unwrap_or(0);
     if n == 0 {
@@ -160,7 +160,7 @@ fn recovered(
             wrong(
                 S.function,
                 "strain",
-                "its numbers can't be told apart",
+                "its numbers are indistinguishable",
                 "check its unit",
             )
             .into()
@@ -201,7 +201,7 @@ fn in_unit(
     let all: Vec<usize> = (0..n).collect();
     let whole = Gain::new(&s, &all, errors, 1.0, &judged.typical)
         .filter(|gain| (0..k).all(|l| gain.is_seen(l)))
-        .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
+        .ok_or_else(|| wrong(S.function, "S", "it cannot be solved", "check its numbers"))?;
     let covariance = whole.covariance(&judged.typical, &judged.widening);
     let half: Vec<f64> = (0..k)
         .map(|l| judged.widening.coverage_factor * covariance[l * k + l].max(0.0).sqrt())
@@ -248,11 +248,16 @@ fn separable(s: &Sensitivity, findings: &[Finding]) -> Result<(), Faults> {
     let (rank, k) = (s.rank(), s.loads.len());
     let errors = findings.iter().filter(|f| f.severity == Severity::Error);
     let mut faults: Vec<Fault> = errors
-        .map(|f| Fault::of(S.function, "S", &*f.message, &*f.remedy))
+        .map(|f| Fault::from_finding(S.function, "S", f))
         .collect();
     if rank < k && faults.is_empty() {
         let said = format!("its rank is {rank}, and it has {k} columns");
-        faults.push(wrong(S.function, "S", &said, "drop loads that act alike"));
+        faults.push(wrong(
+            S.function,
+            "S",
+            &said,
+            "drop loads with the same effect",
+        ));
     }
     Faults::check(faults)
 }
@@ -333,7 +338,7 @@ fn of_record(
     let (n, k) = (s.gauges.len(), s.loads.len());
     let widening: Widening = judged.widening.clone();
     let filter = Filter::new(s, vec![0.0; n], errors, 1.0, &judged.typical, widening)
-        .ok_or_else(|| wrong(S.function, "S", "it can't be solved", "check its numbers"))?;
+        .ok_or_else(|| wrong(S.function, "S", "it cannot be solved", "check its numbers"))?;
     let blocks: Vec<(SampleLoads, Missing, usize)> = samples
         .par_chunks(BLOCK * n)
         .map(|block| {

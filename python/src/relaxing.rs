@@ -63,8 +63,8 @@ fn weights(
         return Err(fault("S", &said, "drop that row"));
     }
     if !(tolerance > 0.0 && tolerance.is_finite()) {
-        let remedy = "give a gap per load, such as 1e-6";
-        return Err(fault("tolerance", "it is no positive number", remedy));
+        let remedy = "give a gap for each load, such as 1e-6";
+        return Err(fault("tolerance", "it is not a positive number", remedy));
     }
     let places = rows.len() / k;
     if n == 0 || n > places {
@@ -88,7 +88,7 @@ fn weights(
     );
     let found = found.ok_or_else(|| {
         let said = format!("no {n} of its rows separate the {k} loads");
-        let remedy = "drop loads that act alike, or ask for more gauges";
+        let remedy = "drop loads with the same effect, or ask for more gauges";
         fault("S", &said, remedy)
     })?;
     let mut weights = vec![0.0; places];

@@ -142,7 +142,7 @@ fn bug(panic: &(dyn Any + Send)) -> PyErr {
     let text = panic.downcast_ref::<&str>().map(|s| (*s).to_owned());
     let said = text.or_else(|| panic.downcast_ref::<String>().cloned());
     PyRuntimeError::new_err(format!(
-        "a mistake of strainbridge, not of its input: {}: report it with the call that led to it",
+        "an error of strainbridge, not of its input: {}: report it with the call that led to it",
         said.unwrap_or_default()
     ))
 }

@@ -125,7 +125,7 @@ fn made(given: &Given) -> Result<(Block, Rows), Faults> {
         let mut names: Vec<&str> = given.columns.keys().map(String::as_str).collect();
         names.sort_unstable();
         let said = format!("no table has the columns {}", names.join(", "));
-        fault(&said, "give those of `Results.table`")
+        fault(&said, "give the columns of `Results.table`")
     })?;
     let ids = [&given.entity, &given.at, &given.layer];
     let n = ids[0].shape()[0];
@@ -134,7 +134,7 @@ fn made(given: &Given) -> Result<(Block, Rows), Faults> {
     if lengths.into_iter().any(|len| len != n) {
         return Err(fault(
             "columns of a table differ in length",
-            "give a value a row",
+            "give one value for each row",
         ));
     }
     let number = |v: i64| {

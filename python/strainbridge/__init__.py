@@ -14,7 +14,7 @@ Jobs, as the command takes them::
     plan.gauges, plan.log_det, plan.findings
     plan.save("truck.out")
 
-Bad input raises :class:`Faults`, which holds every fault with file and line. An outcome carries findings. If one has the severity ``error``, the
+Bad input raises :class:`Faults`, which contains every fault with file and line. An outcome carries findings. If one has the severity ``error``, the
 answer is not reliable: the call issues an :class:`UnreliableWarning`, and ``outcome.raise_if_unreliable()`` raises it.
 """
 

@@ -80,7 +80,7 @@ class RecoveredRows:
 
     @property
     def chi2(self) -> Floats:
-        """A number a run: sum over gauges of (residual / noise) squared."""
+        """One number for each run: sum over gauges of (residual / noise) squared."""
         return np.asarray(np.nansum((self.residuals / self._noise) ** 2, axis=-1))
 
     @property
@@ -94,7 +94,7 @@ class RecoveredRows:
         return self.loads + self.half_width
 
     def to_arrow(self, names: Sequence[str] | None = None) -> Table:
-        """A row a run, for any reader of the Arrow PyCapsule interface: of each load its value, ``<name>.low`` and ``<name>.high``.
+        """One row for each run, for any reader of the Arrow PyCapsule interface: of each load its value, ``<name>.low`` and ``<name>.high``.
 
         Args:
             names: of the loads; ``f0``, ``f1`` .. where left out.
@@ -125,7 +125,7 @@ class RecoveredRows:
     def __repr__(self) -> str:
         runs, loads = np.atleast_2d(self.loads).shape
         bad = [f.message for f in self.findings if f.severity == "error"]
-        verdict = f", CAN'T BE RELIED ON: {'; '.join(bad)}" if bad else ""
+        verdict = f", NOT RELIABLE: {'; '.join(bad)}" if bad else ""
         return f"RecoveredRows({runs} runs x {loads} loads{verdict})"
 
 
@@ -156,7 +156,7 @@ def place_rows(
         S: candidates x loads; any unit. Rows have equal weight: divide each by the sd of its reading where these differ.
         n: how many rows, at least as many as loads.
         spacing: least distance between two rows chosen, in the unit of `positions`.
-        proof: whether to try to prove by branch and bound that no layout is better. The bound stands without.
+        proof: whether to try to prove by branch and bound that no layout is better. The bound does not need it.
         positions: candidates x 3, needed for a spacing.
         threads: how many; None or -1: all cores.
 
@@ -209,7 +209,7 @@ def strain_along(
     """Normal strain of shells along a direction: what a gauge of zero length glued that way reads. The unit is that of `strain`.
 
     Args:
-        strain: places x 3, exx, eyy, gxy (engineering shear) in the element's frame, as an OP2 holds them; or places x 6, Exx, Eyy, Ezz, Exy,
+        strain: places x 3, exx, eyy, gxy (engineering shear) in the element's frame, as an OP2 contains them; or places x 6, Exx, Eyy, Ezz, Exy,
             Eyz, Ezx (tensor shear) in the basic frame.
         direction: 3, or places x 3, of any length. In the frame of `strain`; with `corners` in the basic frame, and laid onto the element.
         angle_deg: instead of a direction: degrees from the element's x axis, right-handed about its normal; one, or one a place.

@@ -1,4 +1,4 @@
-"""S learnt from bare arrays: readings under known loads."""
+"""S calibrated from bare arrays: readings under known loads."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ._outcome import Finding, Outcome
 
 @dataclass(frozen=True)
 class CalibratedRows:
-    """S as runs of known load teach it."""
+    """S from calibration runs, with its uncertainty."""
 
     #: gauges x loads, microstrain per unit of load.
     S: NDArray[np.float64]
@@ -27,7 +27,7 @@ class CalibratedRows:
 
     @property
     def findings(self) -> Sequence[Finding]:
-        """What is to be known of it, the worst first."""
+        """Findings, the worst first."""
         return self.outcome.findings
 
     @property
@@ -49,10 +49,10 @@ def calibrate_rows(
     repeats: Sequence[object] | None = None,
     threads: int | None = None,
 ) -> CalibratedRows:
-    """S from runs of known load, as the command `calibrate` learns it.
+    """S from runs of known load, as the command `calibrate` computes it.
 
     Args:
-        strain: runs x gauges, microstrain; NaN where a gauge gave nothing.
+        strain: runs x gauges, microstrain; NaN for a missing reading.
         loads: runs x loads, any one unit; NaN: unknown, 0: known to be zero.
         noise: sd of one reading, microstrain.
         prior: a model's S, gauges x loads, microstrain per unit of load.

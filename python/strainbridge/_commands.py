@@ -1,4 +1,4 @@
-"""The commands, a function each. A job is a :class:`Job`, the path of one, or a dictionary with its keys.
+"""The commands, as one function each. A job is a :class:`Job`, the path of one, or a dictionary with its keys.
 
 All of them take `threads` (None or -1: all cores), `cache` (whether solutions of the built-in solver are kept in the user's cache, as
 the command keeps them) and `progress` (True: a bar of tqdm, where that is installed; or a function, called with stage, parts done and parts in
@@ -50,7 +50,7 @@ def _is_job(what: AnyJob) -> bool:
 def sensitivity(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """S of the job's gauges, or of its candidates.
 
-    The outcome holds ``S`` (gauges x loads, microstrain per job unit of each load), ``gauges`` and ``loads`` (names of rows and columns), ``rank``,
+    The outcome contains ``S`` (gauges x loads, microstrain per job unit of each load), ``gauges`` and ``loads`` (names of rows and columns), ``rank``,
     ``condition_number``, ``condition_number_scaled``; ``to_arrow()`` and, once saved, ``sensitivity.csv``.
     """
     return _ask("sensitivity", job, threads=threads, cache=cache, progress=progress)
@@ -59,7 +59,7 @@ def sensitivity(job: AnyJob, *, threads: int | None = None, cache: bool = True, 
 def place(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Where to put gauges.
 
-    The outcome holds ``gauges`` (name, element, surface, position, direction, angle_deg, leverage), ``log_det``, ``efficiency_bound``, ``condition_number``, ``load_sigma``.
+    The outcome contains ``gauges`` (name, element, surface, position, direction, angle_deg, leverage), ``log_det``, ``efficiency_bound``, ``condition_number``, ``load_sigma``.
     """
     return _ask("place", job, threads=threads, cache=cache, progress=progress)
 
@@ -67,7 +67,7 @@ def place(job: AnyJob, *, threads: int | None = None, cache: bool = True, progre
 def recover(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Loads from measured strain.
 
-    The outcome holds ``loads`` (run, name, value, sigma, unit), ``condition_number``, ``residual_rms_microstrain``, ``gauges``.
+    The outcome contains ``loads`` (run, name, value, sigma, unit), ``condition_number``, ``residual_rms_microstrain``, ``gauges``.
     """
     return _ask("recover", job, threads=threads, cache=cache, progress=progress)
 
@@ -75,7 +75,7 @@ def recover(job: AnyJob, *, threads: int | None = None, cache: bool = True, prog
 def respond(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Strain and stress anywhere on the structure from recovered loads.
 
-    The outcome holds ``elements`` (element, surface, max_von_mises, at, sigma).
+    The outcome contains ``elements`` (element, surface, max_von_mises, at, sigma).
     """
     return _ask("respond", job, threads=threads, cache=cache, progress=progress)
 
@@ -83,7 +83,7 @@ def respond(job: AnyJob, *, threads: int | None = None, cache: bool = True, prog
 def payload(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Mass and position of the payload.
 
-    The outcome holds ``payload`` (run, force, mass, position, their sigmas), ``by_gauge``.
+    The outcome contains ``payload`` (run, force, mass, position, their sigmas), ``by_gauge``.
     """
     return _ask("payload", job, threads=threads, cache=cache, progress=progress)
 
@@ -91,7 +91,7 @@ def payload(job: AnyJob, *, threads: int | None = None, cache: bool = True, prog
 def ballast(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Lumped masses that bring the model's reactions to the measured ones.
 
-    The outcome holds ``masses`` (mass, position), ``reactions``.
+    The outcome contains ``masses`` (mass, position), ``reactions``.
     """
     return _ask("ballast", job, threads=threads, cache=cache, progress=progress)
 
@@ -99,7 +99,7 @@ def ballast(job: AnyJob, *, threads: int | None = None, cache: bool = True, prog
 def study(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Recovery repeated under stated errors, for a range of layouts and gauge counts.
 
-    The outcome holds ``study`` (layout, gauges, error, condition_number, loads).
+    The outcome contains ``study`` (layout, gauges, error, condition_number, loads).
     """
     return _ask("study", job, threads=threads, cache=cache, progress=progress)
 
@@ -107,39 +107,39 @@ def study(job: AnyJob, *, threads: int | None = None, cache: bool = True, progre
 def identify(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Parameters of the vehicle and wheel loads from accelerations.
 
-    The outcome holds ``parameters`` (name, value, sigma, unit, identifiable), ``unidentifiable``, ``fit``, ``mass_closure``.
+    The outcome contains ``parameters`` (name, value, sigma, unit, identifiable), ``unidentifiable``, ``fit``, ``mass_closure``.
     """
     return _ask("identify", job, threads=threads, cache=cache, progress=progress)
 
 
 def calibrate(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """S learnt from runs of known load.
+    """S from runs of known load.
 
-    The outcome holds ``calibration`` (runs, prior, gauges, repeat_scatter_rel, noise_rel, coverage).
+    The outcome contains ``calibration`` (runs, prior, gauges, repeat_scatter_rel, noise_rel, coverage).
     """
     return _ask("calibrate", job, threads=threads, cache=cache, progress=progress)
 
 
 def cases(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """The job's deck with one unit-load subcase a load, ready for Nastran.
+    """The job's deck with one unit-load subcase for each load, ready for Nastran.
 
-    The outcome holds ``subcases``; ``unit_loads.bdf`` once saved.
+    The outcome contains ``subcases``; ``unit_loads.bdf`` once saved.
     """
     return _ask("cases", job, threads=threads, cache=cache, progress=progress)
 
 
 def reconcile(job: AnyJob, *, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """Where simulation and measurement disagree, which missing effect that is, and how the gap shrinks with it.
+    """Gap between simulation and measurement, the missing effect, and the gap with this effect.
 
-    The outcome holds ``verdict``, ``named``, ``effects``, ``rivals``, ``gap``, ``next_measurement``.
+    The outcome contains ``verdict``, ``named``, ``effects``, ``rivals``, ``gap``, ``next_measurement``.
     """
     return _ask("reconcile", job, threads=threads, cache=cache, progress=progress)
 
 
 def check(*files: Path, threads: int | None = None, progress: Progress = None) -> Outcome:
-    """What is in decks, results and jobs, every fault, and whether they belong together.
+    """Contents of decks, results and jobs, every fault, and whether the files match.
 
-    The outcome holds ``decks`` (path, cards, grids, elements, mass, cg), ``results`` (path, solver, tables) and ``faults``, which are part of
+    The outcome contains ``decks`` (path, cards, grids, elements, mass, cg), ``results`` (path, solver, tables) and ``faults``, which are part of
     the answer here.
 
     Raises:
@@ -151,12 +151,12 @@ def check(*files: Path, threads: int | None = None, progress: Progress = None) -
 
 
 def init(deck: Path, *results: Path, folder: Path = ".", threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
-    """A job proposed from a deck and its results, to stand in `folder`, where :meth:`Outcome.save` writes it as ``job.toml``.
+    """A job proposed from a deck and its results, for `folder`, where :meth:`Outcome.save` writes it as ``job.toml``.
 
-    The outcome holds ``job``, ``loads``, ``left_out``, ``placeable``.
+    The outcome contains ``job``, ``loads``, ``left_out``, ``placeable``.
 
     Raises:
-        Faults: files that can't be read; a job that stands in the folder already.
+        Faults: files that cannot be read; a job that exists in the folder already.
     """
     return _ask("init", None, files=[deck, *results], folder=folder, threads=threads, cache=cache, progress=progress)
 
@@ -164,7 +164,7 @@ def init(deck: Path, *results: Path, folder: Path = ".", threads: int | None = N
 def strains(deck: Path, *results: Path, threads: int | None = None, progress: Progress = None) -> Outcome:
     """Strain of shells and bars of every static subcase, element frame and basic frame; ``strains.csv`` once saved.
 
-    The outcome holds ``rows`` and ``subcases``.
+    The outcome contains ``rows`` and ``subcases``.
     """
     return _ask("strains", None, files=[deck, *results], threads=threads, progress=progress)
 
@@ -180,7 +180,7 @@ def solve(
 ) -> Outcome:
     """The unit loads of a job, or the static subcases of a deck, by the built-in solver.
 
-    The outcome holds ``grids``, ``dofs``, ``balance``, ``peak_memory_bytes``; ``results.op2`` and ``results.vtu`` once saved.
+    The outcome contains ``grids``, ``dofs``, ``balance``, ``peak_memory_bytes``; ``results.op2`` and ``results.vtu`` once saved.
 
     Args:
         job: a job, or the path of a deck.
@@ -195,7 +195,7 @@ def solve(
 def modes(job: AnyJob, *, modes: int = 10, threads: int | None = None, cache: bool = True, progress: Progress = None) -> Outcome:
     """Elastic modes of the structure of a job or of a deck.
 
-    The outcome holds ``modes`` (hz, generalised_mass).
+    The outcome contains ``modes`` (hz, generalised_mass).
 
     Args:
         job: a job, or the path of a deck.
@@ -208,7 +208,7 @@ def modes(job: AnyJob, *, modes: int = 10, threads: int | None = None, cache: bo
 def verify(folder: Path, *, threads: int | None = None, progress: Progress = None) -> Outcome:
     """A result folder recomputed from its inputs, without kept solutions, and compared file by file and number by number.
 
-    The outcome holds ``same`` and ``differs`` (file, at, was, now).
+    The outcome contains ``same`` and ``differs`` (file, at, was, now).
 
     Args:
         folder: what a command or :meth:`Outcome.save` wrote.

@@ -31,7 +31,7 @@ class Fault:
 
 
 class Faults(ValueError):
-    """Bad input: ``.faults`` holds every fault that was found, one at least."""
+    """Bad input: ``.faults`` contains every fault, at least one."""
 
     faults: tuple[Fault, ...]
 

@@ -59,11 +59,11 @@ def op2_bytes(op2: Any) -> bytes:
     """Displacements, strain and stress of the static subcases of an `OP2`, as a file of our own.
 
     Raises:
-        ValueError: it holds none of them.
+        ValueError: it contains none of them.
     """
     tables = [*_nodal(op2), *_elements(op2, "strain"), *_elements(op2, "stress")]
     if not tables:
-        raise ValueError("the OP2 holds no displacements, strain or stress of a static subcase: ask for STRAIN(FIBER) of shells in Nastran")
+        raise ValueError("the OP2 contains no displacements, strain or stress of a static subcase: ask for STRAIN(FIBER) of shells in Nastran")
     return bytes(_engine.op2_bytes(tables))
 
 

@@ -21,13 +21,13 @@ _NAME = "job.toml"
 
 @lru_cache(maxsize=None)
 def _schema() -> dict[str, Any]:
-    """What a job can hold, by key."""
+    """Schema of a job, by key."""
     keys: dict[str, Any] = json.loads(_engine.schema())["properties"]
     return keys
 
 
 def _is_section(name: str) -> bool:
-    """Whether a key stands for one section."""
+    """Whether a key is one section."""
     return "properties" in _schema()[name]
 
 
@@ -75,7 +75,7 @@ class Job(Keys):
 
         Args:
             job: sections are dictionaries, ``[[load]]`` and its like are lists of dictionaries. A key that names a table takes the table itself
-                (a DataFrame, or whatever else has ``__arrow_c_stream__``). ``deck`` and ``results`` of ``model`` may be a
+                (a DataFrame, or another object with ``__arrow_c_stream__``). ``deck`` and ``results`` of ``model`` may be a
                 `BDF` and `OP2` of pyNastran instead of paths.
             folder: what paths in it are relative to. Nothing is written there.
             files: files in memory, by path relative to `folder` or to the working folder; they take the place of those on the disk.
@@ -103,7 +103,7 @@ class Job(Keys):
         return copy
 
     def check(self) -> Job:
-        """Checks the job as it stands now, and returns it.
+        """Checks the present job, and returns it.
 
         Raises:
             Faults: every fault.

@@ -50,7 +50,7 @@ class Mesh:
             cell_data: numbers by cell, in the order of the blocks.
 
         Raises:
-            ValueError: shapes that don't fit, points that aren't there.
+            ValueError: shapes that don't fit, points that do not exist.
         """
         x = np.ascontiguousarray(points, dtype=np.float64)
         if x.ndim != 2 or x.shape[1] != 3:
@@ -62,7 +62,7 @@ class Mesh:
             if kind not in numbers or rows.ndim != 2:
                 raise ValueError(f"cells `{kind}`: give {', '.join(numbers)}, m x points of a cell")
             if rows.size and not (0 <= rows.min() and rows.max() < len(x)):
-                raise ValueError(f"cells `{kind}` name points that aren't there: they count from 0 to {len(x) - 1}")
+                raise ValueError(f"cells `{kind}` name points that do not exist: they count from 0 to {len(x) - 1}")
             flat.append(np.column_stack([np.full(len(rows), rows.shape[1]), rows]).ravel())
             types.append(np.full(len(rows), numbers[kind], dtype=np.uint8))
         joined = np.concatenate(flat).astype(np.int64) if flat else np.empty(0, np.int64)
@@ -128,7 +128,7 @@ def _data(given: Mapping[str, ArrayLike] | None, n: int, what: str) -> dict[str,
     for name, values in (given or {}).items():
         array = np.asarray(values)
         if array.ndim not in (1, 2) or len(array) != n or array.dtype.kind not in "iufb":
-            raise ValueError(f"`{name}` has the shape {array.shape}: give numbers, {n} rows, one a {what}")
+            raise ValueError(f"`{name}` has the shape {array.shape}: give numbers, {n} rows, one for each {what}")
         out[name] = np.ascontiguousarray(array, dtype=np.float64 if array.dtype.kind == "f" else np.int64)
     return out
 

@@ -49,7 +49,7 @@ class Model:
             cell_properties: the property of every cell, a list a block; left out: the first for all.
 
         Raises:
-            ValueError: shapes that don't fit, points or properties that aren't there.
+            ValueError: shapes that don't fit, points or properties that do not exist.
         """
         x = np.asarray(points, dtype=float)
         if x.ndim != 2 or x.shape[1] != 3 or not np.isfinite(x).all():
@@ -119,5 +119,5 @@ def _cells(kind: str, block: ArrayLike, points: int) -> tuple[str, np.ndarray[An
     if rows.ndim != 2 or rows.shape[1] != _GRIDS[card] or rows.dtype.kind not in "iu":
         raise ValueError(f"cells `{kind}` are whole numbers, m x {_GRIDS[card]}, not {rows.dtype} {rows.shape}")
     if rows.size and not (0 <= rows.min() and rows.max() < points):
-        raise ValueError(f"cells `{kind}` name points that aren't there: they count from 0 to {points - 1}")
+        raise ValueError(f"cells `{kind}` name points that do not exist: they count from 0 to {points - 1}")
     return card, rows.astype(np.int64)

@@ -1,4 +1,4 @@
-"""Records in object stores, by fsspec: a copy of a record lies in the folder of the results while it is read."""
+"""Records in object stores, by fsspec: the folder of the results contains a copy of a record while it is read."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a command comes to."""
+"""Outcome of a command."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ from ._table import Table
 
 @dataclass(frozen=True)
 class Finding:
-    """What is to be known of an answer."""
+    """Finding on a result."""
 
-    #: ``error``: the answer can't be relied on; ``warning``: look before you trust; ``info``: worth knowing.
+    #: ``error``: the result is not reliable; ``warning``: the result is usable with the stated limits; ``info``: for information.
     severity: Literal["info", "warning", "error"]
     #: Stable code, such as ``loads-not-separable``.
     code: str
-    #: What it is about: a gauge, a load, a file, an element.
+    #: Subject: a gauge, a load, a file, an element.
     subject: str
     #: A sentence with the consequence.
     message: str
@@ -42,7 +42,7 @@ class Finding:
 
     @property
     def where(self) -> str:
-        """What it is about: the subject."""
+        """The subject."""
         return self.subject
 
     @property
@@ -51,7 +51,7 @@ class Finding:
         return self.message
 
     def __str__(self) -> str:
-        return f"{self.severity}: {self.code}: {self.subject}: {self.message}: {self.remedy}"
+        return f"{self.severity}: {self.code}: {self.subject}: {self.message} {self.remedy}"
 
 
 class UnreliableWarning(UserWarning):
@@ -134,9 +134,9 @@ def _value(value: Any) -> Any:
 
 
 class Outcome(Record):
-    """What a command comes to: the keys of its ``result.json`` are attributes, with lists of numbers as numpy arrays.
+    """Outcome of a command: the keys of its ``result.json`` are attributes, with lists of numbers as numpy arrays.
 
-    ``findings`` are objects; :attr:`is_reliable` is False where one of them says that the answer can't be relied on (the command would end
+    ``findings`` are objects; :attr:`is_reliable` is False if one of them states that the result is not reliable (the command would end
     with exit code 1), and the outcome then says so when it is printed.
     """
 
@@ -220,7 +220,7 @@ class Outcome(Record):
         """Writes the files of the command (``result.json``, tables, ``report.html``) into a folder, which is made where missing.
 
         Raises:
-            Faults: a file that can't be written.
+            Faults: a file that cannot be written.
         """
         self._json = self._native.save(folder)
         self._keys["tables"] = json.loads(self._json)["tables"]
@@ -244,7 +244,7 @@ class Outcome(Record):
         ``<load>.high`` (95 %), as `loads.csv` has them, report units; NaN if the valid gauges do not determine a load.
 
         Raises:
-            KeyError: the outcome holds no record.
+            KeyError: the outcome contains no record.
         """
         found = self._native.history()
         if found is None:
@@ -307,7 +307,7 @@ class Outcome(Record):
         bad = [f for f in self.findings if f.severity == "error"]
         if not bad:
             return ""
-        return "CAN'T BE RELIED ON: " + "; ".join(f.message for f in bad)
+        return "NOT RELIABLE: " + "; ".join(f.message for f in bad)
 
     def __repr__(self) -> str:
         lines = [f"{self._keys['command']}: {self._verdict() or 'done'}"]
@@ -332,7 +332,7 @@ class Outcome(Record):
 
 @dataclass(frozen=True)
 class _Stored:
-    """An outcome without its engine: what a copy or a pickle holds."""
+    """An outcome without its engine: content of a copy or a pickle."""
 
     json: str
     words: str
@@ -387,7 +387,7 @@ def _stored(native: _engine._Outcome | _Stored) -> _Stored:
 
 
 def _table_of_csv(path: Path) -> Table:
-    """A column a name: numbers where every cell is one or empty (NaN), else texts."""
+    """One column for each name: numbers where every cell is one or empty (NaN), else texts."""
     with path.open(encoding="utf-8", newline="") as file:
         header, *rows = csv.reader(file)
     columns: dict[str, Any] = {}

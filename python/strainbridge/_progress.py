@@ -1,4 +1,4 @@
-"""Progress as a bar of tqdm, where it is installed."""
+"""Progress as a bar of tqdm, if it is installed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ Told = Optional[Callable[[str, int, int], object]]
 
 @contextmanager
 def shown(progress: Union[bool, Told]) -> Iterator[Told]:
-    """Who is told: the function given; for True a bar, closed at the end.
+    """Receiver of progress: the given function, or for True a bar that is closed at the end.
 
     Raises:
         ImportError: a bar is asked for and tqdm is not installed.

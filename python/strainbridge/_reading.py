@@ -41,10 +41,10 @@ class Deck:
 
     @classmethod
     def read(cls, path: Path | Any) -> Deck:
-        """The deck in a file, the mesh of an OP2, or a `BDF` of pyNastran. What is wrong with cards is in :attr:`faults`.
+        """The deck in a file, the mesh of an OP2, or a `BDF` of pyNastran. Faults of cards are in :attr:`faults`.
 
         Raises:
-            Faults: the file can't be read at all.
+            Faults: the file cannot be read at all.
         """
         if is_deck(path):
             return cls("pynastran.bdf", {"pynastran.bdf": deck_bytes(path)})
@@ -57,7 +57,7 @@ class Deck:
 
     @property
     def faults(self) -> tuple[Fault, ...]:
-        """Everything that is wrong with its cards, with file and line."""
+        """All faults of its cards, with file and line."""
         return tuple(Fault(*f) for f in self._native.faults)
 
     def cards(self, name: str) -> dict[str, NDArray[Any]]:
@@ -80,14 +80,14 @@ class Deck:
         return self._changed[name]
 
     def write(self, path: Path) -> list[str]:
-        """Writes the deck with the cards as :meth:`cards` holds them now; lines of others keep every byte. Cards whose id is gone are left out,
+        """Writes the deck with the cards as :meth:`cards` contains them now; lines of other cards keep every byte. Cards whose id is gone are left out,
         those of a new id added. INCLUDE files that change are written next to it.
 
         Returns:
             The files written.
 
         Raises:
-            Faults: columns that make no cards; cards that can't be changed.
+            Faults: columns that are not valid cards; cards that cannot be changed.
         """
         to = _Path(path)
         changed = {}
@@ -130,7 +130,7 @@ class Strain:
     columns: tuple[str, ...]
 
     def to_arrow(self) -> Table:
-        """A row a place, for any reader of the Arrow PyCapsule interface."""
+        """One row for each place, for any reader of the Arrow PyCapsule interface."""
         values = {name: self.values[:, i] for i, name in enumerate(self.columns)}
         return Table.from_columns({"element": self.element, "grid": self.grid, **values})
 
@@ -157,12 +157,12 @@ class Results:
     @classmethod
     def read(cls, path: Path | Any, deck: Path | Any | None = None) -> Results:
         """The results in a file, or an `OP2` of pyNastran. Strain in the basic frame needs the mesh, and strain from stress, plies or curvature
-        needs materials and thicknesses: the deck (or a `BDF` of pyNastran), or a file that holds it. Of an `OP2`, the static subcases are taken:
-        displacements, strain and stress of shells, plies, bars, beams, rods and solids. An `OP2Geom` holds its own deck.
+        needs materials and thicknesses: the deck (or a `BDF` of pyNastran), or a file that contains it. Of an `OP2`, the static subcases are taken:
+        displacements, strain and stress of shells, plies, bars, beams, rods and solids. An `OP2Geom` contains its own deck.
 
         Raises:
-            Faults: the file can't be read, or has another format.
-            ValueError: the `OP2` holds none of these.
+            Faults: the file cannot be read, or has another format.
+            ValueError: the `OP2` contains none of these.
         """
         files = {}
         if is_results(path):
@@ -176,7 +176,7 @@ class Results:
 
     @property
     def tables(self) -> Sequence[Record]:
-        """What the tables hold: ``table``, ``quantity``, ``analysis``, ``subcase``, ``mode``, ``step``, ``element_type``, ``titles``."""
+        """Contents of the tables: ``table``, ``quantity``, ``analysis``, ``subcase``, ``mode``, ``step``, ``element_type``, ``titles``."""
         return [Record(t) for t in json.loads(self._native.tables())]
 
     def table(self, number: int) -> dict[str, NDArray[Any]]:
@@ -254,7 +254,7 @@ class Results:
             warnings.warn(said + why, UserWarning, stacklevel=3)
 
     def _no_strain(self, subcase: int) -> Faults:
-        """The fault for a subcase without strain of shells: other subcases that have it, or what else there is."""
+        """The fault for a subcase without strain of shells: other subcases that have it, or other results."""
         shells = [t for t in self.tables if t.analysis == "statics" and _is_shell(t)]
         here = {t.quantity for t in shells if t.subcase == subcase}
         others = sorted({t.subcase for t in shells} - {subcase})
@@ -280,7 +280,7 @@ def write_op2(path: Path, tables: Iterable[tuple[Mapping[str, Any], Mapping[str,
 
     Args:
         path: the file.
-        tables: each what it holds and its columns, as :attr:`Results.tables` and :meth:`Results.table` have them: ``{"quantity": "strain",
+        tables: contents and columns of each, as :attr:`Results.tables` and :meth:`Results.table` have them: ``{"quantity": "strain",
             "element_type": "CQUAD4", "subcase": 1}`` and ``{"entity": ids, "at": .., "layer": .., "exx": .., ..}``. Strain of shells has two
             rows an element, ``layer`` 1 (Z1) and 2 (Z2), strain without a unit (not micro); ``fiber``, ``angle``, ``emax``, ``emin`` and ``vm``
             are NaN where left out, other columns are needed. Give all subcases of a kind together.

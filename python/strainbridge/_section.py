@@ -38,7 +38,7 @@ def keys_of(schema: Mapping[str, Any]) -> Mapping[str, Any] | None:
 class Section:
     """A section of a job: its keys are attributes and items, and can be set. ``del`` takes a key out; a key that is absent is None. A name that no
     section of this kind has raises ``AttributeError``, with the closest name that it has. A key that names a table takes the table itself: a
-    DataFrame, or whatever else has ``__arrow_c_stream__``."""
+    DataFrame, or another object with ``__arrow_c_stream__``."""
 
     __slots__ = ("_job", "_table", "_where", "_schema", "_absent")
 

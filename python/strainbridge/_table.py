@@ -1,4 +1,4 @@
-"""Tables for pandas, polars, DuckDB and whoever else reads Arrow."""
+"""Tables for pandas, polars, DuckDB and other readers of Arrow."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Table:
 
     @classmethod
     def from_records(cls, records: Sequence[Mapping[str, Any]]) -> Table:
-        """A row a record, columns in the order of their keys: numbers, truths, texts, lists of numbers; other values as JSON."""
+        """One row for each record, columns in the order of their keys: numbers, truths, texts, lists of numbers; other values as JSON."""
         rows = list(records)
         names = list(dict.fromkeys(name for row in rows for name in row))
         return cls(_engine._Table(json.dumps(rows), names), ("from_records", rows))
 
     @classmethod
     def from_columns(cls, columns: Mapping[str, Any]) -> Table:
-        """A column a name: arrays of numbers of one dimension, or lists of texts."""
+        """One column for each name: arrays of numbers of one dimension, or lists of texts."""
         held = {name: _column(c) for name, c in columns.items()}
         return cls(_engine._Table(columns=held), ("from_columns", held))
 

@@ -22,11 +22,11 @@ def plain(value: Any) -> Any:
         return plain(value.tolist())
     if isinstance(value, (list, tuple, set, frozenset, range)):
         return [plain(v) for v in value]
-    raise TypeError(f"a job holds numbers, texts, lists and dictionaries, not {type(value).__name__}")
+    raise TypeError(f"a job contains numbers, texts, lists and dictionaries, not {type(value).__name__}")
 
 
 def text_of(job: Mapping[str, Any]) -> str:
-    """The text of a job: values first, then a section each, a line each key."""
+    """The text of a job: values first, then one section each, one line for each key."""
     lines: list[str] = []
     sections: list[str] = []
     for key, value in plain(job).items():

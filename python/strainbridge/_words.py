@@ -14,8 +14,8 @@ _OF_ARRAYS = ("place_rows", "relax", "recover_rows")
 _ARRAYS = (
     (re.compile(r"gauges among these candidates separate"), "rows of S separate"),
     (re.compile(r"ask for at least (\d+) gauges"), r"give n of at least \1"),
-    (re.compile(r"drop loads that act alike, or state `expected` for loads with role \"nuisance\""), "or leave out columns of S that act alike"),
-    (re.compile(r"gauges are asked for and the candidates hold (\d+) places"), r"rows are asked for and S has \1"),
+    (re.compile(r"drop loads with the same effect, or state `expected` for loads with role \"nuisance\""), "or leave out columns of S with the same effect"),
+    (re.compile(r"gauges are asked for and the candidates contain (\d+) places"), r"rows are asked for and S has \1"),
     (re.compile(r"widen \[candidates\]"), "give more rows"),
 )
 

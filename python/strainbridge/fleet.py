@@ -139,7 +139,7 @@ def part(
 
 
 def merge(job: AnyJob, out: str | Path) -> Answer:
-    """The result of everything that `out` holds of this job; `fleet.csv`, `fleet.parquet` and the report are written there."""
+    """The merged result of all stored results of this job in `out`; `fleet.csv`, `fleet.parquet` and the report are written there."""
     return _saved(_Task(job, [], str(out)), str(out))
 
 
@@ -158,7 +158,7 @@ def run(
     Args:
         job: a job with ``[fleet]``, or the path of one.
         files: records, relative to the working folder, or URLs of an object store that fsspec reads; a text or path is one file. A pattern
-            (``data/**/*.parquet``) stands for the files or objects that it matches, a folder for the records below it (without a client).
+            (``data/**/*.parquet``) means the files or objects that it matches, a folder for the records below it (without a client).
         out: where the results of single files are kept, and those of the fleet written.
         client: a `dask.distributed.Client`, whose workers process the files in tasks of eight; None: they are processed here. A task of a lost
             worker is repeated; bad input is not.

@@ -362,7 +362,7 @@ def test_a_second_run_decodes_nothing(sixty):
     body = json.dumps(changed)
     kept.write_text(f'{body[:-1]},"content":"{hashlib.sha256(body.encode()).hexdigest()}"}}')
     result = sb.fleet.run(folder / "job.toml", files, folder / "again")
-    assert "60 results kept from an earlier run" in result.notes
+    assert "60 results stored by an earlier run" in result.notes
     hours = [float(line.split(",")[2]) for line in (folder / "again" / "fleet.csv").read_text().splitlines()[1:]]
     before = [float(line.split(",")[2]) for line in here.decode().splitlines()[1:]]
     assert [round(a - b) for a, b in zip(hours, before)] == [100, 100, 0, 0, 0, 0]
@@ -380,7 +380,7 @@ def test_what_damage_is_held_against_redoes_no_record(sixty, cluster, tmp_path):
     sb.fleet.run(job, files, tmp_path / "fresh")
     for client in (None, cluster):
         result = sb.fleet.run(job, files, tmp_path / "kept", client=client)
-        assert "60 results kept from an earlier run" in result.notes
+        assert "60 results stored by an earlier run" in result.notes
         assert len(list((tmp_path / "kept" / "days").glob("*.json"))) == 60
         assert (tmp_path / "kept" / "fleet.csv").read_bytes() == here
         relative = [(tmp_path / out / "fleet_relative.csv").read_bytes() for out in ("kept", "fresh")]

@@ -92,12 +92,12 @@ def test_an_outcome_has_numbers_findings_and_words(strip_folder, tmp_path):
 
 
 def test_an_outcome_that_cannot_be_relied_on_says_so(matrix_folder):
-    # Two gauges that read alike: their loads can't be told apart.
+    # Two gauges with equal readings: their loads are indistinguishable.
     rows = "\n".join(f"G{g},{a},{a}" for g, (a, _) in enumerate(MATRIX))
     (matrix_folder / "S.csv").write_text(f"gauge,A.FZ,B.FZ\n{rows}\n")
     out = sb.sensitivity("job.toml")
     assert not out.is_reliable
-    assert "RELIED" in repr(out) and "be relied on" in out._repr_html_()
+    assert "NOT RELIABLE" in repr(out) and "is not reliable" in out._repr_html_()
 
 
 def test_the_text_of_a_dictionary_is_read_back_as_it_was(matrix_folder):

@@ -72,7 +72,7 @@ def test_loads_are_shown_with_the_verdict_first(matrix_folder):
     bad = sb.recover(job)
     said = shown(bad)[0]
     assert any(f.severity != "info" for f in bad.findings)
-    verdict = "The result is usable, with" if bad.is_reliable else "cannot be relied on"
+    verdict = "The result is usable, with" if bad.is_reliable else "is not reliable"
     assert 0 < said.find(verdict) < said.find("<h4")
 
 

@@ -1,5 +1,5 @@
 //! A common zero: strain that the gauges read without load, `eps = S f + z`. Inside a calibration it is a column of S more, for a load that is 1 in
-//! every run ([`extended`]); outside, S has the loads of the task, and readings are less `z`.
+//! every run ([`add_zero_column`]); outside, S has the loads of the task, and readings are less `z`.
 //!
 //! Errors of `S` and `z` go together: what the runs determine best is the strain at loads in their middle. With `c` these loads, `eps = S (f - c) +
 //! (z + S c)`, the two parts are taken as uncorrelated, and their covariances are kept apart ([`Centred`]).
@@ -25,7 +25,7 @@ impl Task {
 }
 
 /// The task with the column of the common zero.
-pub(super) fn extended(task: &Task) -> Task {
+pub(super) fn add_zero_column(task: &Task) -> Task {
     let mut out = task.clone();
     out.common_zero = CommonZero::Column;
     let k = task.loads.len();
@@ -47,7 +47,7 @@ pub(super) fn extended(task: &Task) -> Task {
 }
 
 /// The result without that column.
-pub(super) fn reduced(mut found: Calibration, k: usize) -> Calibration {
+pub(super) fn remove_zero_column(mut found: Calibration, k: usize) -> Calibration {
     found
         .undetermined
         .iter_mut()

@@ -1,6 +1,6 @@
 //! Two runs whose labels were exchanged: the fit goes between both, so that each hides the other and all the scatter seems to be chance.
 
-use super::held_out::{REFUSE, SUSPECT, against, chance};
+use super::held_out::{REFUSE, SUSPECT, chance, recover_left_out};
 use super::start::is_known;
 use super::state::State;
 use super::types::{LeftOut, Task};
@@ -63,8 +63,8 @@ fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool 
     let mut own = 1.0;
     for (me, other) in [(0, 1), (1, 0)] {
         let beside = [at[other]];
-        let stated = against(task, state, at[me], &beside, loads[me]);
-        let turned = against(task, state, at[me], &beside, loads[other]);
+        let stated = recover_left_out(task, state, at[me], &beside, loads[me]);
+        let turned = recover_left_out(task, state, at[me], &beside, loads[other]);
         let (Some(stated), Some(turned)) = (stated, turned) else {
             return false;
         };
@@ -144,15 +144,15 @@ pub(super) fn finding(task: &Task, e: &Exchanged) -> Finding {
     let times = crate::units::number(e.fewer);
     let what = match e.or.map(names) {
         Some([c, d]) => format!(
-            "runs `{a}` and `{b}` have each other's label, or `{c}` and `{d}`: exchanged, either way, the runs leave {times} times less (sum of \
-             squares). Which of them it is nothing tells, and S is that of neither"
+            "the labels of runs `{a}` and `{b}`, or of `{c}` and `{d}`, are exchanged. With either pair exchanged back, the residual sum \
+             of squares is {times} times smaller. The runs do not determine which pair it is, and S is wrong in both cases"
         ),
         None => format!(
-            "runs `{a}` and `{b}` have each other's label: the strain of `{a}` is that of the loads stated for `{b}`, and the other way round; \
-             exchanged, the runs leave {times} times less (sum of squares){}",
+            "the labels of runs `{a}` and `{b}` are exchanged: the strain of `{a}` fits the loads of `{b}`, and the strain of `{b}` the \
+             loads of `{a}`. With the labels exchanged back, the residual sum of squares is {times} times smaller{}",
             match e.certain {
                 true => ". Neither was used",
-                false => ". Both were used as they stand, and S is off by that",
+                false => ". Both were used unchanged, and S contains this error",
             }
         ),
     };
@@ -165,7 +165,7 @@ pub(super) fn finding(task: &Task, e: &Exchanged) -> Finding {
         "runs-exchanged",
         subject,
         what,
-        "correct the labels in the runs file, or leave these runs out with `[calibration] runs`",
+        "correct the labels in the runs file, or exclude these runs with `[calibration] runs`",
     )
     .with_numbers(e.fewer, FEWER)
 }

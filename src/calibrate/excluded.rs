@@ -19,7 +19,8 @@ pub(super) fn too_many(excluded: usize, runs: usize) -> Option<Finding> {
             format!(
                 "{excluded} of {runs} runs contradict the others, and the intervals do not include them: the model of the strain does not fit these runs",
             ),
-            "correct labels, zeros and loads of these runs in the files, or leave them out with `[calibration] runs`; if they are right, more loads act than the job names",
+            "correct labels, zeros and loads of these runs in the files, or exclude them with `[calibration] runs`; if they are right, \
+             loads act that the job does not contain",
         )
         .with_numbers(share, MOST)
     })
@@ -36,11 +37,12 @@ pub(super) fn held_too_few(coverage: &Coverage) -> Option<Finding> {
             "calibration-coverage-low",
             "calibration",
             format!(
-                "the 95 % regions of the left-out runs contain {} of {of} known loads, {:.0} % (chance {chance:.1e} where 95 % is right): intervals are too narrow",
+                "the 95 % regions of the left-out runs contain {} of {of} known loads, {:.0} % (probability {chance:.1e} for correct \
+                 regions): intervals are too narrow",
                 coverage.held,
                 100.0 * share
             ),
-            "look for runs with a wrong label or zero, for loads that the job does not name, and for strain that is not proportional to the loads",
+            "check for runs with a wrong label or zero, and for loads that are not in the job. Check whether strain is proportional to the loads",
         )
         .with_numbers(share, COVERAGE)
     })

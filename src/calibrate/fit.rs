@@ -1,6 +1,6 @@
 //! The whole calibration: one fit of all runs, runs left out, contradicting ones refused, then words.
 
-use super::common_zero::{extended, reduced, zero_of};
+use super::common_zero::{add_zero_column, remove_zero_column, zero_of};
 use super::exchanged::Exchanged;
 use super::state::State;
 use super::types::{CalibratedRange, Calibration, CommonZero, Coverage, LeftOut, ModelError, Task};
@@ -31,8 +31,8 @@ pub fn calibrate(task: &Task) -> Result<Calibration, String> {
     }
     match task.common_zero {
         CommonZero::Sought => {
-            let found = calibrate_columns(&extended(task))?;
-            Ok(reduced(found, task.loads.len()))
+            let found = calibrate_columns(&add_zero_column(task))?;
+            Ok(remove_zero_column(found, task.loads.len()))
         }
         CommonZero::None | CommonZero::Column => calibrate_columns(task),
     }
@@ -137,7 +137,7 @@ impl Fitted {
         let mut exchanged: Vec<Exchanged> = Vec::new();
         loop {
             let state = State::of(task, &used, wrongly_wired)
-                .ok_or("S can't be solved for: the runs tell some gauge next to nothing (is it blank in the runs of known loads?), or hold numbers that are none")?;
+                .ok_or("S cannot be computed: the runs give hardly any information on some gauge (is it blank in the runs of known loads?), or contain values that are not numbers")?;
             let known = exchanged.last().is_none_or(|e| e.certain);
             let pair = exchanged::find(task, &state).filter(|_| known);
             if let Some(pair) = pair {
@@ -189,25 +189,27 @@ fn statements(
     if state.scatter.dof.is_finite() {
         let scatter = 100.0 * state.scatter.rms();
         let runs = match repeats(task, &state.used) {
-            true => "runs of one loading scatter",
-            false => "runs scatter about what S makes of their known loads",
+            true => "runs with the same loads scatter",
+            false => {
+                "the strain of the runs scatters about the strain predicted from their known loads"
+            }
         };
         let common = match state.scatter.common {
             0.0 => String::new(),
             c => format!(
-                " ({:.0} % of its square is common to repeats, which tell that much less)",
+                " ({:.0} % of the squared scatter is common to repeats, which therefore give less information)",
                 100.0 * c
             ),
         };
         let message = format!(
-            "{runs} by {scatter:.1} % of the strain{common}, noise makes {noise:.2} %: intervals come from the scatter. Runs left \
-             out one by one: {} of {} held, with intervals {:.2} times those of the scatter alone",
+            "{runs} by {scatter:.1} % of the strain{common}, and noise explains {noise:.2} %: intervals come from the scatter. In the \
+             leave-one-out test {} of {} runs are within their intervals, with intervals {:.2} times as wide as the scatter alone gives",
             coverage.held, coverage.of, coverage.factor
         );
         let (severity, remedy) = if state.scatter.rms() > NO_CALIBRATION {
             (
                 Severity::Error,
-                "check the unit of the known loads ([runs] units), their signs, and the zero: what is left is larger than the strain",
+                "check the unit of the known loads ([runs] units), their signs, and the zero: the residual is larger than the strain",
             )
         } else {
             (Severity::Info, "")
@@ -218,7 +220,8 @@ fn statements(
         );
     } else if !left_out.is_empty() {
         let message = format!(
-            "noise of {noise:.2} % of the strain explains what the runs leave. Runs left out one by one: {} of {} held, factor {:.2}",
+            "noise of {noise:.2} % of the strain explains the residuals of the runs. In the leave-one-out test {} of {} runs are within \
+             their intervals, factor {:.2}",
             coverage.held, coverage.of, coverage.factor
         );
         out.push(Finding::new(
@@ -234,13 +237,14 @@ fn statements(
             Severity::Error,
             "coverage-not-tested",
             "calibration",
-            "no run can be left out: each one is needed to determine S. The runs show nothing of the scatter, and the intervals do not include it",
-            "add runs; repeats of one loading are the cheapest",
+            "no run can be left out, because each one is needed to determine S. The scatter of the runs is unknown, and the intervals do \
+             not include it",
+            "add runs; repeats of one loading cost least",
         ));
     }
     if let (Some(model), Some(e)) = (&task.model, model_error) {
         let message = format!(
-            "the model's rows are off by {:.1} % common to a gauge and {:.1} % entry by entry; stated: {:.1} %",
+            "the rows of the model deviate by {:.1} % common to a gauge and {:.1} % entry by entry; stated: {:.1} %",
             100.0 * e.common,
             100.0 * e.entry,
             100.0 * model.uncertainty_rel
@@ -250,7 +254,7 @@ fn statements(
         let (severity, remedy) = if far {
             (
                 Severity::Warning,
-                "look for a unit, an `applied`, a gauge's place or a load that is wrong before trusting the calibrated S",
+                "check for a wrong unit, `applied`, gauge position or load before you use the calibrated S",
             )
         } else {
             (Severity::Info, "")
@@ -266,7 +270,7 @@ fn statements(
 /// Scatter over the strain from which S explains nothing of the runs: zeros would leave less.
 const NO_CALIBRATION: f64 = 1.0;
 
-/// Whether a loading stands twice among some runs.
+/// Whether some runs contain a loading twice.
 fn repeats(task: &Task, used: &[usize]) -> bool {
     let group = |r: &usize| task.runs.get(*r).map(|run| run.group);
     let groups: Vec<usize> = used.iter().filter_map(group).collect();

@@ -26,12 +26,12 @@ pub(super) const SUSPECT: f64 = 1e-3;
 pub(super) fn leave_out(task: &Task, state: &State) -> Vec<LeftOut> {
     (0..state.used.len())
         .into_par_iter()
-        .filter_map(|i| against(task, state, i, &[], &task.runs[state.used[i]].loads))
+        .filter_map(|i| recover_left_out(task, state, i, &[], &task.runs[state.used[i]].loads))
         .collect()
 }
 
 /// Recovers used run `i` with S from the other runs except `beside`, and compares it with `loads`; `None` if these do not determine its loads.
-pub(super) fn against(
+pub(super) fn recover_left_out(
     task: &Task,
     state: &State,
     i: usize,

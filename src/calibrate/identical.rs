@@ -1,7 +1,7 @@
 //! Columns of the calibration runs that are the same to the last digit.
 
 use super::types::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::input_faults::identical::{identical_pairs, identical_readings};
 
 /// Different values of two equal columns of loads at least: a truck that is there, and one that is not.
@@ -35,7 +35,7 @@ pub(super) fn findings(task: &Task) -> Vec<Finding> {
             Finding::new(
                 Severity::Warning,
                 "columns-identical",
-                few(&names),
+                list_few(&names),
                 "these loads are the same in all calibration runs, to the last digit: the runs determine their sum alone",
                 "check whether one column is a copy; add runs in which these loads differ",
             )

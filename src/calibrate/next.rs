@@ -35,7 +35,7 @@ pub fn next_runs(
     let k = s.loads.len();
     if sizes.len() != k {
         return Err(format!(
-            "{} sizes are given for {k} loads: give one a load",
+            "{} sizes are given for {k} loads: give one size for each load",
             sizes.len()
         ));
     }

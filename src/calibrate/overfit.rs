@@ -16,7 +16,7 @@ use crate::linalg::{Matrix, dense, spd};
 ///
 /// # Reference
 /// G. H. Golub, M. Heath, G. Wahba, Technometrics 21 (1979) 215: generalised cross-validation of a ridge.
-pub(super) fn added(
+pub(super) fn overfit_scatter(
     sample: &[f64],
     (shrunk, w): (&[f64], f64),
     columns: &Matrix,

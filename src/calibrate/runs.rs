@@ -22,8 +22,8 @@ pub(super) fn findings(
                 Severity::Warning,
                 "run-far-off",
                 &l.estimate.run,
-                format!("run `{}` is {far:.1} sigma from what the other runs say of it: {}. It was used all the same", l.estimate.run, words(task, l)),
-                "check its place, its zero and its label; leave it out with `[calibration] runs` if it is wrong",
+                format!("run `{}` deviates by {far:.1} sigma from the other runs: {}. It is used", l.estimate.run, words(task, l)),
+                "check its place, its zero and its label; exclude it with `[calibration] runs` if it is wrong",
             )
             .with_numbers(far, 1.0),
         );
@@ -38,7 +38,7 @@ fn refusal(task: &Task, l: &LeftOut) -> Finding {
         "run-contradicts",
         &l.estimate.run,
         format!(
-            "run `{}` contradicts the others ({far:.0} sigma) and was not used: {}",
+            "run `{}` contradicts the others by {far:.0} sigma and is not used: {}",
             l.estimate.run,
             words(task, l)
         ),
@@ -59,7 +59,7 @@ fn words(task: &Task, l: &LeftOut) -> String {
         && stated != found
     {
         return format!(
-            "stated is load `{}`, its strain is that of `{}`: a wrong label",
+            "the stated load is `{}`, and the strain fits `{}`, as with a wrong label",
             name(stated),
             name(found)
         );
@@ -72,12 +72,12 @@ fn words(task: &Task, l: &LeftOut) -> String {
     };
     if l.misfit > STRANGE {
         return format!(
-            "its strain is that of no loads at all (and {:.0} % of the known sum): a wrong zero or a faulty gauge",
+            "its strain fits no loads (and {:.0} % of the known sum), as with a wrong zero or a faulty gauge",
             100.0 * ratio
         );
     }
     format!(
-        "its strain says {:.0} % of the known sum: a wrong zero (taken under load), another load or another place",
+        "its strain corresponds to {:.0} % of the known sum, as with a zero under load, another load or another place",
         100.0 * ratio
     )
 }

@@ -102,7 +102,7 @@ impl Scatter {
         let shrunk: Vec<f64> = (0..n * n)
             .map(|i| (1.0 - shrink) * sample[i] + shrink * target[i])
             .collect();
-        let added = overfit::added(&sample, (&shrunk, shrink), columns, dof);
+        let added = overfit::overfit_scatter(&sample, (&shrunk, shrink), columns, dof);
         let added = added.unwrap_or_else(|| vec![0.0; n * n]);
         let all = shrunk.iter().zip(&added);
         Self {

@@ -263,20 +263,20 @@ pub(super) fn findings(task: &Task, shifts: &[GaugeShift]) -> Vec<Finding> {
                 _ => s.name.clone(),
             };
             let (code, severity, looks) = match s.word {
-                ShiftWord::Dead => ("gauge-dead", Severity::Warning, "it reads nothing in any run: dead, or not connected".to_owned()),
-                ShiftWord::Sign => ("input-sign-reversed", Severity::Warning, "its sign is turned: wired backwards".to_owned()),
-                ShiftWord::Gain => ("gauge-shifted", Severity::Warning, format!("it looks like a gain of {:.3}", s.scale)),
-                ShiftWord::Angle => ("gauge-shifted", Severity::Warning, "it looks like a turned gauge".to_owned()),
-                ShiftWord::Exchanged { .. } => ("inputs-exchanged", Severity::Warning, "each reads what the model says of the other: exchanged channels, or names".to_owned()),
-                ShiftWord::Undetermined => ("gauge-shifted", Severity::Warning, "neither a gain, nor an angle, nor another place is clearly it".to_owned()),
-                ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "it looks like another place than the model's".to_owned()),
+                ShiftWord::Dead => ("gauge-dead", Severity::Warning, "it has no signal in any run: it is dead or not connected".to_owned()),
+                ShiftWord::Sign => ("input-sign-reversed", Severity::Warning, "its sign is reversed, as with exchanged wires".to_owned()),
+                ShiftWord::Gain => ("gauge-shifted", Severity::Warning, format!("the deviation fits a gain of {:.3}", s.scale)),
+                ShiftWord::Angle => ("gauge-shifted", Severity::Warning, "the deviation fits a wrong angle".to_owned()),
+                ShiftWord::Exchanged { .. } => ("inputs-exchanged", Severity::Warning, "each one fits the model of the other: channels or names are exchanged".to_owned()),
+                ShiftWord::Undetermined => ("gauge-shifted", Severity::Warning, "the deviation fits neither a gain, nor an angle, nor another position clearly".to_owned()),
+                ShiftWord::Place | ShiftWord::None => ("gauge-shifted", Severity::Warning, "the deviation fits another position than the position of the model".to_owned()),
             };
             let message = if task.model.is_some() {
-                format!("gauge `{name}` lies {:.1} sigma from the model (stated: {stated:.0} %): {looks}", s.shift)
+                format!("gauge `{name}` deviates by {:.1} sigma from the model (stated: {stated:.0} %): {looks}", s.shift)
             } else {
                 format!("gauge `{name}`: {looks}")
             };
-            Finding::new(severity, code, name, message, "check its wiring, place and bridge factor; the calibrated S already contains what the runs show").with_numbers(s.shift, NOTABLE)
+            Finding::new(severity, code, name, message, "check its wiring, position and bridge factor; the calibrated S already includes the deviation").with_numbers(s.shift, NOTABLE)
         })
         .collect()
 }

@@ -148,8 +148,8 @@ impl State {
     }
 }
 
-/// S of a posterior, for the loads of the job and readings less the common zero, with what stands behind its intervals, in job units of load;
-/// `lack` as [`State::lack`].
+/// S of a posterior, for the loads of the job and readings less the common zero, with the terms of its intervals, in job units of load; `lack` as
+/// [`State::lack`].
 pub(super) fn sensitivity_of(
     task: &Task,
     (scales, posterior, scatter): (&[f64], &Posterior, &Scatter),

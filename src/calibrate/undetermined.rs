@@ -6,7 +6,7 @@ use super::state::State;
 use super::types::{KnownRun, Task, Undetermined};
 use super::unknown::Unknown;
 use crate::estimate::LoadEstimate;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::spd;
 use crate::recovery::{ErrorModel, Readings, estimate};
 use crate::sensitivity::Sensitivity;
@@ -47,7 +47,7 @@ fn known_sums(task: &Task, all: &[Undetermined]) -> String {
     let words: Vec<String> = known.map(|terms| combination(task, terms)).collect();
     match words.is_empty() {
         true => String::new(),
-        false => format!(". Known all the same: {}", words.join("; ")),
+        false => format!(". The runs determine these sums: {}", words.join("; ")),
     }
 }
 
@@ -95,10 +95,10 @@ pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
             "known-from-model-only",
             list.join("; "),
             format!(
-                "no run tells these combinations of loads: {}. They are known from the model only",
+                "no run determines these combinations of loads: {}. They are known from the model only",
                 list.join("; ")
             ),
-            "apply one of these loads by itself, if it matters",
+            "apply one of these loads alone, if it matters",
         )
     } else {
         Finding::new(
@@ -106,11 +106,11 @@ pub(super) fn findings(task: &Task, all: &[Undetermined]) -> Vec<Finding> {
             "calibration-not-determined",
             list.join("; "),
             format!(
-                "the runs do not determine S: no run tells {} from nothing, and there is no model{}",
+                "the runs do not determine S: no run contains information on {}, and there is no model{}",
                 list.join("; "),
                 known_sums(task, all)
             ),
-            "add runs in which these loads act by themselves, give a [model], or drop loads",
+            "add runs in which each of these loads acts alone, give a [model], or drop loads",
         )
     };
     vec![finding.with_numbers(all.len() as f64, 0.0)]
@@ -186,7 +186,7 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
         })
         .collect();
     let why = match shared {
-        true => "; of most runs a sum of loads is known, and few runs say how it is shared",
+        true => "; most runs state a sum of loads, and few runs determine the share of each load",
         false => "",
     };
     let finding = Finding::new(
@@ -196,13 +196,13 @@ pub(super) fn too_wide(task: &Task, state: &State, s: &Sensitivity) -> Option<Fi
             Severity::Warning
         },
         "loads-not-determined",
-        few(&names),
+        list_few(&names),
         format!(
-            "with this S the gauges tell these loads to no better than the half width of a 95 % interval over the largest load: {}{why}{}",
+            "with this S the gauges do not determine these loads. The half width of the 95 % interval in percent of the largest load is: {}{why}{}",
             each.join("; "),
             told_sums(task, &told)
         ),
-        "add runs in which these loads act by themselves, repeats, or gauges where they differ; or use combinations of loads alone",
+        "add runs in which each of these loads acts alone, repeats, or gauges at places where they differ; or use combinations of loads only",
     );
     Some(finding.with_numbers(worst, WIDE))
 }
@@ -228,6 +228,6 @@ fn told_sums(task: &Task, runs: &[&LoadEstimate]) -> String {
         .collect();
     match known.is_empty() {
         true => String::new(),
-        false => format!(". Known all the same: {}", known.join("; ")),
+        false => format!(". The runs determine these sums: {}", known.join("; ")),
     }
 }

@@ -5,7 +5,7 @@ use super::run::refuse;
 use super::voice::{Voice, print};
 use crate::finding::explain::Code;
 use crate::host::output::Output;
-use crate::report::console::wrapped;
+use crate::report::console::wrap_lines;
 use crate::report::reference;
 use crate::workflow;
 use std::path::Path;
@@ -48,14 +48,14 @@ fn entry_lines(c: &Code, width: usize) -> Vec<String> {
     ];
     let field = |(name, text): (&str, &str)| {
         // Names and texts stand in two columns.
-        let lines = wrapped(text, width.saturating_sub(11), 0);
+        let lines = wrap_lines(text, width.saturating_sub(11), 0);
         let at = |(i, line): (usize, String)| match i {
             0 => format!("  {name:<7}  {line}"),
             _ => format!("{}{line}", " ".repeat(11)),
         };
         lines.into_iter().enumerate().map(at).collect::<Vec<_>>()
     };
-    let mut lines = wrapped(&head, width, 2);
+    let mut lines = wrap_lines(&head, width, 2);
     lines.push(String::new());
     lines.extend(fields.into_iter().flat_map(field));
     lines

@@ -34,12 +34,12 @@ fn listed(list: &Path) -> Result<Vec<PathBuf>, Fault> {
         false => std::fs::read_to_string(list).map(|t| text = t),
     };
     read.map_err(|e| {
-        let wrong = format!("the list can't be read ({e})");
+        let wrong = format!("the list cannot be read ({e})");
         Fault::of(
             &*shown,
             "--files",
             wrong,
-            "name a text file with a path a line",
+            "name a text file with one path in each line",
         )
     })?;
     workflow::fleet::records::paths_of_list(&shown, &text)

@@ -12,7 +12,7 @@ use crate::host::output::{Output, left_by_others};
 use crate::host::store::Folder;
 use crate::job::Job;
 use crate::report::command::{
-    RecordFolder, Report, check_folder, console_of, finish, save, unsaved,
+    RecordFolder, Report, check_folder, console_of, finish, result_text, save,
 };
 use crate::report::console::Texts;
 use crate::workflow::check::{Checked, check};
@@ -122,7 +122,7 @@ impl Run {
             let outcome = check(files, cx)?;
             let json = match folder {
                 Some(folder) => save(&outcome, folder)?,
-                None => unsaved(&outcome)?,
+                None => result_text(&outcome)?,
             };
             Ok((outcome, json))
         });
@@ -146,7 +146,7 @@ impl Run {
                     out.write_bytes(outcome.job, outcome.text.as_bytes())?;
                     out.check_spared(&outcome.sources)?;
                     out.rename_all()?;
-                    unsaved(&outcome)?
+                    result_text(&outcome)?
                 }
             };
             Ok((outcome, json))
@@ -169,7 +169,7 @@ impl Run {
             let outcome = ask(cx)?;
             let json = match out {
                 Some(folder) => save(&outcome, folder)?,
-                None => unsaved(&outcome)?,
+                None => result_text(&outcome)?,
             };
             Ok((outcome, json))
         });

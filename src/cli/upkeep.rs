@@ -1,11 +1,11 @@
-//! `verify` and `clean`: what is done to results and kept solutions that stand already.
+//! `verify` and `clean`: work on existing results and stored solutions.
 
 use super::arguments::{CleanArguments, VerifyArguments};
 use super::run::{Run, refuse};
 use super::voice::print;
 use crate::host::fault::{Fault, Faults};
 use crate::host::store::Folder;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::workflow::verify::Made;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -100,14 +100,14 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
     let folder = a.folder.as_ref().map_or_else(Folder::of_user, Folder::at);
     let shown = folder.path().display().to_string();
     let (n, bytes) = folder.size();
-    let solutions = counted(n, "stored solution");
+    let solutions = count_of(n, "stored solution");
     let what = format!("{solutions} in `{shown}`, {:.1} MB", bytes as f64 / 1e6);
     if !a.yes {
         match agrees(&format!("Remove {what}?")) {
             Some(true) => {}
             Some(false) => return print(b"nothing is removed\n"),
             None => {
-                let wrong = format!("{what}: there is no terminal to ask whether to remove them");
+                let wrong = format!("{what}: the command needs a terminal to ask for confirmation");
                 let fault = Fault::of(shown, "clean", wrong, "run the command with `--yes`");
                 return refuse(&fault.into(), &a.common);
             }
@@ -119,7 +119,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             print(format!("{json:#}\n").as_bytes())
         }
         Ok((n, bytes)) => {
-            let solutions = counted(n, "stored solution");
+            let solutions = count_of(n, "stored solution");
             let megabytes = bytes as f64 / 1e6;
             print(format!("{solutions} removed from `{shown}`, {megabytes:.1} MB\n").as_bytes())
         }
@@ -127,7 +127,7 @@ pub(super) fn clean(a: &CleanArguments) -> ExitCode {
             &Fault::of(
                 shown,
                 "clean",
-                format!("can't be removed ({e})"),
+                format!("the file cannot be removed ({e})"),
                 "check the permissions",
             )
             .into(),

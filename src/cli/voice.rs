@@ -5,7 +5,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::Fault;
 use crate::host::outcome::Seconds;
 use crate::report::console::{
-    Console, FindingLines, LINES, Room, Texts, WIDTH, ascii, lay_out, wrapped,
+    Console, FindingLines, LINES, Room, Texts, WIDTH, ascii, lay_out, wrap_lines,
 };
 use serde_json::{Value, json};
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -133,7 +133,7 @@ impl Voice {
     /// Prints a remark on standard error.
     pub fn note(self, text: &str) {
         if self.level != Level::Quiet {
-            let text = text_of(&wrapped(text, self.room.width, 4));
+            let text = text_of(&wrap_lines(text, self.room.width, 4));
             say(&self.shown(text));
         }
     }
@@ -151,7 +151,7 @@ impl Voice {
             |(stage, s): (&String, &Value)| format!("{stage} {:.2} s", s.as_f64().unwrap_or(0.0));
         let list: Vec<String> = stages.iter().map(of).collect();
         let time = format!("time: {}", list.join(", "));
-        say(&text_of(&wrapped(&time, self.room.width, 4)));
+        say(&text_of(&wrap_lines(&time, self.room.width, 4)));
     }
 
     /// Prints faults on standard error; also as JSON on standard output if JSON is asked for.
@@ -234,7 +234,7 @@ fn is_printed(text: &[u8]) -> bool {
         // A closed pipe (`| head`) is no fault of ours.
         Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             say(&format!(
-                "standard output can't be written ({e}): what was printed is not whole\n"
+                "standard output cannot be written ({e}): the printed text is incomplete\n"
             ));
             false
         }

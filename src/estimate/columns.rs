@@ -27,7 +27,7 @@ pub struct Solved {
 }
 
 /// Returns the coefficients that minimise `|A x - target|^2 + sum (x / prior)^2`.
-pub fn solved(columns: &[PriorColumn], target: &[f64]) -> Solved {
+pub fn solve_with_priors(columns: &[PriorColumn], target: &[f64]) -> Solved {
     let n = columns.len();
     let priors: Vec<usize> = (0..n).filter(|&i| columns[i].prior.is_some()).collect();
     let mut all: Vec<Vec<f64>> = columns.iter().map(|c| c.rows.clone()).collect();

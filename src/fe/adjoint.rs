@@ -33,7 +33,7 @@ pub struct StrainTerm {
     pub coefficient: PlaneStrain,
 }
 
-/// Displacements under loads and under the forces that stand for readings.
+/// Displacements under loads and under the adjoint forces of readings.
 #[derive(Debug)]
 pub struct Adjoint<'a> {
     prepared: Prepared<'a>,
@@ -132,7 +132,7 @@ impl<'a> Adjoint<'a> {
     }
 }
 
-/// Returns the forces that stand for a reading: by grid of its shells, the reading per unit of displacement.
+/// Returns the adjoint forces of a reading: by grid of its shells, the reading per unit of displacement.
 pub(super) fn forces_of(
     prepared: &Prepared<'_>,
     terms: &[StrainTerm],

@@ -12,7 +12,7 @@ use crate::model::{GridIx, Load, Model};
 use nastran::cards::Dofs;
 
 /// Returns the largest absolute value in a field.
-pub(super) fn largest(f: &[[f64; 6]]) -> f64 {
+pub(super) fn largest_component(f: &[[f64; 6]]) -> f64 {
     f.iter().flatten().fold(0.0, |a, v| a.max(v.abs()))
 }
 

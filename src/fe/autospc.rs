@@ -1,7 +1,7 @@
 //! Dofs without stiffness at single grids (PARAM,AUTOSPC), and the loads along them.
 
 use super::assembly::{Assembled, Numbering};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::{DMatrix, sparse::BlockMatrix};
 use crate::model::Model;
 use rayon::prelude::*;
@@ -130,7 +130,7 @@ fn named(model: &Model, numbering: &Numbering, start: &[usize], unknowns: &[usiz
             format!("{}/{}", model.grids[g].id, dof + 1)
         })
         .collect();
-    format!("grid/dof {}", few(&names))
+    format!("grid/dof {}", list_few(&names))
 }
 
 /// That directions were held.
@@ -147,10 +147,10 @@ pub(super) fn autospc_finding(
             "autospc",
             named(model, &assembled.numbering, start, &unknowns),
             format!(
-                "{} dofs with no stiffness, or next to none beside the stiffest of their grid, were held (AUTOSPC)",
+                "{} dofs without stiffness, or with nearly none compared with the stiffest dof of their grid, were held (AUTOSPC)",
                 weak.len()
             ),
-            "nothing, if no load is meant to act there",
+            "nothing, if no load acts there",
         )
     })
 }
@@ -202,11 +202,12 @@ pub(super) fn held_loads(
                 named(model, numbering, start, &unknowns)
             ),
             format!(
-                "AUTOSPC holds {} dofs here that carry load: up to {:.1e} of the load goes into them instead of into the structure",
+                "AUTOSPC holds {} dofs with load: up to {:.1e} of the load goes into them instead of into the structure",
                 all.len(),
                 largest
             ),
-            "make what is stiffer by eight powers of ten than the rest a rigid element (RBE2, MPC), or give PARAM,AUTOSPC,NO; connect or hold dofs that nothing holds",
+            "replace parts that are stiffer by eight powers of ten by a rigid element (RBE2, MPC), or give PARAM,AUTOSPC,NO; connect or \
+             hold the free dofs",
         )
         .with_numbers(largest, LOST),
     )

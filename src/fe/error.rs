@@ -96,7 +96,7 @@ pub enum FeError {
         subcase: u32,
         /// Where AUTOSPC holds it: the share of the stiffest direction of the grid that it has less than.
         softer: Option<f64>,
-        /// Where the grid stands.
+        /// Place of the grid in the deck.
         at: Place,
     },
     /// SPCD names a dof that no SPC holds.
@@ -105,7 +105,7 @@ pub enum FeError {
         grid: u32,
         /// 1 to 6.
         dof: u8,
-        /// Where the grid stands.
+        /// Place of the grid in the deck.
         at: Place,
     },
     /// A set that a load case names is not in the deck.
@@ -159,7 +159,7 @@ pub enum FeError {
 }
 
 impl FeError {
-    /// Each fault on its own: where it stands, what it is about, what is wrong, what to do.
+    /// Returns each fault separately: place, subject, fault and remedy.
     pub fn faults(&self) -> Vec<Refusal> {
         let one = |card: String, at: Place, reason: String, remedy: &str| {
             vec![Refusal {
@@ -181,7 +181,7 @@ impl FeError {
                 format!("grid {grid}"),
                 *at,
                 format!("dof {dof} is claimed by: {}", claims.join(", ")),
-                "let one card only make this dof dependent, and do not hold it",
+                "let only one card make this dof dependent, and do not hold it",
             ),
             Self::CircularDependence { grid, dof, at } => one(
                 format!("grid {grid}"),
@@ -216,57 +216,58 @@ impl FeError {
             Self::MissingSet { kind, sid, subcase } => one(
                 format!("{kind} = {sid}"),
                 nowhere,
-                format!("subcase {subcase} names it, but the deck has no such set"),
+                format!("subcase {subcase} names it, but the deck has no set of this number"),
                 "add the set or correct the number",
             ),
             Self::TiedToGround { what } => one(
                 "PARAM,INREL".to_owned(),
                 nowhere,
                 format!("inertia relief needs a free structure, but {what}"),
-                "take the tie away, or solve without inertia relief",
+                "remove the support, or solve without inertia relief",
             ),
             Self::Suport { free_motions, dofs } => one(
                 "SUPORT".to_owned(),
                 nowhere,
                 format!(
-                    "{dofs} dofs for {free_motions} free rigid motions, or dofs that do not hold them all"
+                    "{dofs} dofs for {free_motions} free rigid motions, or dofs that do not hold all of them"
                 ),
                 "name as many dofs as there are rigid motions, able to hold each of them, or use PARAM,INREL,-2",
             ),
             Self::NoMass => one(
                 "model".to_owned(),
                 nowhere,
-                "no mass, so nothing balances the loads of a free structure".to_owned(),
+                "the structure has no mass, so the loads of a free structure cannot be balanced"
+                    .to_owned(),
                 "give the materials a density or add CONM2",
             ),
             Self::NoMassToVibrate => one(
                 "model".to_owned(),
                 nowhere,
-                "no mass, so nothing vibrates".to_owned(),
+                "the structure has no mass, so it has no modes".to_owned(),
                 "give the materials a density or add CONM2",
             ),
             Self::NotANumber { grid, at } => one(
                 format!("grid {grid}"),
                 *at,
                 "the stiffness at this grid is not a number".to_owned(),
-                "look for zero or huge property values of the elements there",
+                "check for zero or huge property values of the elements there",
             ),
             Self::Overflow { subcase, what } => one(
                 format!("subcase {subcase}"),
                 nowhere,
                 format!("its {what} are not numbers, or above 3.4e38"),
-                "look for loads, moduli, thicknesses and areas that are far too large or far too small",
+                "check for loads, moduli, thicknesses and areas that are far too large or far too small",
             ),
             Self::TooLarge { unknowns } => one(
                 "model".to_owned(),
                 nowhere,
                 format!("the factor of {unknowns} unknowns does not fit this machine's memory"),
-                "mesh more coarsely, or solve it on a machine with more memory",
+                "use a coarser mesh, or solve it on a machine with more memory",
             ),
             Self::Empty => one(
                 "model".to_owned(),
                 nowhere,
-                "no element to solve".to_owned(),
+                "there is no element to solve".to_owned(),
                 "add elements",
             ),
             Self::Stopped => one(
@@ -293,9 +294,10 @@ fn load_on_nothing(
         ),
         Some(share) => (
             format!(
-                "subcase {subcase} loads dof {dof}, which has less than {share:e} of the stiffest direction of the grid: AUTOSPC holds it, and the load with it"
+                "subcase {subcase} loads dof {dof}, which has less than {share:e} of the stiffest direction of the grid: AUTOSPC holds it \
+                 with its load"
             ),
-            "make what is so much stiffer a rigid element (RBE2, MPC), give PARAM,AUTOSPC,NO, or move the load",
+            "replace the much stiffer part by a rigid element (RBE2, MPC), give PARAM,AUTOSPC,NO, or move the load",
         ),
     };
     vec![Refusal {
@@ -311,11 +313,11 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
     let (held, remedy) = match support {
         (Some(set), Relief::None) => (
             format!("SPC set {set} holds the structure"),
-            "hold these dofs in the set, connect what hangs there, or name the set that holds it",
+            "hold these dofs in the set, connect the free parts, or name the set that holds them",
         ),
         (Some(set), _) => (
-            format!("SPC set {set} holds the structure, inertia balances what it leaves free"),
-            "hold these dofs in the set, or connect what hangs there",
+            format!("SPC set {set} holds the structure, inertia balances the remaining motions"),
+            "hold these dofs in the set, or connect the free parts",
         ),
         (None, Relief::None) => (
             "no SPC set is selected, nor inertia relief".to_owned(),
@@ -323,7 +325,7 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
         ),
         (None, _) => (
             "no SPC set is selected, inertia balances the structure as a whole".to_owned(),
-            "connect what hangs there, or select the SPC set that holds it",
+            "connect the free parts, or select the SPC set that holds them",
         ),
     };
     let named: Vec<String> = dofs
@@ -340,7 +342,7 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
             .map_or("SPC".to_owned(), |set| format!("SPC {set}")),
         at: Place::default(),
         reason: format!(
-            "{held}, and {motions} left that nothing resists, largest at {}",
+            "{held}, and {motions} without resistance remain, largest at {}",
             few_of(&named, count)
         ),
         remedy: remedy.to_owned(),
@@ -354,7 +356,7 @@ fn mechanism_faults(dofs: &[FreeDof], parts: &[String]) -> Vec<Refusal> {
         .map(|d| Refusal {
             card: format!("grid {}", d.grid),
             at: d.at,
-            reason: format!("dof {} is held by nothing; here hang: {}", d.dof, d.hangs),
+            reason: format!("dof {} is not held; free grids: {}", d.dof, d.hangs),
             remedy: "connect or hold it".to_owned(),
         })
         .collect();

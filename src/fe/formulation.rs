@@ -1,6 +1,6 @@
-//! Where an element stands for another than its card names, or for one of the states that its card allows.
+//! Elements that are solved as another element than their card, or in one of the states that their card allows.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Joint, JointCard, Model, Rigid, RigidKind};
 use nastran::cards::ShellShape;
 
@@ -15,7 +15,7 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
         (
             &[ShellShape::Quad8, ShellShape::Tria6],
             "CQUAD8, CTRIA6",
-            "solved as one quadrilateral a corner around a point in the middle, on the curved surface through the grids",
+            "solved as one quadrilateral at each corner around a point in the middle, on the curved surface through the grids",
         ),
     ];
     let mut all: Vec<Finding> = told
@@ -28,7 +28,7 @@ pub(super) fn formulations(model: &Model) -> Vec<Finding> {
                     "formulation",
                     cards,
                     format!("{n} elements: {what}"),
-                    "nothing for meshes of several elements a side; solve with Nastran where single elements carry the answer",
+                    "nothing for meshes of several elements on a side; solve with Nastran if single elements determine the answer",
                 )
             })
         })
@@ -54,9 +54,10 @@ fn connectors(model: &Model) -> Option<Finding> {
             "formulation",
             "CWELD, CFAST",
             format!(
-                "{n} connectors: six springs at the middle between two points, each following the translations of its patch (by the slopes of its shape functions, or by four auxiliary points)"
+                "{n} connectors are solved as six springs at the middle between two points. Each point follows the translations of its \
+                 patch, by the slopes of its shape functions or by four auxiliary points"
             ),
-            "nothing; a gauge nearer to a connector than a few diameters reads the tie",
+            "nothing; a gauge within a few diameters of a connector reads the local strain of the connection",
         )
     })
 }
@@ -70,12 +71,12 @@ fn halved_diameters(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "connector-halved",
-            format!("CWELD, CFAST {}", few(&ids)),
+            format!("CWELD, CFAST {}", list_few(&ids)),
             format!(
-                "{} connectors are wider than what they stand on: the square of their auxiliary points is that of a diameter halved up to {most} times",
+                "{} connectors are wider than their patch: the square of their auxiliary points has a diameter halved up to {most} times",
                 ids.len()
             ),
-            "give a diameter that lies on the patch, or name more shells; the sheet around is less stiff than the true diameter makes it",
+            "give a diameter within the patch, or name more shells; the sheet around is less stiff than with the true diameter",
         )
         .with_numbers(f64::from(most), 0.0),
     )
@@ -84,7 +85,7 @@ fn halved_diameters(model: &Model) -> Option<Finding> {
 /// Angle between two sheets, degrees, beyond which Nastran makes no connector (default of GSPROJ on SWLDPRM).
 const GSPROJ_DEG: f64 = 20.0;
 
-/// Connectors between sheets that stand at an angle to each other.
+/// Connectors between sheets at an angle to each other.
 fn connectors_at_an_angle(model: &Model) -> Option<Finding> {
     let tilted = model
         .joints
@@ -96,12 +97,12 @@ fn connectors_at_an_angle(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "connector-angle",
-            format!("CWELD, CFAST {}", few(&ids)),
+            format!("CWELD, CFAST {}", list_few(&ids)),
             format!(
                 "{} connectors join sheets at up to {largest:.0} degrees to each other; Nastran makes none beyond {GSPROJ_DEG:.0} (GSPROJ of SWLDPRM)",
                 ids.len()
             ),
-            "check which shells or properties they name: a connector belongs between sheets that lie on each other",
+            "check the shells or properties of these connectors: a connector joins sheets that overlap",
         )
         .with_numbers(largest, GSPROJ_DEG),
     )
@@ -116,9 +117,9 @@ fn warping_beams(model: &Model) -> Option<Finding> {
             "formulation",
             "CBEAM",
             format!(
-                "{n} beams twist with warping (Vlasov); their strain at C, D, E, F is that of axial force and bending, without the bimoment's"
+                "{n} beams twist with warping (Vlasov); their strain at C, D, E, F is the strain of axial force and bending, without the bimoment"
             ),
-            "model the rail by shells where a gauge sits on the edge of a flange near a restraint of its warping",
+            "model the rail by shells if a gauge is on the edge of a flange near a restraint of its warping",
         )
     })
 }
@@ -131,12 +132,12 @@ fn idle_warping_points(model: &Model) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "formulation",
-            format!("CBEAM {}", few(&ids)),
+            format!("CBEAM {}", list_few(&ids)),
             format!(
                 "{} beams state SA and SB, and their property has no warping constant: they twist without warping (Saint-Venant)",
                 ids.len()
             ),
-            "give CW(A) and CW(B) on PBEAM where warping matters",
+            "give CW(A) and CW(B) on PBEAM if warping matters",
         )
     })
 }
@@ -172,7 +173,7 @@ fn gaps(model: &Model) -> Option<Finding> {
     let n = closed.len() + open.len();
     (n > 0).then(|| {
         let preload = if preloaded > 0 {
-            format!("; the preload of {preloaded} strains nothing in a linear solution")
+            format!("; the preload of {preloaded} has no effect in a linear solution")
         } else {
             String::new()
         };
@@ -180,9 +181,10 @@ fn gaps(model: &Model) -> Option<Finding> {
             String::new()
         } else {
             format!(
-                "; the forces of {} ({}) are not along the line between their grids (KT across it, or KA along a CID off it), and the moment of the two is balanced by nothing",
+                "; the forces of {} ({}) are not along the line between their grids, and their moment is not balanced. KT acts across this \
+                 line, KA along a CID off the line",
                 unbalanced.len(),
-                few(&unbalanced)
+                list_few(&unbalanced)
             )
         };
         Finding::new(
@@ -190,13 +192,14 @@ fn gaps(model: &Model) -> Option<Finding> {
             "gap-linear",
             "CGAP",
             format!(
-                "{n} gaps stay as their initial opening has them under every load: {} closed ({}), {} open ({}){preload}{friction}",
+                "{n} gaps remain in their initial state under every load: {} closed ({}), {} open ({}){preload}{friction}",
                 closed.len(),
-                few(&closed),
+                list_few(&closed),
                 open.len(),
-                few(&open),
+                list_few(&open),
             ),
-            "check that each stays so under the loads of the job: a closed one must be in compression; else solve with Nastran, nonlinear",
+            "check that each gap remains in this state under the loads of the job: a closed one must be in compression; else solve with \
+             Nastran, nonlinear",
         )
         .with_numbers(n as f64, 0.0)
     })
@@ -213,7 +216,7 @@ fn bushes_in_the_basic_frame(model: &Model) -> Option<Finding> {
     of_bushes(
         &ids,
         "bush-frame-assumed",
-        "join coincident grids, or a grid and ground, without CID, and their stiffness differs by direction: the basic frame is taken",
+        "join coincident grids, or a grid and ground, without CID, and their stiffness differs by direction: the basic frame is used",
         "state CID (0 for the basic frame)",
     )
 }
@@ -229,8 +232,8 @@ fn ground_of_rigid_bushes(model: &Model) -> Option<Finding> {
     of_bushes(
         &ids,
         "bush-reaction-missing",
-        "hold their grid rigidly to ground in directions that are not those of its displacement frame: their force is not among the reactions",
-        "give the grid a CD along the bush's axes, or a stiff spring for RIGID, where reactions matter",
+        "hold their grid rigidly to ground in directions other than its displacement frame: their force is not among the reactions",
+        "give the grid a CD along the axes of the bush, or a stiff spring instead of RIGID, if reactions matter",
     )
 }
 
@@ -251,7 +254,7 @@ fn of_bushes(ids: &[u32], code: &'static str, what: &str, remedy: &'static str) 
         Finding::new(
             Severity::Warning,
             code,
-            format!("CBUSH {}", few(ids)),
+            format!("CBUSH {}", list_few(ids)),
             format!("{} bushes {what}", ids.len()),
             remedy,
         )

@@ -7,7 +7,7 @@ use super::constraint::{Reduction, State, reduce};
 use super::grid_frames::{grid_axes, to_local};
 use super::ground::{Ground, anchors, grounds, to_anchors};
 use super::rigid_motion::rigid;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::linalg::{DMatrix, DVector, Matrix6, Vector6};
 use crate::model::{ElementRef, GridIx, Mat3, Model, Vec3};
 use std::ops::Range;
@@ -16,7 +16,7 @@ use std::ops::Range;
 const FREE_MOTION: f64 = 1e-10;
 
 /// Grids that belong to the structure: of an element, or tied to it.
-pub(super) fn touched(model: &Model, reduction: &Reduction) -> Vec<bool> {
+pub(super) fn find_structure_grids(model: &Model, reduction: &Reduction) -> Vec<bool> {
     let mut touched = vec![false; model.grids.len()];
     for element in model.elements() {
         for g in model.element_grids(element) {
@@ -83,7 +83,7 @@ impl RigidStructure<'_> {
         resisted
     }
 
-    /// Adds the rows of springs to ground, and to grids that stand for ground.
+    /// Adds the rows of springs to ground, and to grids that represent ground.
     fn add_springs(&self, resisted: &mut Matrix6<f64>) {
         for ground in self.springs() {
             match ground {
@@ -104,7 +104,7 @@ impl RigidStructure<'_> {
         }
     }
 
-    /// Returns springs and bushes to ground, and to grids that stand for ground.
+    /// Returns springs and bushes to ground, and to grids that represent ground.
     fn springs(&self) -> Vec<Ground> {
         let mut all = grounds(self.model, self.reduction);
         all.extend(to_anchors(self.model, self.reduction));
@@ -212,7 +212,7 @@ pub(super) struct HeldMotions {
 fn with_structure<T>(model: &Model, with: impl FnOnce(&RigidStructure<'_>) -> T) -> Option<T> {
     let axes = grid_axes(model);
     let reduction = reduce(model, &axes, (None, model.mpc, &[])).ok()?;
-    let mut touched = touched(model, &reduction);
+    let mut touched = find_structure_grids(model, &reduction);
     let (mut low, mut high) = (Vec3::repeat(f64::INFINITY), Vec3::repeat(f64::NEG_INFINITY));
     for (t, g) in touched.iter_mut().zip(&model.grids) {
         *t &= !g.is_scalar();
@@ -272,5 +272,5 @@ pub(crate) fn springs_in_words(model: &Model) -> String {
             model.element_id(element)
         )
     });
-    few(&named.collect::<Vec<_>>())
+    list_few(&named.collect::<Vec<_>>())
 }

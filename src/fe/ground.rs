@@ -76,7 +76,7 @@ pub(super) fn grounds(model: &Model, reduction: &Reduction) -> Vec<Ground> {
     all
 }
 
-/// Held grids that springs and bushes alone join to the structure: they stand for ground, and are no part of what moves.
+/// Held grids that springs and bushes alone join to the structure: they represent ground and are not part of the moving structure.
 pub(super) fn anchors(model: &Model, reduction: &Reduction) -> Vec<bool> {
     if model.springs.is_empty() && model.bushes.is_empty() {
         return vec![false; model.grids.len()];

@@ -1,6 +1,6 @@
 //! Degrees of freedom that a support holds and that also follow others.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, Rigid};
 use std::collections::BTreeMap;
 
@@ -51,11 +51,11 @@ pub fn held_dependents(model: &Model, spc: Option<u32>, mpc: Option<u32>) -> Opt
             "contradicting-spc",
             format!("SPC {}", spc.unwrap_or_default()),
             format!(
-                "{} degrees of freedom are held and dependent at once ({}): no solver solves such a set",
+                "{} degrees of freedom are held and dependent at once ({}): no solver accepts this set",
                 both.len(),
-                few(&named)
+                list_few(&named)
             ),
-            "take them out of the support, or out of the dependent list of the rigid element or equation",
+            "remove them from the support, or from the dependent list of the rigid element or equation",
         )
         .with_numbers(both.len() as f64, 0.0)
     })

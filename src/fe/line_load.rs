@@ -19,7 +19,7 @@ pub(crate) struct Between<'a> {
 }
 
 /// A PLOAD1 without anything else; empty for other loads.
-pub(crate) fn alone(load: &Load) -> Interior {
+pub(crate) fn as_line_load(load: &Load) -> Interior {
     Interior {
         loads: along(load, 1.0).into_iter().map(|l| l.1).collect(),
         ..Interior::default()

@@ -107,7 +107,7 @@ fn add(
             }
         }
         Load::Line { beam, .. } => {
-            let interior = super::line_load::alone(load);
+            let interior = super::line_load::as_line_load(load);
             for (g, v) in beam_end_forces(model, beam.us(), &interior)? {
                 f[g.us()]
                     .iter_mut()

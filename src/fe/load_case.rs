@@ -66,7 +66,7 @@ pub(super) fn has_suport1(model: &Model, set: u32) -> bool {
 
 /// Returns what acts in a subcase of a deck: its LOAD and TEMPERATURE(LOAD).
 ///
-/// TEMPERATURE without an option stands for both; it loads, and thermal strain counts from TREF.
+/// TEMPERATURE without an option means both; it loads, and thermal strain counts from TREF.
 fn loads_of_subcase(s: &Subcase) -> Vec<UnitLoad> {
     let temperature = s.temperature_load.map(|set| UnitLoad::Temperature {
         set,

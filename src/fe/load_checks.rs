@@ -55,7 +55,7 @@ pub(super) fn nothing_acts(
         ),
         false => (
             "nothing acts in this load case: displacement and strain are zero",
-            "give the case a load, or leave it out",
+            "give the case a load, or delete it",
         ),
     };
     Some(Finding::new(
@@ -177,11 +177,12 @@ pub(super) fn load_into_support(
             "load-into-support",
             format!("subcase {}", case.subcase),
             format!(
-                "{:.0} % of the load goes straight into the support at grid {id}, dof {}: this part strains nothing, so gauges cannot measure it",
+                "{:.0} % of the load goes straight into the support at grid {id}, dof {}: this share strains no element, and gauges cannot \
+                 measure it",
                 100.0 * share.min(1.0),
                 dof + 1
             ),
-            "move the load or the support; a real support gives way (a spring CELAS or CBUSH), an SPC doesn't",
+            "move the load or the support; a real support is elastic (a spring CELAS or CBUSH), an SPC is not",
         )
         .with_numbers(share, 0.0),
     )

@@ -9,7 +9,7 @@ use super::prepared::Prepared;
 use super::strain_of_cases::with_strain;
 use super::system::System;
 use super::{Solution, SolveReport, Solved};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::sparse::Factor;
 use crate::model::{Model, Vec3};
 use crate::stop::Stop;
@@ -241,7 +241,7 @@ fn fewer_than_wanted(found: usize, wanted: usize) -> Option<Finding> {
             "fewer-modes",
             "modes",
             format!("the structure has {found} elastic modes with mass, {wanted} were asked for"),
-            "ask for fewer, or give the parts that should vibrate mass",
+            "ask for fewer, or give mass to the parts that should vibrate",
         )
         .with_numbers(found as f64, wanted as f64)
     })
@@ -257,8 +257,8 @@ fn not_converged(pairs: &[Pair]) -> Option<Finding> {
             Severity::Warning,
             "modes-not-converged",
             "modes",
-            "the iteration ended before the last modes had settled: their frequencies are certain to the number stated alone",
-            "ask for fewer modes, or for more than are needed and leave the last ones",
+            "the iteration ended before the last modes had converged: only their frequencies are accurate, to the stated number",
+            "ask for fewer modes, or for more than needed, and ignore the last ones",
         )
         .with_numbers(worst, ALONE.frequency)
     })
@@ -274,9 +274,9 @@ fn close_modes(pairs: &[Pair]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "close-modes",
-            format!("modes {}", few(&close)),
-            "these frequencies coincide: each shape is one of many of the same frequency",
-            "compare the space that they span, not one shape with one shape",
+            format!("modes {}", list_few(&close)),
+            "these frequencies coincide: each shape is one of many with this frequency",
+            "compare the space of these shapes, not single shapes",
         )
         .with_numbers(close.len() as f64, 0.0)
     })

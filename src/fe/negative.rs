@@ -13,15 +13,17 @@ pub(super) fn negative_springs(model: &Model) -> Vec<Refusal> {
         let lowest = b.k.iter().fold(f64::INFINITY, |a, k| a.min(*k));
         (format!("CBUSH {}", b.id), b.at, lowest)
     });
-    let refusal = |(card, at, k): (String, Place, f64)| Refusal {
+    let refusal = |(card, at, k): (String, Place, f64)| {
+        Refusal {
         card,
         at,
         reason: format!(
-            "its stiffness is {k}, and the structure around it does not outweigh that: it is in no stable balance"
+            "its stiffness is {k}, and the structure around it is less stiff: the equilibrium is unstable"
         ),
         remedy:
-            "give it a stiffness above 0, or hold the structure so that what remains is positive"
+            "give it a stiffness above 0, or hold the structure so that the total stiffness is positive"
                 .to_owned(),
+    }
     };
     springs
         .chain(bushes)

@@ -8,7 +8,7 @@ use super::hanging::hanging;
 use super::mass::resultant;
 use super::prepared::Prepared;
 use super::system::System;
-use super::unbalanced::{Left, unbalanced};
+use super::unbalanced::{Left, check_balance};
 use crate::finding::Finding;
 use crate::model::{ElementRef, Model, Vec3};
 use rayon::prelude::*;
@@ -93,11 +93,11 @@ pub(super) fn reactions(
         }
         let origin = Vec3::zeros();
         let (acts, held) = (without_points(model, f), without_points(model, &held));
-        let largest = super::applied::largest(&held);
+        let largest = super::applied::largest_component(&held);
         let (mut applied, total) = (resultant(&x, &acts, &origin), resultant(&x, &held, &origin));
         arriving.add(f, &mut applied);
         let left = Left::of(&x, &acts, &held, &applied, &total);
-        let finding = unbalanced(prepared, &elements, (subcase, mpc), &left, u)?;
+        let finding = check_balance(prepared, &elements, (subcase, mpc), &left, u)?;
         let reactions = Reactions {
             subcase,
             applied,
@@ -144,7 +144,7 @@ impl Arriving {
     }
 }
 
-/// A field without what stands at scalar points: a bimoment there is no force.
+/// A field without the values of scalar points: a bimoment there is no force.
 fn without_points(model: &Model, field: &[[f64; 6]]) -> Vec<[f64; 6]> {
     let pairs = model.grids.iter().zip(field);
     pairs

@@ -1,7 +1,7 @@
 //! Elements whose shape makes their strain doubtful: inverted solids, re-entrant and folded quadrilaterals.
 
 use super::element::solid::is_inverted;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, Shell, Vec3};
 
 /// Distance of the corners from the mean plane over the mean diagonal above which a quadrilateral counts as folded: the default limit of
@@ -36,21 +36,21 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
         (
             inverted,
             "inverted-solid",
-            "are numbered as their mirror image (turned inside out); they are solved as the same body with the order put right",
+            "are numbered as their mirror image (turned inside out); they are solved with the order corrected",
             "renumber their grids so that the first face turns towards the others",
             None,
         ),
         (
             re_entrant,
             "re-entrant-quad",
-            "have an inner angle of 180 degrees or more: their strain means nothing",
+            "have an inner angle of 180 degrees or more: their strain is not valid",
             "split each into triangles, or move its corner",
             None,
         ),
         (
             folded,
             "folded-quad",
-            "are folded out of their plane: corners are off the mean plane by more than a twentieth of the diagonal",
+            "are folded out of their plane: corners are more than a twentieth of the diagonal from the mean plane",
             "split each into two triangles, and put no gauge there",
             Some((worst, FOLDED)),
         ),
@@ -61,7 +61,7 @@ pub fn check_shapes(model: &Model) -> Vec<Finding> {
             let finding = Finding::new(
                 Severity::Warning,
                 code,
-                format!("elements {}", few(&ids)),
+                format!("elements {}", list_few(&ids)),
                 format!("{} elements {what}", ids.len()),
                 remedy,
             );

@@ -1,6 +1,6 @@
 //! Linear statics: load cases in, strain fields out.
 
-use super::applied::{applied_forces, check_sets, enforced_of, largest};
+use super::applied::{applied_forces, check_sets, enforced_of, largest_component};
 use super::error::FeError;
 use super::formulation::formulations;
 use super::load_case::{LoadCase, Relief};
@@ -18,7 +18,7 @@ use super::strain_of_cases::with_strain;
 use super::support::{Support, contradictions};
 use super::system::System;
 use super::{Solution, UnitLoad};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::sparse::TreeWork;
 use crate::model::Model;
 use rayon::prelude::*;
@@ -302,8 +302,8 @@ fn nothing_free(cases: &[&LoadCase]) -> Finding {
     Finding::new(
         Severity::Warning,
         "every-dof-held",
-        format!("subcases {}", few(&ids)),
-        "supports hold every degree of freedom, so that loads strain nothing",
+        format!("subcases {}", list_few(&ids)),
+        "supports hold every degree of freedom, so that loads cause no strain",
         "hold the structure only where its supports are",
     )
 }
@@ -314,8 +314,10 @@ fn inaccurate(subcase: u32, epsilon: f64) -> Option<Finding> {
             Severity::Warning,
             "inaccurate-solution",
             format!("subcase {subcase}"),
-            "after a step of iterative refinement the equations are not satisfied to six digits: stiffnesses of very different size meet, or the structure is a long chain of elements",
-            "look for springs or bars that are many orders stiffer than what they join, and make them rigid elements; of a part a hundred times as long as wide, coarsen the mesh along it",
+            "after a step of iterative refinement the equations are not satisfied to six digits: stiffnesses of very different size are \
+             connected, or the structure is a long chain of elements",
+            "check for springs or bars that are many orders stiffer than the connected parts, and make them rigid elements; of a part a \
+             hundred times as long as wide, coarsen the mesh along it",
         )
         .with_numbers(epsilon, INACCURATE_ABOVE)
     })
@@ -355,14 +357,14 @@ pub(super) fn acting(
     let mut balance = None;
     if let Some(body) = body {
         check_free_points(model, &system.reduction, case.subcase, &f)?;
-        let before = largest(&f);
+        let before = largest_component(&f);
         balance = Some(body.balance(case.subcase, mass, &mut f));
-        if largest(&f) <= 1e-9 * before && before > 0.0 {
+        if largest_component(&f) <= 1e-9 * before && before > 0.0 {
             findings.push(Finding::new(
                 Severity::Warning,
                 "load-is-inertia-only",
                 format!("subcase {}", case.subcase),
-                "the loads only accelerate the free structure as a rigid body (gravity, say): its strain is zero",
+                "the loads only accelerate the free structure as a rigid body, as gravity does: its strain is zero",
                 "hold the structure by an SPC set, or apply the forces that carry the weight",
             ));
         }

@@ -3,7 +3,7 @@
 use super::UnitLoad;
 use super::free_motions::{held_motions, springs_in_words};
 use super::load_case::{LoadCase, Relief, unit_cases};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::Model;
 
 /// Which support is wanted.
@@ -93,7 +93,7 @@ impl Support {
         match (self.spc, self.relief, self.by_springs) {
             (Some(set), Relief::None, _) => format!("held by SPC set {set}"),
             (Some(set), _, _) => {
-                format!("held by SPC set {set}, inertia relief along what it leaves free")
+                format!("held by SPC set {set}, inertia relief along the free motions")
             }
             (None, Relief::None, 0) => "held by the constraints of its grids".to_owned(),
             (None, Relief::None, _) => "held by springs to ground".to_owned(),
@@ -175,8 +175,8 @@ pub fn relief_finding(model: &Model, support: Support, wanted: SupportChoice) ->
                 Severity::Warning,
                 "inertia-relief-assumed",
                 "model",
-                format!("{held} and PARAM,INREL is not given: inertia balances the loads along the motions that nothing resists (Nastran would stop at a mechanism)"),
-                "give PARAM,INREL,-2 if that is meant, or select the SPC set that holds the structure",
+                format!("{held} and PARAM,INREL is not given: inertia balances the loads along the free motions (Nastran would stop at a mechanism)"),
+                "give PARAM,INREL,-2 if this is intended, or select the SPC set that holds the structure",
             )
         });
     }
@@ -194,7 +194,7 @@ pub fn relief_finding(model: &Model, support: Support, wanted: SupportChoice) ->
                 "inertia relief is stated, and springs to ground ({by}) resist {} of 6: {balanced}",
                 rigid_motions(n)
             ),
-            "remove the springs to ground if the structure is free; leave PARAM,INREL, SUPORT and support = \"free\" out if the springs hold it",
+            "remove the springs to ground if the structure is free; delete PARAM,INREL, SUPORT and support = \"free\" if the springs hold it",
         )
         .with_numbers(n as f64, 0.0)
     })
@@ -256,11 +256,11 @@ pub fn contradictions(model: &Model, spc: Option<u32>) -> Option<Finding> {
             "contradicting-spc",
             format!("SPC {}", spc.unwrap_or_default()),
             format!(
-                "the set holds {} dofs at two different values ({}): the answer is that of one of them",
+                "the set holds {} dofs at two different values ({}): the answer uses one of them",
                 twice.len(),
-                few(&named)
+                list_few(&named)
             ),
-            "let one card only give each of these dofs its value",
+            "let only one card give each of these dofs its value",
         )
         .with_numbers(twice.len() as f64, 0.0)
     })

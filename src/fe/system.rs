@@ -1,11 +1,11 @@
 //! The constrained stiffness of a model, ready to be factored: what statics and free modes share.
 
-use super::applied::largest;
+use super::applied::largest_component;
 use super::assembly::{Assembled, Numbering, assemble};
 use super::autospc::{EPZERO, Weak, autospc_finding, held_loads, load_sizes, weak_unknowns};
 use super::constraint::{Reduction, Sets, State, reduce};
 use super::error::{FeError, FreeDof};
-use super::free_motions::touched;
+use super::free_motions::find_structure_grids;
 use super::grid_frames::{to_basic, to_local};
 use super::load_case::Relief;
 use super::mass::Mass;
@@ -318,7 +318,7 @@ impl System {
             softer,
             at: model.grids[g].at,
         };
-        let limit = 1e-9 * largest(f);
+        let limit = 1e-9 * largest_component(f);
         // What rigid elements and averages hand on counts where it arrives.
         let mut arrives = f.to_vec();
         for (f, axes) in arrives.iter_mut().zip(axes) {
@@ -378,7 +378,7 @@ fn body(
     if relief == Relief::None {
         return Ok(None);
     }
-    let touched = touched(prepared.model, reduction);
+    let touched = find_structure_grids(prepared.model, reduction);
     RigidBody::new(prepared.model, &prepared.axes, mass, reduction, &touched)
 }
 
@@ -392,7 +392,7 @@ fn relief_without_motion(spc: Option<u32>) -> Finding {
         format!(
             "PARAM,INREL,-2 is stated, and {held} leaves no rigid motion free: inertia balances no load, and the supports take all of it"
         ),
-        "leave PARAM,INREL out if the structure is held, or select no SPC set if it is free",
+        "delete PARAM,INREL if the structure is held, or select no SPC set if it is free",
     )
 }
 
@@ -446,7 +446,7 @@ fn ties(prepared: &Prepared<'_>, assembled: &Assembled, body: &RigidBody) -> Opt
             "tied-to-ground",
             format!("grid {}", prepared.model.grids[grid].id),
             format!("a rigid motion of the structure is resisted here (dof {}), and no support or spring to ground is the cause: strain depends on it", dof + 1),
-            "look for springs between grids that don't coincide, or MPC equations that forbid rigid motion",
+            "check for springs between grids that do not coincide, or MPC equations that forbid rigid motion",
         )
         .with_numbers(worst.0, limit)
     })

@@ -55,7 +55,7 @@ impl Left {
 ///
 /// # Errors
 /// Elements that can't be formed.
-pub(super) fn unbalanced(
+pub(super) fn check_balance(
     prepared: &Prepared<'_>,
     elements: &[ElementRef],
     (subcase, mpc): (u32, bool),
@@ -81,7 +81,7 @@ pub(super) fn unbalanced(
         true => (
             Severity::Error,
             "the reactions do not balance the loads: a part of them is lost in the solution, and displacement and strain are wrong".to_owned(),
-            "look for stiffnesses that differ by many powers of ten (make the stiffest rigid elements)",
+            "check for stiffnesses that differ by many powers of ten (make the stiffest rigid elements)",
         ),
         false => (
             Severity::Warning,
@@ -89,7 +89,7 @@ pub(super) fn unbalanced(
                 "the supports do not balance the loads alone: {} can hold the structure to ground as well, and their force is not among the reactions",
                 holds.join(", ")
             ),
-            "join springs to coincident grids in one direction, and check that the equations allow every rigid motion, where they are not meant as supports",
+            "join springs to coincident grids in one direction, and check that the equations allow every rigid motion, if they are not supports",
         ),
     };
     Ok(Some(

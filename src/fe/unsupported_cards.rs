@@ -42,7 +42,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
                 refuse(
                     format!("PCOMP {}", p.id),
                     p.at,
-                    "LAM is none of blank, SYM, MEM, BEND, SMEAR",
+                    "LAM must be blank, SYM, MEM, BEND or SMEAR",
                     ELSEWHERE,
                 );
             }
@@ -83,7 +83,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
         refuse(
             format!("{}{id}", c.card),
             c.at,
-            "the built-in solver does not support it, and it acts on the answer",
+            "the built-in solver does not support it, and it affects the answer",
             "delete it if it does not matter here, or solve with Nastran and name its results in the job",
         );
     }
@@ -103,7 +103,7 @@ pub(crate) fn unsupported_cards(model: &Model, cases: &[LoadCase]) -> Vec<Refusa
                     format!("{card} {sid}"),
                     *at,
                     "the built-in solver does not support it",
-                    "give means and gradients alone, or solve with Nastran",
+                    "give only means and gradients, or solve with Nastran",
                 );
             }
             for set in model.load_sets.iter().filter(|s| s.sid == *sid) {

@@ -1,6 +1,6 @@
 //! Descriptions of the elements at a grid, for messages.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::model::{ElementRef, GridIx, Model};
 
 /// Returns the names of the elements with a grid.
@@ -25,7 +25,7 @@ pub(super) fn what_hangs(model: &Model, grid: GridIx) -> String {
     all.retain(|name| seen.insert(name.clone()));
     match all.is_empty() {
         true => "no element".to_owned(),
-        false => few(&all),
+        false => list_few(&all),
     }
 }
 

@@ -7,7 +7,7 @@ const TEXT: usize = 4000;
 
 /// The text with what is longer than a name or a message cut in its middle: a file may hold a name of a megabyte, and a message that
 /// repeats it is read by nobody.
-pub fn bounded(text: impl Into<String>) -> String {
+pub fn shorten_names(text: impl Into<String>) -> String {
     let text = text.into();
     if text.len() <= NAME {
         return text;
@@ -42,15 +42,15 @@ mod tests {
     #[test]
     fn a_name_of_a_megabyte_is_shown_by_its_ends_and_what_people_write_is_left_as_it_is() {
         let said = "`strain.csv`: columns that belong to no gauge are left out: P1, P2, [µm/m] äöü";
-        assert_eq!(bounded(said.repeat(3)), said.repeat(3));
+        assert_eq!(shorten_names(said.repeat(3)), said.repeat(3));
         let name = format!("a{}z", "µ".repeat(1_000_000));
-        let said = bounded(format!("no column `{name}` in `strain.csv`: rename it"));
+        let said = shorten_names(format!("no column `{name}` in `strain.csv`: rename it"));
         assert!(said.chars().count() < 250, "{said}");
         assert!(
             said.starts_with("no column `aµ") && said.ends_with("µz` in `strain.csv`: rename it")
         );
         let many: Vec<String> = (0..300_000).map(|i| format!("`c{i}`")).collect();
-        let said = bounded(many.join(", "));
+        let said = shorten_names(many.join(", "));
         assert!(
             said.chars().count() <= TEXT && said.ends_with("`c299999`"),
             "{said}"

@@ -126,7 +126,7 @@ pub(super) fn on_beam(
     })
 }
 
-/// Returns a warning for a gauge at a recovery point that is on the neutral axis, as one is whose coordinates the property does not state.
+/// Returns a warning for a gauge at a recovery point on the neutral axis. A point whose coordinates the property does not state is on it.
 pub(super) fn point_on_axis(model: &Model, spec: &GaugeSpec, seat: BeamSeat) -> Option<Finding> {
     let beam = model.beams.get(seat.beam.us())?;
     let property = model.beam_properties.get(beam.property.us())?;

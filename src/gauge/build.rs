@@ -3,7 +3,7 @@
 use super::arms::Gauge;
 use super::beam::{BeamSeat, on_beam, point_on_axis};
 use super::error::GaugeError;
-use super::grid::{Seat, Site, laid_onto, rotated};
+use super::grid::{Seat, Site, laid_onto, rotate_about};
 use super::grid_average::POINTS;
 use super::spec::{CornerRows, GaugePlace, GaugeSpec};
 use super::surface::{Foot, centre, from_skins, nearest_skin, to_side};
@@ -151,7 +151,7 @@ pub(super) fn build_by(
     let mut gauges = Vec::new();
     let mut past_edge = 0.0_f64;
     for (name, turn) in legs {
-        let axis = rotated(axis, z, turn);
+        let axis = rotate_about(axis, z, turn);
         let direction_in = axes * axis;
         let laid = site.lay(here, axis, z)?;
         past_edge = past_edge.max(laid.past_edge);
@@ -220,7 +220,7 @@ fn found(
             "gauge-off-structure",
             &spec.name,
             format!(
-                "gauge `{}` is stated {:.4} from the nearest shell, element {element}, which is farther than that is wide",
+                "gauge `{}` is stated {:.4} from the nearest shell, element {element}, which is more than the width of the element",
                 spec.name, f.distance
             ),
             "check the unit of the position, its coordinate system and the origin of the deck",
@@ -254,7 +254,7 @@ fn axis_on(axes: &Mat3, spec: &GaugeSpec) -> Option<Vec3> {
         Some(d) => laid_onto(d, z)?,
         None => axes.row(0).transpose(),
     };
-    Some(rotated(start, z, spec.angle_rad))
+    Some(rotate_about(start, z, spec.angle_rad))
 }
 
 /// An axis has no sense: its angle in (-pi/2, pi/2].

@@ -5,7 +5,7 @@ use std::fmt;
 /// Why a gauge can't be laid onto the model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GaugeError {
-    /// The direction stands on the surface.
+    /// The direction is normal to the surface.
     NormalDirection {
         /// Name.
         gauge: String,
@@ -57,7 +57,7 @@ impl GaugeError {
         match self {
             Self::NormalDirection { gauge, element } => (
                 format!("gauge `{gauge}`: its direction is normal to element {element}"),
-                "give a direction that lies along the surface",
+                "give a direction along the surface",
             ),
             Self::NoArea { gauge, element } => (
                 format!("gauge `{gauge}`: element {element} has no area"),

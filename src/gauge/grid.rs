@@ -27,7 +27,7 @@ pub(super) fn laid_onto(d: Vec3, z: Vec3) -> Option<Vec3> {
 }
 
 /// `d`, normal to `z`, turned right-handed about `z`.
-pub(super) fn rotated(d: Vec3, z: Vec3, angle: f64) -> Vec3 {
+pub(super) fn rotate_about(d: Vec3, z: Vec3, angle: f64) -> Vec3 {
     d * angle.cos() + z.cross(&d) * angle.sin()
 }
 
@@ -82,7 +82,7 @@ impl Site<'_> {
 
     /// Returns the grids of the wiring.
     fn grids(&self, here: Seat, axis: Vec3, z: Vec3) -> Result<Vec<Grid>, GaugeError> {
-        let diagonal = |sign: f64| rotated(axis, z, sign * std::f64::consts::FRAC_PI_4);
+        let diagonal = |sign: f64| rotate_about(axis, z, sign * std::f64::consts::FRAC_PI_4);
         let along = |weight: f64| vec![(axis, weight)];
         let across = || vec![(diagonal(1.0), 1.0), (diagonal(-1.0), -1.0)];
         let (first, second) = match self.spec.bridge {
@@ -262,7 +262,7 @@ impl Site<'_> {
     }
 }
 
-/// Whether a point stands for itself or belongs to a grid of some length.
+/// Whether a point is a gauge without length or belongs to a grid of some length.
 #[derive(Clone, Copy, PartialEq)]
 enum Reach {
     Point,

@@ -27,7 +27,7 @@ pub use build::build;
 pub use error::GaugeError;
 pub use glued::{Drawn, Offset};
 pub use grid_average::SMOOTH;
-pub use moved::moved;
+pub use moved::strain_gradient_gauge;
 pub use off_skin::off_skin;
 pub use on_refined::{change_by_refining, on_refined};
 pub use side::{away_from, opposite};

@@ -2,7 +2,7 @@
 
 use super::arms::{Arm, Gauge, Spot};
 use super::grid_average::about_centre;
-use super::on_refined::turned;
+use super::on_refined::transfer_coefficients;
 use super::side::same_side;
 use super::surface::centre;
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
@@ -11,7 +11,7 @@ use crate::model::{Model, Vec3};
 /// Returns a gauge that reads the change of `gauge` per unit of length (of the deck) if all its arms move along `direction` (basic frame,
 /// projected onto each arm's shell). It is the gradient that fits the neighbours of the shell best. `None` for arms on bars, at corners of shells,
 /// and on shells without neighbours in that direction.
-pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
+pub fn strain_gradient_gauge(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
     let mut arms = Vec::new();
     for arm in &gauge.arms {
         let Spot::Shell {
@@ -40,7 +40,7 @@ pub fn moved(gauge: &Gauge, model: &Model, direction: Vec3) -> Option<Gauge> {
                     surface: same_side(model, (shell, surface), ix)?,
                     place: ShellPlace::Centre,
                 },
-                coefficient: turned(
+                coefficient: transfer_coefficients(
                     model,
                     (shell, ShellPlace::Centre),
                     model,

@@ -2,7 +2,7 @@
 
 use super::arms::{Gauge, Spot};
 use super::surface::to_side;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::{Model, ShellKind};
 use crate::units::number;
 
@@ -38,16 +38,15 @@ pub fn off_skin(model: &Model, gauges: &[Gauge]) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "fibre-off-skin",
-            few(&names),
+            list_few(&names),
             format!(
-                "gauge `{name}` on the {} of element {element} reads the strain at {field} = {}, and the skin is at {} from the middle surface \
-                 (units of the deck). The bending strain differs from the strain of the skin. Gauges concerned: {}",
+                "gauge `{name}` on the {} of element {element} reads the strain at {field} = {}. The skin is at {} from the middle surface (units of the deck), and has another bending strain. Gauges concerned: {}",
                 surface.word(),
                 number(read),
                 number(skin),
                 names.len()
             ),
-            "leave Z1 and Z2 of the PSHELL out, so that strain is taken on the skins",
+            "delete Z1 and Z2 of the PSHELL, so that strain is taken on the skins",
         )
         .with_numbers(read, skin),
     )

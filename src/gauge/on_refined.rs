@@ -22,7 +22,7 @@ pub fn on_refined(gauge: &Gauge, coarse: &Model, fine: &RefinedModel) -> Option<
             continue;
         };
         for (part, weight) in parts_at(fine, shell, place)? {
-            let coefficient = turned(
+            let coefficient = transfer_coefficients(
                 coarse,
                 (shell, place),
                 &fine.model,
@@ -116,7 +116,8 @@ fn strain_on_parts(
         for (c, sum) in out.iter_mut().enumerate() {
             let mut unit = [0.0; 3];
             unit[c] = 1.0;
-            let row = turned(coarse, (shell, place), &fine.model, (part, place), unit)?;
+            let row =
+                transfer_coefficients(coarse, (shell, place), &fine.model, (part, place), unit)?;
             *sum += weight * row.iter().zip(strain).map(|(a, e)| a * e).sum::<f64>();
         }
     }
@@ -139,7 +140,7 @@ fn unchanged(field: &BeamField) -> BeamField {
 /// Coefficients of exx, eyy, gxy (engineering shear) in the output frame of `to` that take the same strain in the same direction as
 /// `coefficient` does in that of `from`; the shells are taken as level with each other. With t the angle of the old x axis from the new
 /// one: exx = c^2 Exx + s^2 Eyy + s c Gxy and so on.
-pub(super) fn turned(
+pub(super) fn transfer_coefficients(
     from_model: &Model,
     from: (ShellIx, ShellPlace),
     to_model: &Model,

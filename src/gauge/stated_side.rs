@@ -39,13 +39,14 @@ impl BetweenSkins {
         }
     }
 
-    /// Whether the point is about as far from one skin as from the other, or on different sides of the flat shell and of the curved surface.
+    /// Whether the side of the point is ambiguous: it is equally far from both skins, or on different sides of the flat shell and of the curved
+    /// surface.
     pub fn is_undecided(&self) -> bool {
         let [bottom, top] = self.distance;
         (bottom - top).abs() < UNDECIDED * self.thickness || self.is_within_bulge()
     }
 
-    /// Whether the point is on one side of the flat shell and, within what a drawing leaves open, on the other side of the curved surface.
+    /// Whether the point is on one side of the flat shell and, within the tolerance of a drawing, on the other side of the curved surface.
     pub fn is_within_bulge(&self) -> bool {
         let open = 0.5 * UNDECIDED * self.thickness;
         let over = self.height - self.bulge;

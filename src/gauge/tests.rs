@@ -523,7 +523,7 @@ fn a_moved_gauge_reads_the_slope_of_a_linear_field_along_the_way_it_moves() {
     };
     let (gauges, _) = build(&m, &spec, CornerRows::Absent).unwrap();
     for (way, expected) in [(Vec3::x(), 0.03), (Vec3::y(), -0.02), (-Vec3::x(), -0.03)] {
-        let change = reading(&moved(&gauges[0], &m, way).unwrap(), &case).unwrap();
+        let change = reading(&strain_gradient_gauge(&gauges[0], &m, way).unwrap(), &case).unwrap();
         assert!((change - E[0] * expected).abs() < 1e-12, "{way}: {change}");
     }
 }

@@ -1,6 +1,6 @@
 //! Bad input: what is wrong, where, and what to do about it.
 
-use crate::finding::{bounded, few};
+use crate::finding::{Finding, list_few, shorten_names};
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
@@ -48,9 +48,9 @@ impl Fault {
         Self {
             file: file.into(),
             line,
-            field: bounded(field),
-            wrong: bounded(wrong),
-            remedy: bounded(remedy),
+            field: shorten_names(field),
+            wrong: shorten_names(wrong),
+            remedy: shorten_names(remedy),
         }
     }
 
@@ -64,10 +64,20 @@ impl Fault {
         Self {
             file: file.into(),
             line: None,
-            field: bounded(field),
-            wrong: bounded(wrong),
-            remedy: bounded(remedy),
+            field: shorten_names(field),
+            wrong: shorten_names(wrong),
+            remedy: shorten_names(remedy),
         }
+    }
+
+    /// Creates a fault of a whole file from a finding that stops the command.
+    pub fn from_finding(
+        file: impl Into<String>,
+        field: impl Into<String>,
+        finding: &Finding,
+    ) -> Self {
+        let remedy = finding.remedy.trim_end_matches('.');
+        Self::of(file, field, finding.clause(), remedy)
     }
 }
 
@@ -164,11 +174,11 @@ fn fold_alike(list: FaultList) -> FaultList {
                 continue;
             }
             let others: Vec<String> = lines.iter().skip(1).map(u32::to_string).collect();
-            fault.wrong = bounded(format!(
+            fault.wrong = shorten_names(format!(
                 "{}; {} more faults of this kind, in lines {}",
                 fault.wrong,
                 others.len(),
-                few(&others)
+                list_few(&others)
             ));
         }
         out.push(fault);

@@ -346,7 +346,7 @@ pub(crate) fn why_unreadable(e: &std::io::Error) -> (String, &'static str) {
             "it is larger than the free memory".to_owned(),
             "divide the file, or use a larger machine",
         ),
-        _ => (format!("can't be read ({e})"), "check the path"),
+        _ => (format!("it cannot be read ({e})"), "check the path"),
     }
 }
 

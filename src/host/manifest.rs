@@ -63,7 +63,7 @@ impl Manifest {
         found.map(|e| e.0.as_str())
     }
 
-    /// The files of every other command. What a command writes before its answer stands under its name, a blank and a word.
+    /// The files of every other command. Files that a command writes before its answer have its name, a blank and a word as key.
     pub(crate) fn of_others(&self, command: &str) -> BTreeMap<&str, Vec<&str>> {
         let of_other = |by: &str| by.split(' ').next() != Some(command);
         let mut out: BTreeMap<&str, Vec<&str>> = BTreeMap::new();

@@ -1,7 +1,7 @@
 //! Outcome of a command: the answer of its type, with units, inputs, findings and seconds. `result.json` is its serialised form.
 
-use super::words::counted;
-use crate::finding::{Finding, Severity, few, worst};
+use super::words::count_of;
+use crate::finding::{Finding, Severity, list_few, worst_severity};
 use crate::host::fault::Fault;
 use crate::host::files::Input;
 use crate::units::{ReportUnits, UnitSystem};
@@ -102,17 +102,17 @@ impl<A: Answer> Outcome<A> {
         match (count(Severity::Error), count(Severity::Warning)) {
             _ if faults > 0 => format!(
                 "The input has {}: nothing can be computed from it before {} corrected.",
-                counted(faults, "fault"),
+                count_of(faults, "fault"),
                 if faults == 1 { "it is" } else { "they are" }
             ),
             (0, 0) => self.answer.verdict(),
             (0, n) => format!(
                 "{} The result is usable, with {}.",
                 self.answer.verdict(),
-                counted(n, "warning")
+                count_of(n, "warning")
             ),
             _ => format!(
-                "{} cannot be relied on: {}.",
+                "{} is not reliable: {}.",
                 A::RESULT,
                 reasons(&self.findings)
             ),
@@ -137,7 +137,7 @@ fn reasons(findings: &[Finding]) -> String {
     }
     let reason = |(code, subjects): &(&str, Vec<&str>)| {
         let words = code.replace('-', " ");
-        let subjects = few(subjects);
+        let subjects = list_few(subjects);
         match subjects.chars().count() <= ROOM {
             true => format!("{words} ({subjects})"),
             false => words,
@@ -157,7 +157,7 @@ pub struct Findings(pub Vec<Finding>);
 impl Findings {
     /// Returns the worst severity; `None` without findings.
     pub fn worst(&self) -> Option<Severity> {
-        worst(&self.0)
+        worst_severity(&self.0)
     }
 }
 
@@ -335,7 +335,7 @@ mod tests {
         );
         assert_eq!(
             said,
-            "The answer cannot be relied on: gauge silent (P1, P2); loads not separable."
+            "The answer is not reliable: gauge silent (P1, P2); loads not separable."
         );
         let refused = summary(2, &[(error, "gauge-silent", "P1")]);
         assert!(refused.starts_with("The input has 2 faults"), "{refused}");

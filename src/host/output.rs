@@ -1,6 +1,6 @@
 //! Writing: files appear under their names only when all of them are complete, and never in place of a file that no command wrote.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::sha256_hex;
 use crate::host::half_written;
@@ -160,8 +160,8 @@ impl Output {
         self.write(name, |w| w.write_all(bytes))
     }
 
-    /// Refuses names under which other bytes stand that the answer came from (written over, they would give another answer the next time),
-    /// or that no command wrote into the folder (written over, they would be lost).
+    /// Refuses names of files that are inputs of the answer, or that no command wrote into the folder. Overwriting them would change the next answer
+    /// or lose data.
     ///
     /// # Errors
     /// A fault for each.
@@ -185,7 +185,7 @@ impl Output {
         Faults::check(self.pending.iter().filter_map(fault).collect())
     }
 
-    /// Refuses a folder in which files stand under `names` that no command wrote there: asked before anything is computed.
+    /// Refuses a folder that contains files of `names` that no command wrote. The check precedes all computation.
     ///
     /// # Errors
     /// A fault for each.
@@ -272,7 +272,7 @@ impl Output {
         names.map(|n| n.to_string_lossy().into_owned()).collect()
     }
 
-    /// Writes the list of the folder, to be renamed before the files that it lists: none of ours ever stands there unlisted.
+    /// Writes the list of the folder, to be renamed before the files that it lists: the list contains every file of the program.
     fn list_first(&mut self, written: &mut Manifest) -> Result<(), Fault> {
         let digest = |(part, target): &(PathBuf, PathBuf)| {
             let name = target.file_name()?.to_string_lossy().into_owned();
@@ -313,7 +313,7 @@ pub fn left_by_others(folder: &Path, command: &str) -> Option<String> {
     let of = |(by, names): (&str, Vec<&str>)| {
         let stands = |n: &&str| folder.join(n).is_file();
         let names: Vec<&str> = names.into_iter().filter(stands).collect();
-        (!names.is_empty()).then(|| format!("`{by}` ({})", few(&names)))
+        (!names.is_empty()).then(|| format!("`{by}` ({})", list_few(&names)))
     };
     let list: Vec<String> = written
         .of_others(command)
@@ -387,7 +387,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
     size(a) == size(b) && matches!((load(a), load(b)), (Ok(a), Ok(b)) if *a == *b)
 }
 
-/// The files as the system knows them, links followed; those that stand in no folder (in memory) are left out.
+/// The files as the system knows them, links followed; files in memory are left out.
 fn stored(paths: &[PathBuf]) -> BTreeSet<PathBuf> {
     let known = paths.iter().map(std::fs::canonicalize);
     known.filter_map(Result::ok).collect()
@@ -408,10 +408,10 @@ fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
         Some(WriteError::Id(_)) => {
             "renumber the grid or element in the deck: its id must be below 214748365"
         }
-        Some(WriteError::Unsupported { .. }) => "leave these elements out of the deck",
+        Some(WriteError::Unsupported { .. }) => "delete these elements from the deck",
         _ => "choose another folder with `--out`",
     };
-    let wrong = format!("can't be written ({e})");
+    let wrong = format!("the file cannot be written ({e})");
     Fault::of(path.display().to_string(), "output", wrong, remedy)
 }
 

@@ -10,7 +10,7 @@ const MOST_UNPACKED: u64 = 1 << 30;
 #[cfg(feature = "xlsx")]
 const MOST_TEXT: usize = 256 << 20;
 
-/// Rows and columns of a sheet. An address beyond them is damaged: one of many digits wraps in the reader of cells, and would stand elsewhere.
+/// Rows and columns of a sheet. An address beyond them is damaged: an address of many digits wraps in the reader of cells and would change its place.
 #[cfg(feature = "xlsx")]
 const MOST_CELLS: (u32, u32) = (1 << 20, 1 << 14);
 
@@ -31,7 +31,7 @@ pub(crate) fn csv_of_sheet(bytes: &[u8]) -> Result<String, String> {
     if unpacked > MOST_UNPACKED {
         return Err(format!("a spreadsheet of {} MB, unpacked", unpacked >> 20));
     }
-    let fail = |e: XlsxError| format!("a spreadsheet that can't be read ({e})");
+    let fail = |e: XlsxError| format!("a spreadsheet that cannot be read ({e})");
     let mut book = Xlsx::new(std::io::Cursor::new(bytes)).map_err(fail)?;
     let names = book.sheet_names();
     let first = names.first().ok_or("a spreadsheet without a sheet")?;
@@ -100,7 +100,7 @@ fn moment(cell: &calamine::ExcelDateTime) -> String {
 /// Returns the error that this build can't read a spreadsheet.
 #[cfg(not(feature = "xlsx"))]
 pub(crate) fn csv_of_sheet(_: &[u8]) -> Result<String, String> {
-    Err("a spreadsheet, which this build can't read (feature `xlsx`)".to_owned())
+    Err("a spreadsheet, which this build cannot read (feature `xlsx`)".to_owned())
 }
 
 /// CSV text as its cells come.

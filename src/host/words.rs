@@ -1,20 +1,21 @@
 //! Findings in plain words.
 
 use crate::finding::Finding;
+pub use crate::finding::capital;
 use crate::finding::explain::code;
 
 /// One finding as one line: file and line where they are known, severity, code, subject, sentence, numbers, remedy.
 pub fn finding_text(f: &Finding) -> String {
-    let (place, message) = placed(&f.message);
+    let (place, message) = split_place(&f.message);
     let numbers = numbers_in_words(f).map_or_else(String::new, |words| format!(" ({words})"));
     let remedy = if f.remedy.is_empty() {
         String::new()
     } else {
-        format!(". Remedy: {}", f.remedy)
+        format!(" Remedy: {}", f.remedy)
     };
     let (word, message) = (f.severity.word(), message.trim_end_matches('.'));
     let line = format!(
-        "{place}{word} [{}] {}: {message}{numbers}{remedy}",
+        "{place}{word} [{}] {}: {message}{numbers}.{remedy}",
         f.code, f.subject
     );
     line.replace('\n', " ")
@@ -36,16 +37,8 @@ pub fn numbers_in_words(f: &Finding) -> Option<String> {
     Some(of(&of(words, "m", measured), "l", limit?))
 }
 
-/// Returns a text with a capital first letter.
-pub fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
-}
-
 /// The place that a message begins with, as `file:line: `, and what follows; editors go there.
-fn placed(message: &str) -> (String, &str) {
+fn split_place(message: &str) -> (String, &str) {
     let place = || {
         let (file, rest) = message.strip_prefix('`')?.split_once("` line ")?;
         let (line, rest) = rest.split_once(": ")?;
@@ -56,7 +49,7 @@ fn placed(message: &str) -> (String, &str) {
 }
 
 /// Returns a number with what it counts, in the plural where it is not 1.
-pub fn counted(n: usize, what: &str) -> String {
+pub fn count_of(n: usize, what: &str) -> String {
     match (n, what.strip_suffix('y')) {
         (1, _) => format!("1 {what}"),
         (_, Some(stem)) => format!("{n} {stem}ies"),
@@ -99,7 +92,7 @@ mod tests {
             message,
             "join it",
         );
-        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element. Remedy: join it";
+        let line = "a b.bdf:12: note [grid-unattached] a b.bdf: GRID 7 belongs to no element. Remedy: Join it.";
         // The message has these numbers.
         assert_eq!(finding_text(&f.with_numbers(2.0, 1.0)), line);
         let weak = Finding::new(
@@ -109,7 +102,7 @@ mod tests {
             "hard to separate",
             "",
         );
-        let line = "warning [loads-weakly-separable] A, B: hard to separate (scaled condition number 116.4, limit 50)";
+        let line = "warning [loads-weakly-separable] A, B: Hard to separate (scaled condition number 116.4, limit 50).";
         assert_eq!(finding_text(&weak.with_numbers(116.44, 50.0)), line);
         let share = Finding::new(Severity::Warning, "not-rigid", "a", "not rigid", "");
         let words = numbers_in_words(&share.with_numbers(0.2, 0.15)).unwrap();
@@ -118,6 +111,6 @@ mod tests {
             "share that no rigid motion explains 20 %, limit 15 %"
         );
         let f = Finding::new(Severity::Error, "gauge-dead", "P1", "two\nlines.", "");
-        assert_eq!(finding_text(&f), "error [gauge-dead] P1: two lines");
+        assert_eq!(finding_text(&f), "error [gauge-dead] P1: Two lines.");
     }
 }

@@ -59,7 +59,7 @@ impl<'a> Work<'a> {
     /// One fault where whoever hears of progress stops the work.
     pub fn go_on(&self) -> Result<(), Faults> {
         if self.cx.progress.is_cancelled() {
-            return Err(stopped().into());
+            return Err(cancelled_fault().into());
         }
         Ok(())
     }
@@ -88,6 +88,6 @@ impl<'a> Work<'a> {
 }
 
 /// Returns the fault of a command that the receiver of progress stopped.
-pub fn stopped() -> Fault {
+pub fn cancelled_fault() -> Fault {
     Fault::of("work", "progress", "stopped", "ask again")
 }

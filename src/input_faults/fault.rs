@@ -145,10 +145,10 @@ impl InputFault {
     pub fn clause(&self, names: &[String]) -> String {
         let name = |g: usize| names.get(g).map_or("", String::as_str);
         match *self {
-            Self::Sign(Channels::One(g)) => format!("gauge `{}` has the opposite sign", name(g)),
-            Self::Sign(Channels::All) => "all readings have the opposite sign".to_owned(),
+            Self::Sign(Channels::One(g)) => format!("gauge `{}` has reversed sign", name(g)),
+            Self::Sign(Channels::All) => "all readings have reversed sign".to_owned(),
             Self::Unit(g, factor) => format!(
-                "gauge `{}` reads {} times the strain, as in another unit",
+                "gauge `{}` reads {} times the strain, as with another unit",
                 name(g),
                 number(factor)
             ),
@@ -162,8 +162,8 @@ impl InputFault {
                 name(g),
                 number(offset / MICROSTRAIN)
             ),
-            Self::Dead(g) => format!("gauge `{}` reads nothing", name(g)),
-            Self::Stuck(g) => format!("gauge `{}` gives one reading in all runs", name(g)),
+            Self::Dead(g) => format!("gauge `{}` has no signal", name(g)),
+            Self::Stuck(g) => format!("gauge `{}` has a constant reading in all runs", name(g)),
             Self::Exchanged(a, b) => {
                 format!(
                     "gauges `{}` and `{}` have each other's readings",
@@ -172,11 +172,11 @@ impl InputFault {
                 )
             }
             Self::OtherSide(Channels::One(g)) => format!(
-                "gauge `{}` is on the other surface than its table states",
+                "gauge `{}` is on the opposite surface to its table",
                 name(g)
             ),
             Self::OtherSide(Channels::All) => {
-                "all gauges are on the other surface than their table states".to_owned()
+                "all gauges are on the opposite surface to their table".to_owned()
             }
             Self::Radians(Channels::One(g)) => {
                 format!("the stated angle of gauge `{}` is in radians", name(g))
@@ -205,18 +205,18 @@ impl InputFault {
                 line(g, format!("gain = {}", number(factor)))
             ),
             Self::Gain(g, gain) => format!(
-                "check gauge factor, bridge factor, position and direction; state a known gain: {}, or leave the gauge out: ignore = true",
+                "check gauge factor, bridge factor, position and direction; state a known gain: {}, or exclude the gauge: ignore = true",
                 line(g, format!("gain = {}", number(gain)))
             ),
             Self::Offset(g, offset) => format!(
-                "check the zero of the gauge; state a known offset: {}, or leave the gauge out: ignore = true",
+                "check the zero of the gauge; state a known offset: {}, or exclude the gauge: ignore = true",
                 line(
                     g,
                     format!("offset_microstrain = {}", number(offset / MICROSTRAIN))
                 )
             ),
             Self::Dead(g) | Self::Stuck(g) => format!(
-                "check wiring and channel, or leave the gauge out: {}",
+                "check wiring and channel, or exclude the gauge: {}",
                 line(g, "ignore = true".to_owned())
             ),
             Self::Exchanged(a, b) => {
@@ -230,7 +230,7 @@ impl InputFault {
             }
             Self::Radians(_) => "state `angle_deg` in degrees".to_owned(),
             Self::Unlike(g) => format!(
-                "check its position, direction, bridge factor and wiring, or leave it out: {}",
+                "check its position, direction, bridge factor and wiring, or exclude it: {}",
                 line(g, "ignore = true".to_owned())
             ),
         }
@@ -282,7 +282,7 @@ impl Found {
             (self.fault, self.sizes)
         {
             message += &format!(
-                " ({} microstrain) where the others expect {} microstrain",
+                " ({} microstrain), and {} microstrain is predicted from the other gauges",
                 number(reads / MICROSTRAIN),
                 number(expected / MICROSTRAIN)
             );
@@ -292,7 +292,7 @@ impl Found {
                 "without it"
             }
             (_, false) => "with this corrected",
-            (_, true) => "with all faults found corrected",
+            (_, true) => "with all identified faults corrected",
         };
         message += &format!(
             ": {how}, the residual sum of squares falls to {} % of its value",
@@ -303,17 +303,17 @@ impl Found {
         }
         if let Some(ratio) = self.moves.filter(|r| *r > 1.0 && !left_out) {
             message += &format!(
-                "; it moves a load by {} times the half width of its interval",
+                "; the fault changes a load by {} times the half width of its interval",
                 number(ratio)
             );
         }
         if left_out {
-            message += ". It is left out here";
+            message += ". The gauge is excluded here";
         }
         if !self.alternatives.is_empty() {
             let each = self.alternatives.iter().map(|a| a.clause(names));
             message += &format!(
-                ". The readings allow as well: {}",
+                ". Alternative explanations: {}",
                 each.collect::<Vec<_>>().join("; ")
             );
         }

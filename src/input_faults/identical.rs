@@ -1,6 +1,6 @@
 //! Columns of a table that are the same to the last digit: one is a copy.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use std::collections::HashMap;
 
 /// Different readings of two equal columns at least: fewer are the same by chance where numbers are rounded.
@@ -44,10 +44,11 @@ pub fn identical_readings(gauges: &[String], columns: &[Vec<f64>]) -> Option<Fin
         Finding::new(
             Severity::Warning,
             "columns-identical",
-            few(&names),
-            "These gauges have the same readings in every row, to the last digit. Two gauges never agree so far. One column is a copy, and its reading counts twice",
+            list_few(&names),
+            "these gauges have the same readings in every row, to the last digit. Two gauges never agree so far. One column is a copy, and \
+             its reading counts twice",
             format!(
-                "look the channels up in the logger's files. To leave a copy out: [[correction]] gauge = \"{}\", ignore = true",
+                "check the channels in the logger\'s files. To exclude a copy: [[correction]] gauge = \"{}\", ignore = true",
                 gauges[copy]
             ),
         )

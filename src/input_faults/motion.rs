@@ -1,10 +1,10 @@
 //! Channels of a vehicle record with the opposite sign, in another unit, or under each other's name.
 //!
-//! Three kinds of evidence are used in this order: gravity in the means of accelerometers, motion that the equations of the vehicle explain
-//! only once a channel is corrected, and the masses that the equations give.
+//! Three kinds of evidence are used in this order: gravity in the means of accelerometers, motion that the equations of the vehicle explain only with
+//! a corrected channel, and the masses from the equations.
 
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::{Quantity, STANDARD_GRAVITY_M_S2, find_unit, number};
 use rayon::prelude::*;
 
@@ -94,7 +94,7 @@ pub struct MotionChannel<'a> {
     pub scatter: f64,
 }
 
-/// The channel that stands for another one, and the factor on its samples.
+/// The channel that replaces another one, and the factor on its samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChannelSource {
     /// Number of the channel whose samples are used.
@@ -169,12 +169,12 @@ impl MotionFault {
     fn subject(&self, channels: &[MotionChannel]) -> String {
         let own = self.channels();
         match (self, kind_of_all(own, channels)) {
-            (Self::Exchanged(_), _) | (_, None) => few(&names(own, channels)),
+            (Self::Exchanged(_), _) | (_, None) => list_few(&names(own, channels)),
             _ => "all".to_owned(),
         }
     }
 
-    /// Describes it: "`f_wheel` has the opposite sign".
+    /// Describes it: "`f_wheel` has reversed sign".
     fn describe(&self, channels: &[MotionChannel]) -> String {
         let own = self.channels();
         let quoted: Vec<String> = names(own, channels)
@@ -183,14 +183,11 @@ impl MotionFault {
             .collect();
         let (who, many) = match kind_of_all(own, channels) {
             Some(kind) => (format!("all {}", kind.plural()), true),
-            None => (few(&quoted), own.len() > 1),
+            None => (list_few(&quoted), own.len() > 1),
         };
         match self {
             Self::Sign(_) => {
-                format!(
-                    "{who} {} the opposite sign",
-                    if many { "have" } else { "has" }
-                )
+                format!("{who} {} reversed sign", if many { "have" } else { "has" })
             }
             Self::Unit(_, unit, _) => {
                 let read = own.first().map_or("", |c| channels[*c].unit.as_str());
@@ -393,7 +390,7 @@ pub fn finding_of_motion(record: &MotionRecord) -> Option<Finding> {
         ),
     };
     let message = format!(
-        "{}: the model leaves {} % of the motion unexplained as recorded, and {} % with that corrected.{others}",
+        "{}: the model leaves {} % of the motion unexplained as recorded, and {} % with the correction.{others}",
         found.fault.describe(&record.channels),
         percent(found.before),
         percent(found.after)

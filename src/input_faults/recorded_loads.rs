@@ -1,7 +1,7 @@
 //! Recorded loads of static runs compared with the strain that the model makes of them.
 
 use crate::estimate::weighted_median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::precision::Precision;
 use crate::linalg::spd;
 use crate::units::{Quantity, number};
@@ -320,21 +320,21 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
     let is_all = |n: usize| n > 1 && n == n_acting;
     let subject = |list: &[(usize, f64)]| match is_all(list.len()) {
         true => "all".to_owned(),
-        false => few(&list.iter().map(|(l, _)| name(*l)).collect::<Vec<_>>()),
+        false => list_few(&list.iter().map(|(l, _)| name(*l)).collect::<Vec<_>>()),
     };
     let factors = |list: &[(usize, f64)]| {
         let each = list
             .iter()
             .map(|(l, c)| format!("{} {}", name(*l), number(*c)));
-        few(&each.collect::<Vec<_>>())
+        list_few(&each.collect::<Vec<_>>())
     };
     match fault {
         RecordFault::Sign(list) => {
             let what = match is_all(list.len()) {
                 true => {
-                    "all recorded loads or all readings have the opposite sign, or all gauges are on the other surface"
+                    "all recorded loads or all readings have reversed sign, or all gauges are on the opposite surface"
                 }
-                false => "these recorded loads have the opposite sign",
+                false => "these recorded loads have reversed sign",
             };
             Finding::new(
                 Severity::Error,
@@ -344,7 +344,8 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
                     "the readings are about -1 times the strain that the model predicts from {file} (factors: {}): {what}",
                     factors(list)
                 ),
-                "correct the sign of these columns of the runs file (ISO and SAE axes differ in Y and Z), or write a [[correction]] with sign = -1 for each gauge",
+                "correct the sign of these columns of the runs file, or write a [[correction]] with sign = -1 for each gauge. ISO and SAE \
+                 axes differ in Y and Z",
             )
             .with_numbers(list.first().map_or(-1.0, |l| l.1), SIGN)
         }
@@ -377,10 +378,10 @@ fn finding(runs: &RecordedRuns, file: &str, fault: &RecordFault) -> Finding {
             Finding::new(
                 Severity::Error,
                 "inputs-exchanged",
-                few(&names),
+                list_few(&names),
                 format!(
                     "the recorded loads {} are exchanged in {file}: with the columns exchanged back, {} % of the squared difference between readings and model remains",
-                    few(&words),
+                    list_few(&words),
                     number(100.0 * left)
                 ),
                 "exchange the names of these columns of the runs file, or state them in [runs] columns",

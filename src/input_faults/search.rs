@@ -376,8 +376,7 @@ fn pairs_of(inputs: &Inputs, fit: &Fitted, g: usize) -> Vec<[f64; 2]> {
     pairs.filter(|p| p.iter().all(|v| v.is_finite())).collect()
 }
 
-/// Returns the median size of a gauge's readings and of the predictions, in the last half of the runs, where a gauge that failed on the way has
-/// failed.
+/// Returns the median size of a gauge's readings and of the predictions, in the last half of the runs, which shows gauges that failed in between.
 fn sizes_of(inputs: &Inputs, fit: &Fitted, g: usize) -> [f64; 2] {
     let pairs = pairs_of(inputs, fit, g);
     let last = &pairs[pairs.len() / 2..];

@@ -3,7 +3,7 @@
 use super::readings::readings_of;
 use super::suggest;
 use super::types::{Job, StrainCorrection};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
 
 /// Correction that converts the readings of a channel to strain.
@@ -140,14 +140,14 @@ pub fn check_channels(job: &Job, known: &[String], place: &str) -> Result<(), Fa
 }
 
 /// Returns a note that names the corrections of the job; `None` without any.
-pub fn noted(job: &Job) -> Option<Finding> {
+pub fn report_corrections(job: &Job) -> Option<Finding> {
     let stated = job.corrections.iter().filter(|c| !c.of_rosette);
     let names: Vec<&str> = stated.map(|c| c.gauge.as_str()).collect();
     (!names.is_empty()).then(|| {
         Finding::new(
             Severity::Info,
             "corrections-applied",
-            few(&names),
+            list_few(&names),
             "readings and angles of these gauges are corrected as [[correction]] states",
             "",
         )

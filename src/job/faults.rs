@@ -154,7 +154,7 @@ impl<'a> Collector<'a> {
         match value.as_ref().map(|v| (v, *v.value())) {
             Some((v, x)) if percent(x) => {
                 let wrong = format!("`{x}` is {} %, expected {EXPECTED}", short(100.0 * x));
-                let remedy = format!("was percent meant? Write {} for {x} %", short(x / 100.0));
+                let remedy = format!("if percent was meant, write {} for {x} %", short(x / 100.0));
                 self.fault(v, key, wrong, remedy);
                 None
             }

@@ -180,7 +180,7 @@ impl GaugeColumns {
             return;
         }
         let remedy = "write its components in the columns `dir_x`, `dir_y`, `dir_z`";
-        let wrong = "a direction in one column can't be read";
+        let wrong = "a direction in one column cannot be read";
         faults.push(Fault::at(&*t.file, 1, "direction", wrong, remedy));
     }
 }
@@ -352,9 +352,9 @@ fn scale_of(
                 let remedy = match measures {
                     Length => format!("write one of {}", unit_names(Quantity::Length).join(", ")),
                     Angle => "write deg, rad or mrad".to_owned(),
-                    Nothing => "leave the unit out".to_owned(),
+                    Nothing => "delete the unit".to_owned(),
                 };
-                fault(format!("`{unit}` can't be the unit of `{name}`"), remedy)
+                fault(format!("`{unit}` is not a unit of `{name}`"), remedy)
             }
         },
     }

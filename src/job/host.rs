@@ -1,7 +1,7 @@
 //! Files of a job, read with the line that names them, and its folder of kept solutions.
 
 use super::{Job, NamedFile};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::{FileBytes, Inputs, as_table, no_text, unreadable};
@@ -42,7 +42,7 @@ impl Inputs<'_> {
             return faults;
         }
         let others: Vec<String> = others.iter().map(|n| format!("`{n}`")).collect();
-        let others = few(&others);
+        let others = list_few(&others);
         let mut list = faults.into_list();
         for fault in list.iter_mut().filter(|f| f.file == named.given) {
             fault.wrong +=

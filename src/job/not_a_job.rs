@@ -19,7 +19,7 @@ pub(super) fn check_name(given: &str) -> Result<(), Fault> {
     }
 }
 
-/// Refuses decks by what stands in them.
+/// Refuses decks by their contents.
 ///
 /// # Errors
 /// A fault that names `init`.

@@ -3,7 +3,7 @@
 use super::shapes::PropertyIds;
 use super::suggest;
 use super::types::Job;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 
 impl PropertyIds {
@@ -27,7 +27,7 @@ impl PropertyIds {
                 )),
                 several => {
                     wrong.push((
-                        format!("properties {} are all called `{name}`", few(several)),
+                        format!("properties {} are all called `{name}`", list_few(several)),
                         "state the ids that are meant".to_owned(),
                     ));
                 }
@@ -44,7 +44,7 @@ fn ids_called(named: &[(u32, String)], is_meant: impl Fn(&str) -> bool) -> Vec<u
 
 fn unknown_remedy(name: &str, named: &[(u32, String)]) -> String {
     match named.is_empty() {
-        true => "state ids: the deck gives its properties no names".to_owned(),
+        true => "state ids: the deck has no names of properties".to_owned(),
         false => suggest::remedy(name, named.iter().map(|n| n.1.as_str())),
     }
 }

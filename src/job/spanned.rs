@@ -5,13 +5,13 @@ use serde::Deserialize;
 use std::borrow::{Borrow, Cow};
 use std::ops::Range;
 
-/// A value and where it stands.
+/// A value and its place in the file.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 #[serde(transparent)]
 pub(super) struct Spanned<T>(toml::Spanned<T>);
 
 impl<T> Spanned<T> {
-    /// A value that stands at `span`.
+    /// Creates a value at `span`.
     pub(super) fn new(span: Range<usize>, value: T) -> Self {
         Self(toml::Spanned::new(span, value))
     }

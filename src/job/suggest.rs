@@ -1,6 +1,6 @@
 //! The closest of a list of names, for messages about misspelt ones.
 
-use crate::finding::few;
+use crate::finding::list_few;
 
 /// Characters of a word that may be misspelt; what is longer is no word.
 const WORD: usize = 200;
@@ -82,7 +82,7 @@ pub fn column_remedy(gauges: &[&str], columns: &[&str]) -> String {
         .collect();
     format!(
         "name the columns after the gauges: did you mean {}?",
-        few(&list)
+        list_few(&list)
     )
 }
 

@@ -1,7 +1,7 @@
 //! A CSV file with the line of every row.
 
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::series::cell::unguarded;
+use crate::series::cell::remove_guard;
 use crate::series::number::{DecimalMark, number};
 use crate::units::{Quantity, largest_size, number as in_words};
 use std::collections::HashMap;
@@ -60,7 +60,7 @@ pub fn each_part(
         .from_reader(text.as_bytes());
     let mut faults = FaultList::new();
     let header: Vec<String> = match reader.headers() {
-        Ok(h) => h.iter().map(|s| unguarded(s).to_owned()).collect(),
+        Ok(h) => h.iter().map(|s| remove_guard(s).to_owned()).collect(),
         Err(e) => {
             return Err(Faults::from(Fault::of(
                 file,
@@ -89,7 +89,11 @@ pub fn each_part(
                     continue;
                 }
                 if r.len() != part.header.len() {
-                    let wrong = format!("{} fields, the header has {}", r.len(), part.header.len());
+                    let wrong = format!(
+                        "the row has {} fields, the header has {}",
+                        r.len(),
+                        part.header.len()
+                    );
                     faults.push(Fault::at(
                         file,
                         line,
@@ -109,7 +113,9 @@ pub fn each_part(
                 }
                 part.rows.push((
                     line,
-                    r.iter().map(|s| with_point(unguarded(s), mark)).collect(),
+                    r.iter()
+                        .map(|s| with_point(remove_guard(s), mark))
+                        .collect(),
                 ));
             }
             Err(e) => faults.push(Fault::of(file, "row", e.to_string(), "write a CSV file")),
@@ -139,7 +145,7 @@ fn named_twice(file: &str, header: &[String]) -> Vec<Fault> {
     let mut seen = std::collections::HashSet::with_capacity(header.len());
     let twice = header.iter().filter(|name| !seen.insert(*name));
     let fault = |name: &String| {
-        let remedy = "give every column its own name";
+        let remedy = "give every column a separate name";
         Fault::at(file, 1, name, "column named twice", remedy)
     };
     twice.map(fault).collect()
@@ -176,7 +182,7 @@ impl Table {
                 &*self.file,
                 1,
                 "rows",
-                "a header and no rows",
+                "the file has a header and no rows",
                 remedy,
             )),
             false => Ok(()),
@@ -190,7 +196,7 @@ impl Table {
             .find_map(|n| self.header.iter().position(|h| h == n))
     }
 
-    /// Faults of names that stand in two rows of a column; `what` they are the names of.
+    /// Returns faults of names that occur in two rows of a column; `what` states their kind.
     pub fn rows_named_twice(&self, column: usize, what: &str) -> FaultList {
         let mut seen: HashMap<&str, u32> = HashMap::with_capacity(self.rows.len());
         let mut faults = FaultList::new();

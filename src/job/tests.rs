@@ -409,7 +409,7 @@ fn rows_of_another_length_are_faults() {
     let f = table::read_table("s.csv", "run,G1,G2\nR1,1\n").unwrap_err();
     assert!(
         f[0].to_string()
-            .starts_with("s.csv:2: row: 2 fields, the header has 3"),
+            .starts_with("s.csv:2: row: the row has 2 fields, the header has 3"),
         "{}",
         f[0]
     );
@@ -473,7 +473,7 @@ fn a_relative_error_above_1_asks_whether_percent_was_meant() {
             assert!(of(size).is_empty(), "{key} {size}: {:?}", of(size));
         }
         let found = of("15");
-        let asks = |t: &String| t.contains("1500 %") && t.contains("Write 0.15 for 15 %");
+        let asks = |t: &String| t.contains("1500 %") && t.contains("write 0.15 for 15 %");
         assert!(found.iter().any(asks), "{key}: {found:?}");
         for size in ["-0.1", "1e6"] {
             assert!(!of(size).is_empty(), "{key} {size}");

@@ -2,7 +2,7 @@
 
 use super::suggest;
 use super::table::Table;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::files::Inputs;
 
 /// Adds a warning that names the columns of a table which `is_read` does not accept. `lacking` are names of columns that the table could have.
@@ -32,8 +32,8 @@ pub fn unread_columns(
     });
     let renamed: Vec<String> = renamed.collect();
     let remedy = match renamed.is_empty() {
-        true => "drop these columns, or name them as the job does".to_owned(),
-        false => format!("rename {}, or drop the columns", few(&renamed)),
+        true => "delete these columns, or name them as in the job".to_owned(),
+        false => format!("rename {}, or delete the columns", list_few(&renamed)),
     };
     let named: Vec<String> = unread.iter().map(|c| format!("`{c}`")).collect();
     (!named.is_empty()).then(|| {
@@ -43,7 +43,7 @@ pub fn unread_columns(
             &*table.file,
             format!(
                 "no command reads these columns of the table, and they change no result: {}",
-                few(&named)
+                list_few(&named)
             ),
             remedy,
         )

@@ -107,7 +107,7 @@ impl Cholesky {
         out
     }
 
-    /// Pivot `j`, and what stands below it.
+    /// Pivot `j`, and the column below it.
     fn column(&self, j: usize) -> (f64, &[f64]) {
         let below = &self.columns[j * self.n + j..(j + 1) * self.n];
         (below[0], &below[1..])

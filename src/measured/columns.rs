@@ -1,11 +1,11 @@
 //! Columns of a strain file and the gauges of S.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::work::Work;
 use crate::job::{NamedFile, suggest};
 use std::collections::{HashMap, HashSet};
 
-/// Where a gauge's column stands; `None`: it has none.
+/// Position of a gauge's column; `None`: the file has no column of this gauge.
 pub(crate) fn columns_of(
     work: &mut Work,
     named: &NamedFile,
@@ -46,7 +46,7 @@ pub(crate) fn gauge_without_column(of_file: &str, silent: &[&str], unknown: &[&s
     Finding::new(
         Severity::Warning,
         "gauge-without-strain",
-        few(silent),
+        list_few(silent),
         format!("{of_file}gauges without a column are left out"),
         suggest::column_remedy(silent, unknown),
     )
@@ -70,7 +70,7 @@ pub(crate) fn strain_without_gauge(
         Finding::new(
             Severity::Warning,
             "strain-without-gauge",
-            few(&unknown),
+            list_few(&unknown),
             format!("{of_file}columns that belong to no gauge are left out"),
             "add the gauges, or drop the columns",
         )

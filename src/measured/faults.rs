@@ -1,6 +1,6 @@
 //! Faults of files of measured strain.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Fault;
 use crate::job::Job;
 use crate::job::same_name::is_same_name;
@@ -11,7 +11,7 @@ pub(crate) fn no_runs(file: &str) -> Fault {
     Fault::of(
         file,
         "run",
-        "the rows are samples of a record, which can't be read as runs",
+        "the rows are samples of a record, which cannot be read as runs",
         "give the means of static runs, one row for each run, with its name in a column `run`; `recover` recovers the loads of a record",
     )
 }
@@ -25,11 +25,11 @@ pub(crate) fn no_gauge_column(
 ) -> Fault {
     let (wrong, remedy) = match &job.sensitivity {
         Some(s) if job.gauges.is_empty() => (
-            format!("no column is named after a gauge of `{}`", s.file.given),
+            format!("no column has the name of a gauge of `{}`", s.file.given),
             "use the same gauge names in both tables",
         ),
         _ => (
-            "no column is named after a gauge of the job".to_owned(),
+            "no column has the name of a gauge of the job".to_owned(),
             "name the columns after the gauges",
         ),
     };
@@ -41,13 +41,13 @@ pub(crate) fn no_gauge_column(
     if !alike.is_empty() {
         let wrong = format!(
             "{wrong}; columns and gauges differ by case or separators: {}",
-            few(&alike)
+            list_few(&alike)
         );
         return Fault::at(file, 1, "gauge", wrong, "use the same names in both tables");
     }
     let wrong = match columns.is_empty() {
         true => format!("{wrong}; the file has no column of numbers"),
-        false => format!("{wrong}; its columns are {}", few(columns)),
+        false => format!("{wrong}; its columns are {}", list_few(columns)),
     };
     Fault::at(file, 1, "gauge", wrong, remedy)
 }
@@ -66,7 +66,7 @@ pub(crate) fn record_fault(file: &str, e: &SeriesError) -> Fault {
             file,
             1,
             "rows",
-            "a header and no rows",
+            "the file has a header and no rows",
             "write one row for each sample",
         ),
         SeriesError::NoRate => Fault::at(

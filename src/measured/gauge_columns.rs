@@ -38,7 +38,7 @@ pub fn find_gauge_columns(
         out.push(match holds {
             Holds::Gauge(name, microstrain) => {
                 if !taken.insert(name.clone()) {
-                    let remedy = "give every column its own name";
+                    let remedy = "give every column a separate name";
                     faults.push(Fault::at(file, 1, &*name, "column named twice", remedy));
                 }
                 let microstrain = Some(microstrain);
@@ -141,7 +141,7 @@ impl Wrong {
                 1,
                 &*column.header.whole,
                 column.clash_words(),
-                "correct whichever is wrong",
+                "correct the wrong one",
             ),
         }
     }

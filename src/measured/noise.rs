@@ -23,7 +23,7 @@ pub(crate) fn prepare_with_noise(work: &mut Work, job: &Job) -> Result<Prepared,
     Ok(prepared)
 }
 
-/// Sets the noise of S to what the zero record shows, where the job states none by gauge and the record contradicts equal and independent noise.
+/// Sets the noise of S to the noise of the zero record, if the job states no noise by gauge and the record contradicts equal and independent noise.
 ///
 /// # Errors
 /// Faults of the zero file.

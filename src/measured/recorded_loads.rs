@@ -4,7 +4,7 @@ use super::faults::record_fault;
 use super::open::is_record;
 use super::runs_columns::{known_column, note_unread_runs};
 use super::runs_file::{RunRow, given_loads, read_runs};
-use crate::finding::{Finding, few};
+use crate::finding::{Finding, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::{FileBytes, Inputs};
 use crate::job::table::Table;
@@ -122,8 +122,8 @@ pub(crate) fn read_load_record(
     Faults::check(faults)?;
     if loads.is_empty() {
         let wrong = format!(
-            "no column is named after a load of the job; its columns are {}",
-            few(&table.header)
+            "no column has the name of a load of the job; the columns are {}",
+            list_few(&table.header)
         );
         let remedy = match runs.section {
             "respond" => "name the columns after the loads",

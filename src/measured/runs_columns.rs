@@ -98,7 +98,7 @@ fn sole_column(
             1,
             &*second.header.whole,
             format!("two columns contain `{name}`"),
-            "leave one of them out, or name the right one in the job (`columns`)",
+            "delete one of them, or name the right one in the job (`columns`)",
         )),
     }
 }
@@ -308,8 +308,8 @@ pub fn known_column(
     let is_named = header == wanted || is_same_name(&stated.name, wanted);
     if !is_named || stated.clash() == Some(Clash::Size) {
         let remedy = match is_named {
-            true => "correct whichever is wrong",
-            false => "correct whichever is wrong, or name the column in the job (`columns`)",
+            true => "correct the wrong one",
+            false => "correct the wrong one, or name the column in the job (`columns`)",
         };
         faults.push(Fault::at(&*t.file, 1, header, stated.clash_words(), remedy));
         return Some(here);
@@ -349,7 +349,7 @@ pub fn known_column(
             quantity.word()
         );
         let remedy = format!(
-            "correct whichever is wrong; without {}.units the unit of the column is used",
+            "correct the wrong one; without {}.units the unit of the column is used",
             runs.section
         );
         faults.push(Fault::at(&*t.file, 1, header, wrong, remedy));
@@ -388,7 +388,7 @@ fn noise_in_doubt(
         runs.line,
         format!("{}.noise.{word}", runs.section),
         format!(
-            "is {noise} in `{}` or, as columns of the file, in `{}`?",
+            "the unit of {noise} may be `{}` or, as in the columns of the file, `{}`",
             of_job.name, of_column.name
         ),
         format!(

@@ -72,7 +72,7 @@ fn runs_of_first_sheet(inputs: &mut Inputs, job: &Job, runs: &Runs) -> Result<Ve
                 *line,
                 "run",
                 wrong,
-                "give every run its own name",
+                "give every run a separate name",
             ));
         }
         let mut entry = RunRow {

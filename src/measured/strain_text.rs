@@ -52,7 +52,7 @@ fn no_rows(file: &str) -> Fault {
         file,
         1,
         "rows",
-        "a header and no rows",
+        "the file has a header and no rows",
         "write one row for each run or sample",
     )
 }
@@ -87,7 +87,7 @@ impl Reading {
                 &*t.file,
                 1,
                 "run",
-                "no column `run` and no column `time`",
+                "the file has no column `run` and no column `time`",
                 header_remedy(
                     "run",
                     t.header.iter().map(String::as_str),
@@ -97,7 +97,7 @@ impl Reading {
         };
         let clashing = headers.get(key).filter(|c| c.clash() == Some(Clash::Size));
         if let Some(column) = clashing.filter(|_| run.is_none()) {
-            let remedy = "correct whichever is wrong";
+            let remedy = "correct the wrong one";
             let wrong = column.clash_words();
             return Err(Fault::at(&*t.file, 1, "time", wrong, remedy).into());
         }
@@ -157,7 +157,7 @@ impl Reading {
                 let name = fields.get(self.key).cloned().unwrap_or_default();
                 if !self.seen.insert(name.clone()) {
                     let wrong = format!("run `{name}` occurs twice");
-                    let remedy = "give every run its own name";
+                    let remedy = "give every run a separate name";
                     faults.push(Fault::at(&*t.file, *line, "run", wrong, remedy));
                 }
                 self.runs.push(name);

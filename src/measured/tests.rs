@@ -193,7 +193,7 @@ fn labels_rows_of_units_and_noise_of_a_runs_file_are_not_mistaken() {
         (
             "run,LF.FZ [N],LF.MX\nR1,2000,3\n",
             "noise = { force = 50.0 }\n",
-            "runs.noise.force: is 50 in `kN` or",
+            "runs.noise.force: the unit of 50 may be `kN` or",
         ),
     ] {
         let said = said(table, more);

@@ -1,9 +1,9 @@
-//! The wheels of a job: loads that carry the structure, and how it stands on them.
+//! The wheels of a job: loads that carry the structure, and its support on them.
 
 use crate::fe::FeError;
 use crate::fe::floor::FloorError;
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::work::stopped;
+use crate::host::work::cancelled_fault;
 use crate::job::{Job, JobLoad, LoadActs};
 use crate::model::{GridIx, Model, Vec3};
 
@@ -115,7 +115,7 @@ fn basic_axis(model: &Model, grid: u32, dof: usize, cid: u32) -> Option<usize> {
 /// A floor that can't be had, as faults of the job's model.
 pub fn floor_fault(job: &Job, e: &FloorError) -> Faults {
     if matches!(e, FloorError::Solver(FeError::Stopped)) {
-        return stopped().into();
+        return cancelled_fault().into();
     }
     let of = |(wrong, remedy)| Fault::of(&*job.file, "model", wrong, remedy);
     let unknown = Fault::of(&*job.file, "model", e.to_string(), "repair the deck");

@@ -101,8 +101,8 @@ pub(crate) fn read_zeroed(
     })
 }
 
-/// Adds a warning of gauges without a column in a strain file, and one of columns that belong to no gauge of a job that lists its gauges;
-/// `wanted` are the columns that were asked for.
+/// Adds a warning of gauges without a column in a strain file, and a warning of columns that belong to no gauge; `wanted` are the columns that were
+/// asked for.
 pub(crate) fn note_columns(
     work: &mut Work,
     job: &Job,
@@ -127,7 +127,7 @@ pub(crate) fn note_columns(
 
 /// Returns readings less their zero, tested as `recover` tests its own: a reading that is not strain becomes missing. Findings report it, once for
 /// the same gauges.
-pub(crate) fn judged(
+pub(crate) fn subtract_and_test_zero(
     work: &mut Work,
     measured: &Measured,
     gauges: &[String],
@@ -152,7 +152,7 @@ pub(crate) fn reads_strain(job: &Job) -> bool {
     job.model.is_some() || job.sensitivity.is_some()
 }
 
-/// Tests readings like [`judged`], for a job that may have no S yet: its readings are then tested against their noise alone.
+/// Tests readings like [`subtract_and_test_zero`], for a job that may have no S yet: its readings are then tested against their noise alone.
 pub(crate) fn judged_to_learn(
     work: &mut Work,
     job: &Job,
@@ -161,7 +161,7 @@ pub(crate) fn judged_to_learn(
     readings: Vec<Readings>,
 ) -> Vec<Readings> {
     if reads_strain(job) {
-        return judged(work, measured, gauges, &readings);
+        return subtract_and_test_zero(work, measured, gauges, &readings);
     }
     let errors = ErrorModel {
         noise: measured.noise_microstrain * MICROSTRAIN,
@@ -184,7 +184,7 @@ pub(crate) fn some_left(file: &str, readings: &[Readings]) -> Result<(), Faults>
     Err(Fault::of(
         file,
         "strain",
-        "no gauge of the job has a reading that is strain",
+        "no gauge of the job has a reading in the range of strain",
         "state readings in microstrain (strain times 1e6), one column for each gauge",
     )
     .into())
@@ -239,7 +239,7 @@ fn held_out_runs(job: &Job, measured: &Measured, table: &StrainTable) -> Result<
                 &*job.file,
                 measured.line,
                 "measured.hold_out",
-                format!("`{}` has no run `{n}`", table.file),
+                format!("`{}` does not contain run `{n}`", table.file),
                 "name runs of the strain file",
             )
         })
@@ -342,7 +342,7 @@ fn zero_rows(
         )
     };
     let missing = measured.zero_runs.iter().filter(|r| !known.contains(r));
-    let remedy = "name runs at which no load acts";
+    let remedy = "name runs without load";
     let faults: FaultList = missing
         .map(|run| fault(format!("{files} run `{run}`"), remedy))
         .collect();
@@ -350,7 +350,7 @@ fn zero_rows(
     let place = |run: &String| names.iter().position(|n| n == run);
     let at: Vec<usize> = measured.zero_runs.iter().filter_map(place).collect();
     if at.is_empty() {
-        let wrong = format!("`{}` has none of these runs", table.file);
+        let wrong = format!("`{}` contains none of these runs", table.file);
         let remedy = "add a run without load that was measured together with its runs, and name it here too; or move its runs into the strain file and name them in `hold_out`";
         return Err(fault(wrong, remedy).into());
     }
@@ -421,9 +421,8 @@ struct Drift {
 impl Drift {
     /// From the differences between one zero run and the next, `d_j` over `t_j` rows, of which noise makes `2 s^2`.
     ///
-    /// A steady change is `u = sum d_j / T`, `T = sum t_j`; what is left of it is a walk: `E (d_j - u t_j)^2 = walk (t_j - t_j^2 / T) + s^2 (2 - 2
-    /// (t_j / T) e_j + 2 (t_j / T)^2)`, `e_j` how many ends of the whole stretch the difference has, and `E u^2 = steady + walk / T + 2 s^2 /
-    /// T^2`.
+    /// A steady change is `u = sum d_j / T`, `T = sum t_j`; the remainder is a walk: `E (d_j - u t_j)^2 = walk (t_j - t_j^2 / T) + s^2 (2 - 2 (t_j /
+    /// T) e_j + 2 (t_j / T)^2)`, `e_j` how many ends of the whole stretch the difference has, and `E u^2 = steady + walk / T + 2 s^2 / T^2`.
     fn of(table: &StrainTable, at: &[usize], noise: f64) -> Self {
         let noise = noise * noise;
         let (mut walk, mut free) = (0.0, 0.0);

@@ -117,7 +117,7 @@ impl Builder<'_> {
         (from..to).map(|i| GridIx(i as u32)).collect()
     }
 
-    /// The sets that sums stand for.
+    /// Sets of single terms for the sums of a deck.
     fn sums<T: Clone>(
         &mut self,
         cards: &[Placed<SetSum>],

@@ -152,14 +152,14 @@ impl ModelFault {
             Orientation => "give an orientation vector that isn't parallel to the element".into(),
             CollinearFrame => "move point C off the line A B, and B off A".into(),
             SumCycle { .. } => {
-                "take one of the sets of the circle out of the card that names it".into()
+                "remove one of the sets of the circle from the card that names it".into()
             }
             FrameCycle => "define one of the systems of the circle in the basic system".into(),
             CollinearArms => {
                 "add a grid off the line, or add rotations 456 to the connected dofs".into()
             }
-            DependentTwice { .. } => "leave the dof to one of the two".into(),
-            DependentAndIndependent { .. } => "take the dof out of one of the two lists".into(),
+            DependentTwice { .. } => "let only one of the two make the dof dependent".into(),
+            DependentAndIndependent { .. } => "remove the dof from one of the two lists".into(),
             NotSixIndependent { .. } => "name six independent dofs that fix a rigid body".into(),
             SectionDimensions { expected, .. } => format!("give {expected} dimensions"),
             SectionShape { .. } => {
@@ -172,7 +172,8 @@ impl ModelFault {
             Underdetermined => "give two of E, G and NU".into(),
             Unsupported { remedy, .. } => (*remedy).into(),
             Unattached => "attach it, or delete it if nothing refers to it; otherwise AUTOSPC holds it".into(),
-            OffPatch { .. } => "move the point over the patch, name the property or shell that lies there, or give a smaller diameter; shells with mid-side grids cannot be a patch".into(),
+            OffPatch { .. } => "move the point over the patch, name the property or shell at this place, or give a smaller diameter; shells with mid-side \
+             grids cannot be a patch".into(),
             Word { expected, .. } => format!("write {expected}"),
         }
     }
@@ -204,7 +205,7 @@ impl fmt::Display for FaultKind {
             Repeated { what, first } => {
                 write!(
                     f,
-                    "the {what} is there twice with the same content, first on line {}, and is read once",
+                    "the {what} occurs twice with the same content, first on line {}, and is read once",
                     first.line
                 )
             }
@@ -229,8 +230,8 @@ impl fmt::Display for FaultKind {
             ZeroLength { length } => write!(f, "the length is {length:e}"),
             Degenerate { what } => write!(f, "the element has no {what}"),
             Orientation => write!(f, "the orientation vector has no part across the element"),
-            CollinearFrame => write!(f, "points A, B, C lie on a line"),
-            FrameCycle => write!(f, "the system is defined by itself through others"),
+            CollinearFrame => write!(f, "points A, B, C are on a line"),
+            FrameCycle => write!(f, "the system is defined through others by its own id"),
             SumCycle { sets } => {
                 write!(f, "the sets name each other in a circle: ")?;
                 for sid in sets.iter().take(LISTED) {
@@ -243,7 +244,7 @@ impl fmt::Display for FaultKind {
             }
             CollinearArms => write!(
                 f,
-                "the connected grids lie on a line and carry no rotation about it"
+                "the connected grids are on a line and carry no rotation about it"
             ),
             DependentTwice { grid, dof, first } => {
                 write!(
@@ -262,7 +263,7 @@ impl fmt::Display for FaultKind {
             SectionShape { section } => write!(f, "the dimensions give no {section} section"),
             UnknownSection { section } => write!(f, "section type {section} is not known"),
             Poisson { nu } => write!(f, "Poisson's ratio is {nu}"),
-            Underdetermined => write!(f, "E, G and NU don't fix the material"),
+            Underdetermined => write!(f, "E, G and NU do not determine the material"),
             Unsupported { what, .. } => write!(f, "{what} is not supported"),
             Unattached => write!(f, "no element uses it"),
             OffPatch { what, side } => {

@@ -63,7 +63,7 @@ impl Builder<'_> {
         self.written_out_sums(&by_sid, sets, weights)
     }
 
-    /// The sets of primitive loads that the cards of one combination stand for.
+    /// The sets of primitive loads of the cards of one combination.
     fn weights(
         &mut self,
         cards: &[&Placed<LoadSum>],

@@ -3,8 +3,8 @@
 use super::types::UnsupportedCard;
 use nastran::bdf::{Deck, OtherCard};
 
-/// Parameters without influence on linear statics, mass and modes, whatever their value: output, memory, pivoting, nonlinear analysis,
-/// splines, damping and rotors. A name that ends with `*` stands for all names with this beginning.
+/// Parameters without influence on linear statics, mass and modes, whatever their value: output, memory, pivoting, nonlinear analysis, splines,
+/// damping and rotors. A name that ends with `*` means all names with this beginning.
 ///
 /// # Reference
 /// MSC Nastran 2022.4 Quick Reference Guide, MDLPRM, table of parameters.

@@ -1,4 +1,4 @@
-//! References to cards without a struct of their own: the card is named where it stands, not called missing.
+//! References to cards without a struct of their own: a message names the existing card and does not report it as missing.
 
 use super::fault::{FaultKind, ModelFault};
 use super::types::{Model, UnsupportedCard};
@@ -16,7 +16,7 @@ enum Defined {
     Element,
 }
 
-/// Cards that generate grids and elements; their ids stand in no field.
+/// Cards that generate grids and elements; no field contains their ids.
 const GENERATORS: [&str; 5] = ["GRIDG", "CGEN", "EGRID", "FEEDGE", "GMCURV"];
 
 /// Entries that begin with P and define no property of an element.

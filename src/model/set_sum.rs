@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Loads or sets that all sums of a deck together may stand for: beyond, a few cards ask for more memory than a model of that size has.
+/// Loads or sets in all sums of a deck. Above this limit a few cards would need more memory than a model of their size.
 pub(super) const MOST_TERMS: usize = 4_000_000;
 
 /// Sums in an order in which each comes after those that it names, and the circles that no order has.

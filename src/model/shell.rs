@@ -320,8 +320,8 @@ pub(super) fn shell_normal(x: &[Vec3]) -> Option<Vec3> {
     }
 }
 
-/// Angle from side 1-2 to the first of the axes projected on the element, right-handed about the normal. Where the first axis
-/// stands on the element (a cylinder meshed on its own system), the second is taken.
+/// Angle from side 1-2 to the first of the axes projected on the element, right-handed about the normal. Where the first axis is normal to the
+/// element (a cylinder meshed on its own system), the second is taken.
 fn projected_angle(axes: &Mat3, x: &[Vec3], normal: Vec3) -> f64 {
     let (Some(a), Some(b)) = (x.first(), x.get(1)) else {
         return 0.0;

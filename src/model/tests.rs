@@ -55,11 +55,13 @@ fn systems_in_a_circle_and_on_a_line_are_faults() {
         errors("CORD2R,1,2,0.,0.,0.,0.,0.,1.\n,1.,0.,0.\nCORD2R,2,1,0.,0.,0.,0.,0.,1.\n,1.,0.,0.");
     assert_eq!(found.len(), 2, "{found:?}");
     assert!(
-        found.iter().all(|f| f.1.contains("defined by itself")),
+        found
+            .iter()
+            .all(|f| f.1.contains("defined through others by its own id")),
         "{found:?}"
     );
     let found = errors("CORD2R,1,,0.,0.,0.,0.,0.,1.\n,0.,0.,3.");
-    assert!(found[0].1.contains("lie on a line"), "{found:?}");
+    assert!(found[0].1.contains("are on a line"), "{found:?}");
     let found = errors("GRID,1,7,0.,0.,0.");
     assert!(
         found[0].1.contains("coordinate system 7 is missing"),
@@ -345,7 +347,7 @@ fn each_kind_of_bad_input_has_its_own_message_with_the_line() {
         (
             "GRID,7,,.5,0.,0.\nRBE3,5,,7,123456,1.,123,1,2",
             10,
-            "lie on a line",
+            "are on a line",
         ),
         ("MAT1,1,1.,,.3", 9, "material id occurs twice"),
         ("SPC1,1,123,99", 9, "grid 99 is missing"),

@@ -35,7 +35,7 @@ pub(super) fn of_deck(deck: &Deck) -> (Vec<UnsupportedCard>, Vec<UnsupportedCard
         match effect_of_card(&c.name) {
             Some(Effect::Load) => loads.push(card),
             Some(Effect::Acts | Effect::Carried) => structure.push(card),
-            Some(Effect::ActsWith("values of its own")) => {
+            Some(Effect::ActsWith("separate values")) => {
                 structure.extend(super::model_parameters::acting(deck, c));
             }
             Some(Effect::ActsWith(what)) if is_present(deck, what) => structure.push(card),

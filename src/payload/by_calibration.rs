@@ -24,7 +24,7 @@ pub(super) struct Found {
 
 /// Estimates the payload of a run from the gauges that are `used`; `known`: covariance of the three columns of [`PayloadModel::payload`]. If the
 /// place is known the one column is `b0 + dx b_dx + dy b_dy`, with its covariance. `None` if the gauges don't determine the payload.
-pub(super) fn found(
+pub(super) fn estimate_payload(
     model: &PayloadModel,
     known: &Uncertainty,
     run: &PayloadRun,

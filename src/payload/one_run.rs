@@ -151,7 +151,7 @@ struct Row {
     gauge: Option<usize>,
 }
 
-/// Where the unknowns of a run stand: wheel forces where they are measured, `p`, the error of the model, patterns of wheel forces.
+/// Positions of the unknowns of a run: wheel forces where they are measured, `p`, the error of the model, patterns of wheel forces.
 struct Unknowns {
     n_wheels: usize,
     /// Numbers of `p` that are asked for: `F`, `F dx`, `F dy`, or `F` alone where the place is known.

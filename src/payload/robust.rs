@@ -378,8 +378,8 @@ fn verdict(gauge: &GaugeEstimates, spec: &RobustSpec, f: &[f64]) -> GaugeVerdict
     verdict_words(&gauge.name, &gauge.estimates, &slack, f, probability_good)
 }
 
-/// Whether a gauge is used, and why, from its own estimates by run, the answers `f` and how probable it is that the gauge is good.
-/// An estimate below zero by more than its `slack` rejects the gauge.
+/// Whether a gauge is used, and the reason, from its estimates by run, the answers `f` and how probable it is that the gauge is good. An estimate
+/// below zero by more than its `slack` rejects the gauge.
 pub(super) fn verdict_words(
     name: &str,
     estimates: &[f64],
@@ -425,18 +425,18 @@ pub(super) fn verdict_words(
         }
     } else if positive && negative {
         format!(
-            "changes sign between runs ({}): noise, or a zero that moved, not payload",
+            "changes sign between runs ({}), as with noise or a drifted zero",
             list()
         )
     } else if negative {
         format!(
-            "negative in every run ({}): wrong sign of gauge or model, or no sensitivity",
+            "negative in every run ({}): the sign of the gauge or of the model is wrong, or the gauge does not measure the payload",
             list()
         )
     } else {
         let (j, p) = worst.or(finite.first()).copied().unwrap_or((0, f64::NAN));
         format!(
-            "reads {p:.1} where the others agree on {:.1}",
+            "reads {p:.1}, and the other gauges agree on {:.1}",
             f.get(j).copied().unwrap_or(f64::NAN)
         )
     };

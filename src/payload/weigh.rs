@@ -123,7 +123,7 @@ fn calibrated(
     };
     for (w, run) in weighing.runs.iter_mut().zip(runs) {
         let answered = matches!(w.refused, None | Some(Refusal::OutsideRegion { .. }));
-        let found = by_calibration::found(model, known, run, spec.place, |g| used[g]);
+        let found = by_calibration::estimate_payload(model, known, run, spec.place, |g| used[g]);
         let Some(found) = found.filter(|_| answered) else {
             continue;
         };
@@ -476,7 +476,7 @@ fn say_weak(v: &mut GaugeVerdict, g: usize, runs: &[WeighedRun]) {
         .fold(f64::INFINITY, f64::min);
     if v.used && share > WEAK_SHARE && share.is_finite() {
         v.reason = format!(
-            "too weak to tell: alone it leaves the payload uncertain by {:.0} %",
+            "too weak: this gauge alone leaves the payload uncertain by {:.0} %",
             100.0 * share
         );
     }

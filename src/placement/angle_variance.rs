@@ -60,11 +60,11 @@ pub fn stays_under(f: &Trig, v: &Trig, limit: f64, samples: &[[f64; 4]; SAMPLES]
     samples.iter().all(|cs| value(&g, cs) + slack < 0.0)
 }
 
-/// Relative amount by which [`largest`] may return more than the true maximum, so that it is never less.
+/// Relative amount by which [`largest_ratio`] may return more than the true maximum, so that it is never less.
 const CERTIFIED_EXCESS: f64 = 1e-7;
 
 /// The angle in `[0, pi)` where `f / v` is largest, and an upper bound of that maximum (at most `1e-7` relative above it).
-pub fn largest(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) {
+pub fn largest_ratio(f: &Trig, v: &Trig, samples: &[[f64; 4]; SAMPLES]) -> (f64, f64) {
     let ratio = |t: f64| {
         let cs = phases(t);
         value(f, &cs) / value(v, &cs)

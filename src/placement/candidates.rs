@@ -1,4 +1,4 @@
-//! Where gauges can go: rows, or strain tensors that stand for every angle at a place.
+//! Where gauges can go: rows, or strain tensors that represent every angle at a place.
 
 use super::angle_variance::{self, Form, Trig};
 use rayon::prelude::*;

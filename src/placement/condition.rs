@@ -10,7 +10,7 @@
 use super::candidates::{Angles, Candidates, Choice};
 use super::coordinate_exchange::LEAST_GAIN;
 use super::layout::Layout;
-use super::perturbation::{fits, moved};
+use super::perturbation::{fits, move_gauges};
 use super::shortlist::excluder;
 use super::spec::Spec;
 use crate::linalg::spd;
@@ -42,7 +42,12 @@ const RIDGE: f64 = 1e-10;
 
 /// The layout of least condition number found, from `layout` and from random ones; `base` is the `S'S` of gauges that stay, columns
 /// as the candidates'. `None` where no layout met separates the loads.
-pub fn best(c: &Candidates, spec: &Spec, layout: &Layout, base: &[f64]) -> Option<Conditioned> {
+pub fn find_least_condition(
+    c: &Candidates,
+    spec: &Spec,
+    layout: &Layout,
+    base: &[f64],
+) -> Option<Conditioned> {
     let k = c.n_loads();
     let many = usize::from(k > MANY);
     let choices = taking_part(c, &layout.gauges, MOST[many]);
@@ -185,7 +190,7 @@ impl<E: Fn(usize, usize) -> bool> Search<'_, E> {
     }
 
     fn moved(&self, from: &[usize], count: usize, rng: &mut ChaCha8Rng) -> Vec<usize> {
-        moved(from, count, self.len(), self.excludes, rng)
+        move_gauges(from, count, self.len(), self.excludes, rng)
     }
 
     fn fits(&self, rows: &[usize], slot: usize, i: usize) -> bool {

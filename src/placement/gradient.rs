@@ -1,7 +1,7 @@
 //! How steep the strain is where a gauge can go: what misplacing it, or the length of its grid, does to its reading.
 
 use super::angle_variance::Form;
-use super::sites::{Site, wired};
+use super::sites::{Site, bridge_strain};
 use crate::fe::shell_frame::{ShellPlace, shell_axes};
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Bridge, SMOOTH, centre};
@@ -121,7 +121,7 @@ fn beside(model: &Model, edges: &HashMap<[u32; 2], Vec<ShellIx>>, shell: ShellIx
 
 /// Gradients of the tensor along x and y, its components in the frame of the site's shell.
 fn slopes(bridge: Bridge, load: &LoadCaseOf, site: Site, near: &[Beside]) -> Option<[[f64; 3]; 2]> {
-    let here = wired(bridge, load.case, site)?;
+    let here = bridge_strain(bridge, load.case, site)?;
     let (mut a, mut b) = ([0.0; 3], [[0.0; 3]; 2]);
     for n in near {
         let side = match (n.flipped, site.1) {
@@ -129,7 +129,7 @@ fn slopes(bridge: Bridge, load: &LoadCaseOf, site: Site, near: &[Beside]) -> Opt
             (true, Surface::Top) => Surface::Bottom,
             (true, Surface::Bottom) => Surface::Top,
         };
-        let Some([x, y, g]) = wired(bridge, load.case, (n.shell, side)) else {
+        let Some([x, y, g]) = bridge_strain(bridge, load.case, (n.shell, side)) else {
             continue;
         };
         let [c, s] = n.turn;

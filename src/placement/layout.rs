@@ -6,7 +6,8 @@ use super::column_generation::{self, Columns, Groups};
 use super::exchange::Effort;
 use super::robust;
 use super::shortlist::{
-    Found, LIST, around, better, elimination, excluder, list_of, polish, rows_of, run, value_of,
+    Found, LIST, better_of, elimination, excluder, largest_variance_rows, list_of, polish, rows_of,
+    run, value_of,
 };
 use super::spacing;
 use super::spec::{Loss, Spec};
@@ -66,17 +67,19 @@ impl PlaceError {
     pub fn parts(&self) -> (String, String) {
         match self {
             Self::TooFewPlaces { gauges, places } => (
-                format!("{gauges} gauges are asked for and the candidates hold {places} places"),
+                format!("{gauges} gauges are asked for and the candidates contain {places} places"),
                 "ask for fewer, or widen [candidates]".to_owned(),
             ),
             Self::Singular { gauges, loads } => (
                 format!("no {gauges} gauges among these candidates separate the {loads} loads"),
                 format!(
-                    "ask for at least {loads} gauges, drop loads that act alike, or state `expected` for loads with role \"nuisance\""
+                    "ask for at least {loads} gauges, drop loads with the same effect, or state `expected` for loads with role \"nuisance\""
                 ),
             ),
             Self::TooTight { gauges, spacing } => (
-                format!("{gauges} gauges do not fit at least {spacing} apart among the candidates"),
+                format!(
+                    "{gauges} gauges with a spacing of at least {spacing} do not fit on the candidates"
+                ),
                 "reduce the spacing or the number".to_owned(),
             ),
         }
@@ -273,7 +276,7 @@ fn tighten(
         bound.col = next;
         let list = list_of(c, &bound.col, &bound.groups, 0.0);
         let found = run(c, spec, &list, &bound.col, quick, best.as_ref());
-        best = better(best, found);
+        best = better_of(best, found);
         if gained < spec.tolerance * k as f64 {
             break;
         }
@@ -291,14 +294,14 @@ fn exchange(
     incumbent: Found,
 ) -> Found {
     let found = run(c, spec, list, &bound.col, spec.effort, Some(&incumbent));
-    let mut best = better(Some(incumbent.clone()), found).unwrap_or(incumbent);
+    let mut best = better_of(Some(incumbent.clone()), found).unwrap_or(incumbent);
     // A list that was cut may lack what this layout lacks.
     let rounds = if list.len() < LIST { 0 } else { ROUNDS };
     for _ in 0..rounds {
         if spec.stop.is_asked() {
             break;
         }
-        let near = around(c, spec, &best.0);
+        let near = largest_variance_rows(c, spec, &best.0);
         let effort = Effort {
             starts: 1,
             perturbations: spec.effort.perturbations / 4,

@@ -4,10 +4,10 @@
 //! standard deviation of its reading, columns times the expected size of their load, and `P` prior information (kept gauges, known
 //! load sizes). The best layout has the largest `log det M_S`.
 //!
-//! Order of work: [`candidates`] (rows, or strain tensors that stand for all angles at a place), [`relax`] (weights between 0 and 1),
+//! Order of work: [`candidates`] (rows, or strain tensors that represent all angles at a place), [`relax`] (weights between 0 and 1),
 //! [`column_generation`] (the same over millions of rows; gives the bound), [`exchange`] (rounding and local search), [`spacing`],
-//! [`branch_and_bound`] (proof of small problems), [`quality`]; [`robust`] where a gauge may be lost, [`condition`] where errors shall not
-//! grow, [`bundles`] where things have several rows or unlike costs. [`sites`], [`region`] and [`gradient`] make candidates of a model.
+//! [`branch_and_bound`] (proof of small problems), [`quality`]; [`robust`] where a gauge may be lost, [`condition`] where errors shall not grow,
+//! [`bundles`] where things have several rows or unlike costs. [`sites`], [`region`] and [`gradient`] make candidates of a model.
 //!
 //! Certificate: for any positive definite `M` and any layout of distinct rows
 //! `log det M_S <= log det M + k ln((tr(M^-1 P) + T) / k)`, `T` the sum of the `s` largest `d_i = a_i' M^-1 a_i`, because the arithmetic mean

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 /// A layout with `count` gauges moved to random rows of `rows`, where those go with the rest. All gauges move where `count` is that of the
 /// layout.
-pub fn moved(
+pub fn move_gauges(
     from: &[usize],
     count: usize,
     rows: usize,

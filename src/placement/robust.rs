@@ -4,7 +4,7 @@
 
 use super::coordinate_exchange::LEAST_GAIN;
 use super::exchange::Effort;
-use super::perturbation::moved;
+use super::perturbation::move_gauges;
 use super::relaxed::Active;
 use crate::linalg::spd;
 use crate::stop::Stop;
@@ -31,8 +31,8 @@ pub fn after_worst_loss(active: &Active, prior: &[f64], rows: &[usize]) -> Optio
     (worst < WHOLE).then(|| spd::log_det(&l, k) + (1.0 - worst).ln())
 }
 
-/// The best rows found from `start`, with what is left after their worst loss; `None` where every layout met has a gauge that may not fail.
-/// Asked to stop it gives the best met so far.
+/// The best rows found from `start`, with their criterion after the worst loss; `None` if every layout has a gauge that must not fail. Asked to stop
+/// it gives the best met so far.
 pub fn search(
     active: &Active,
     prior: &[f64],
@@ -57,7 +57,7 @@ pub fn search(
             let first = if n == 0 {
                 start.to_vec()
             } else {
-                moved(start, start.len(), active.len(), excludes, &mut rng)
+                move_gauges(start, start.len(), active.len(), excludes, &mut rng)
             };
             let mut best = improve(active, prior, first, excludes, stop);
             for _ in 0..perturbations {
@@ -66,7 +66,7 @@ pub fn search(
                 }
                 let from = best.as_ref().map_or(start, |b| &b.0);
                 let count = 1 + rng.random_range(0..2);
-                let rows = moved(from, count, active.len(), excludes, &mut rng);
+                let rows = move_gauges(from, count, active.len(), excludes, &mut rng);
                 let next = improve(active, prior, rows, excludes, stop);
                 best = better(best, next);
             }

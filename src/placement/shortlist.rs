@@ -17,7 +17,7 @@ pub(super) const LIST: usize = 700;
 pub(super) type Found = (Vec<Choice>, f64);
 
 /// The better of two.
-pub(super) fn better(a: Option<Found>, b: Option<Found>) -> Option<Found> {
+pub(super) fn better_of(a: Option<Found>, b: Option<Found>) -> Option<Found> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b.1 > a.1 { b } else { a }),
         (a, b) => a.or(b),
@@ -88,7 +88,7 @@ pub(super) fn list_of(c: &Candidates, col: &Columns, groups: &Groups, floor: f64
 
 /// The rows whose variance in a layout is largest: an exchange of gauge `j` for row `i` can gain only where `d_i > d_j`, because
 /// `(1 + d_i)(1 - d_j) + d_ij^2 <= 1 + d_i - d_j`.
-pub(super) fn around(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Vec<Priced> {
+pub(super) fn largest_variance_rows(c: &Candidates, spec: &Spec, gauges: &[Choice]) -> Vec<Priced> {
     let k = c.n_loads();
     let mut m = spec.prior.clone();
     for &g in gauges {

@@ -60,7 +60,7 @@ pub fn bridges(
         .collect();
     Candidates::from_tensors(k, sites.len(), angles, scatter, |place, out| {
         for (l, load) in loads.iter().enumerate() {
-            let strain = wired(bridge, load.case, sites[place]).unwrap_or_default();
+            let strain = bridge_strain(bridge, load.case, sites[place]).unwrap_or_default();
             let factor = scales[l] / load.applied / MICROSTRAIN;
             for (c, v) in strain.iter().enumerate() {
                 out[3 * l + c] = v * factor;
@@ -73,7 +73,11 @@ pub fn bridges(
 /// The tensor whose strain along a direction a bridge with its grid in that direction reads, element frame, engineering shear.
 ///
 /// Bending: this side less the other, once or twice. Shear: the strain along the first grid less that normal to it.
-pub fn wired(bridge: Bridge, case: &CaseResult, (shell, side): Site) -> Option<PlaneStrain> {
+pub fn bridge_strain(
+    bridge: Bridge,
+    case: &CaseResult,
+    (shell, side): Site,
+) -> Option<PlaneStrain> {
     let here = shell_strain(case, shell, side, ShellPlace::Centre)?;
     let other = || {
         let opposite = match side {

@@ -18,8 +18,8 @@ pub fn too_close(a: [f64; 3], b: [f64; 3], spacing: f64) -> bool {
 
 /// A partition of the places into sets whose members are all too close to each other, so that each can hold one gauge at most.
 ///
-/// Built greedily from the best-priced place downwards, so that the weight of the relaxation falls into few sets; places that are not
-/// priced stand alone. Any such partition gives a valid bound.
+/// Built greedily from the best-priced place downwards, so that the weight of the relaxation falls into few sets; places that are not priced are
+/// separate groups. Any such partition gives a valid bound.
 pub fn cliques(
     n_places: usize,
     priced: &[Priced],

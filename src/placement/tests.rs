@@ -302,7 +302,8 @@ fn the_largest_variance_over_all_angles_is_an_upper_bound_of_a_dense_scan() {
         });
         let slope = angle_variance::of_slope(&form.map(|v| 0.3 * v));
         let v = [slope[0] + 0.5, slope[1], slope[2], slope[3], slope[4]];
-        let (angle, d) = angle_variance::largest(&angle_variance::of_row(&form), &v, &samples);
+        let (angle, d) =
+            angle_variance::largest_ratio(&angle_variance::of_row(&form), &v, &samples);
         let ratio = |t: f64| {
             let (s, c) = t.sin_cos();
             let row = [c * c, s * s, s * c];

@@ -80,7 +80,7 @@ pub fn price(
                         let (f, v) = (angle_variance::of_row(&g), c.variance(p));
                         if grid.is_empty() {
                             if !angle_variance::stays_under(&f, &v, threshold, &samples) {
-                                let (angle, d) = angle_variance::largest(&f, &v, &samples);
+                                let (angle, d) = angle_variance::largest_ratio(&f, &v, &samples);
                                 if d >= threshold {
                                     out.push(Priced {
                                         d,

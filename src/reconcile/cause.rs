@@ -114,12 +114,12 @@ fn next(observations: &Observations, causes: &[Cause], rivals: &[CauseSet]) -> S
     );
     let together = match pair {
         (Some(a), Some(b)) => correlation(observations, a, b)
-            .map(|c| format!(" (so far they changed together, correlation {c:.2})"))
+            .map(|c| format!(" (so far both changed together, correlation {c:.2})"))
             .unwrap_or_default(),
         _ => String::new(),
     };
     format!(
-        "runs in which one of {} changes and the other stays{together}: the record of the change itself, logged while it happens, with every cause beside the readings",
+        "measure runs in which one of {} changes and the other one is constant{together}: record both with time stamps in the file of the readings",
         names.join(" and ")
     )
 }

@@ -28,7 +28,7 @@ pub(super) fn recover(
     // Without an estimated scatter there is no limit for the deviation of a gauge.
     let (mut findings, readings) = match known.is_tested {
         true => misfit::faults_by_calibration(s, readings, errors, known, (handling, alternatives)),
-        false => (vec![untested()], readings.to_vec()),
+        false => (vec![report_untested_intervals()], readings.to_vec()),
     };
     let mut runs: Vec<RunEstimate> = readings
         .par_iter()
@@ -49,20 +49,21 @@ pub(super) fn recover(
             Severity::Error,
             NOT_SOLVABLE,
             &r.estimate.run,
-            "the gauges that read in this run don't separate the loads: some of its values are arbitrary",
-            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
+            "the gauges with readings in this run do not separate the loads: some values are arbitrary",
+            "repair the gauges without readings, drop loads, or state `expected` for loads with role \"nuisance\"",
         )
     }));
     (runs, findings)
 }
 
 /// The finding on a calibration whose intervals no run tested.
-pub fn untested() -> Finding {
+pub fn report_untested_intervals() -> Finding {
     Finding::new(
         Severity::Error,
         "coverage-not-tested",
         "calibration",
-        "S was calibrated with runs of which each one was needed to determine it: nothing is known of the scatter of runs, and the intervals do not include it",
-        "calibrate with further runs; repeats of one loading are the cheapest",
+        "S was calibrated with runs of which each one was needed to determine it. The scatter of the runs is unknown, and the intervals do \
+         not include it",
+        "calibrate with further runs; repeats of one loading cost least",
     )
 }

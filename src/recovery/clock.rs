@@ -21,13 +21,13 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
     out.extend(
         clock
             .unit
-            .map(|unit| recognised(subject, unit, clock.rate_hz)),
+            .map(|unit| report_assumed_unit(subject, unit, clock.rate_hz)),
     );
     if let Evenness::Resampled { largest, .. } = clock.evenness {
         let rate = clock.rate_hz;
         let differ = match clock.change {
             Some(change) => change.words(),
-            None => format!("steps of time differ by up to {:.0} %", 100.0 * largest),
+            None => format!("the time steps differ by up to {:.0} %", 100.0 * largest),
         };
         out.push(
             Finding::new(
@@ -35,7 +35,7 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
                 "record-resampled",
                 subject,
                 format!("{differ}: samples are interpolated to {rate:.6} Hz"),
-                "record with a steady clock where the loads' peaks matter",
+                "record with a steady clock if peaks of the loads matter",
             )
             .with_numbers(largest, EVEN),
         );
@@ -48,10 +48,10 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
                 "record-gaps",
                 subject,
                 format!(
-                    "{} samples are missing in {} gaps, the first after {first} s: they are left blank",
+                    "{} samples are missing in {} gaps, the first after {first} s: they remain blank",
                     clock.missing, clock.n_gaps
                 ),
-                "look at the logger",
+                "check the logger",
             )
             .with_numbers(clock.missing as f64, 0.0),
         );
@@ -60,7 +60,7 @@ pub fn irregular(subject: &str, clock: &Clock) -> Vec<Finding> {
 }
 
 /// Returns the note that times are taken in a unit that the file does not state.
-pub fn recognised(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
+pub fn report_assumed_unit(subject: &str, unit: TimeUnit, rate_hz: f64) -> Finding {
     let words = unit.words();
     Finding::new(
         Severity::Info,
@@ -92,8 +92,8 @@ pub fn check_rate(rate_hz: f64) -> Option<Finding> {
             "time-unit-doubtful",
             "time",
             format!(
-                "{found}: the file states no unit of time, and its times in seconds give a rate outside of {slowest} to {fastest} Hz. \
-                 Sample rate, duration and everything in Hz depend on the unit"
+                "{found}: the file states no unit of time, and its times in seconds give a rate outside {slowest} to {fastest} Hz. Sample \
+                 rate, duration and all frequencies depend on the unit"
             ),
             "state the unit in the header, such as `time [ms]`, or as [measured] time_unit",
         )
@@ -121,11 +121,11 @@ pub fn check(step_s: f64, readings: &[f64], n: usize) -> Option<Finding> {
             "time-unit-doubtful",
             "time",
             format!(
-                "a sample every {} s, and each follows the one before as if a thousand times faster: is `time` in milliseconds? \
-                 Sample rate, duration and everything in Hz hang on it",
+                "a sample every {} s, and consecutive readings differ as little as at a sample rate 1000 times as high: `time` may be in milliseconds. Sample \
+                 rate, duration and all frequencies depend on the unit",
                 number(step_s)
             ),
-            "state it: [measured] time_unit = \"ms\", or \"s\" where it is right",
+            "state the unit: [measured] time_unit = \"ms\", or \"s\" if the times are seconds",
         )
         .with_numbers(step_s, SLOW)
     })

@@ -1,7 +1,7 @@
 //! Tests whether the readings determine the loads: interval widths against the loads, and loads against their expected size.
 
 use super::types::RunEstimate;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::sensitivity::Sensitivity;
 use crate::units::number;
 
@@ -11,8 +11,8 @@ const WIDE: f64 = 0.5;
 const HOPELESS: f64 = 10.0;
 /// Ratio to `expected` (1 sd) above which a size or a unit is wrong.
 const FAR_BEYOND: f64 = 10.0;
-/// Ratio to `expected` (1 sd) from which the finding is an error. Units that are confused with each other differ by a factor of 1000, and a stated
-/// size is known to better than a tenth of this factor.
+/// Ratio to `expected` (1 sd) from which the finding is an error. Units that are confused differ by a factor of 1000, and a stated size is known to
+/// better than a tenth of this factor.
 const OTHER_UNIT: f64 = 100.0;
 
 /// Returns findings on loads that the gauges don't determine, and on loads much larger than expected.
@@ -59,7 +59,7 @@ fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> 
         true => (Severity::Error, "all".to_owned()),
         false => {
             let names: Vec<&str> = small.iter().map(|s| s.0).collect();
-            (Severity::Warning, few(&names))
+            (Severity::Warning, list_few(&names))
         }
     };
     let whose = if all {
@@ -76,7 +76,8 @@ fn far_below_expected(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> 
                 "{whose} below {} % of their `expected` size in every run",
                 number(100.0 * largest)
             ),
-            "check the unit of the strain file (microstrain is expected; mm/m is a thousand times that), `applied` and `expected`, and whether these loads acted",
+            "check the unit of the strain file (the default is microstrain; mm/m is 1000 times as large), `applied`, `expected`, and \
+             whether these loads acted",
         )
         .with_numbers(largest, 1.0 / OTHER_UNIT),
     )
@@ -106,13 +107,13 @@ fn undetermined(s: &Sensitivity, runs: &[RunEstimate]) -> Option<Finding> {
         Finding::new(
             Severity::Error,
             "loads-not-determined",
-            few(&names),
+            list_few(&names),
             format!(
-                "in every run the 95 % interval of these loads is wider than half the largest load: the gauges do not tell them (condition \
-                 number {:.0}), and their values are mostly noise and model error",
+                "the gauges do not determine these loads: the 95 % interval exceeds half of the largest load in every run (condition \
+                 number {:.0}). The values are mostly noise and model error",
                 s.condition_number_scaled()
             ),
-            "add gauges where these loads differ (`place`), or drop loads",
+            "add gauges at places where these loads differ (`place`), or drop loads",
         )
         .with_numbers(worst, WIDE),
     )
@@ -144,9 +145,9 @@ pub fn check_planned(s: &Sensitivity, sigma: &[f64]) -> Option<Finding> {
         Finding::new(
             severity,
             "loads-not-determined",
-            few(&names),
-            "the standard deviation planned for these loads is more than half the largest `expected` load: the gauges will not tell them",
-            "place more gauges, state the noise that they have, or drop loads",
+            list_few(&names),
+            "the gauges do not determine these loads: the planned standard deviation exceeds half of the largest `expected` load",
+            "place more gauges, state the actual noise of the gauges, or drop loads",
         )
         .with_numbers(worst, WIDE),
     )
@@ -171,8 +172,8 @@ pub fn beyond_expected(
             severity,
             "load-beyond-expected",
             load,
-            format!("load `{load}` comes out up to {times} times its `expected` size"),
-            "check `applied`, units of the strain file or of the table of loads, and `expected`",
+            format!("load `{load}` is up to {times} times its `expected` size"),
+            "check `applied`, the units of the strain file or of the table of loads, and `expected`",
         )
         .with_numbers(ratio, FAR_BEYOND),
     )

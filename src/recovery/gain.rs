@@ -307,7 +307,7 @@ impl Gain {
         forms.map_or(0.0, |forms| forms.variance(l, self.of_s(f)))
     }
 
-    /// Loads of S among loads that sums stand behind.
+    /// Loads of S in a list whose last entries are sums.
     fn of_s<'f>(&self, f: &'f [f64]) -> &'f [f64] {
         f.get(..self.s.ncols()).unwrap_or(f)
     }

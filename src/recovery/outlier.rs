@@ -1,4 +1,4 @@
-//! A gauge whose error stands out of the others', and what it does to the loads.
+//! A gauge with an error larger than the errors of the others, and its effect on the loads.
 
 use super::dynamic::Beyond;
 use super::errors::ErrorModel;
@@ -40,8 +40,8 @@ pub(super) struct Suspects {
 
 /// Returns the gauge with the most significant gain or zero error, if chance does not explain it.
 ///
-/// The finding is an error if the interval of the gauge error does not contain zero, and the error exceeds the half width of a wanted load's
-/// interval. Otherwise it is a warning, or a note if chance remains possible. In all cases the error widens the intervals.
+/// The finding is an error if the interval of the gauge error excludes zero, and the error exceeds the half width of a load's interval. Otherwise it
+/// is a warning, or a note if chance remains possible. In all cases the error widens the intervals.
 pub(super) fn check(
     s: &Sensitivity,
     readings: &[Readings],
@@ -85,23 +85,23 @@ pub(super) fn check(
     let is_off = size.abs() > half;
     let size = match test.kind {
         ShiftKind::Gain => format!(
-            "{:+.1} % (+- {:.1} %) of the strain that the others make of it",
+            "{:+.1} % (± {:.1} %) of the strain predicted from the other gauges",
             100.0 * size,
             100.0 * half
         ),
         ShiftKind::Offset => format!(
-            "{:+.1} (+- {:.1}) microstrain from what the others make of it",
+            "{:+.1} (± {:.1}) microstrain from the prediction of the other gauges",
             size / MICROSTRAIN,
             half / MICROSTRAIN
         ),
     };
     let (severity, then) = if p < ALARM && ratio > 1.0 && is_off {
         let then = format!(
-            "that shifts load `{load}` by {ratio:.1} times the half width of its 95 % interval"
+            "this shifts load `{load}` by {ratio:.1} times the half width of its 95 % interval"
         );
         (Severity::Error, then)
     } else {
-        let then = "the intervals are widened by what that does to the loads".to_owned();
+        let then = "the intervals are widened by the effect on the loads".to_owned();
         let severity = if p < ALARM {
             Severity::Warning
         } else {
@@ -114,9 +114,9 @@ pub(super) fn check(
             severity,
             GAUGE_SUSPECT,
             name,
-            format!("gauge `{name}` is off by {size}: {then}"),
-            "check its position, direction, gauge and bridge factor and wiring; state a known error in [[correction]], or leave it out there \
-             with `ignore = true`",
+            format!("gauge `{name}` deviates by {size}: {then}"),
+            "check its position, direction, gauge factor, bridge factor and wiring; state a known error in [[correction]], or exclude the \
+             gauge with `ignore = true`",
         )
         .with_numbers(ratio, 1.0)
         .with_chance(p),
@@ -246,8 +246,8 @@ impl Suspect {
     }
 }
 
-/// The gauge whose error stands out most. An error shifts the loads, and their covariance with them, which hides a part of it: the largest ones
-/// are weighed with the loads that the corrected reading gives.
+/// The gauge with the largest error relative to its uncertainty. An error shifts the loads, and their covariance with them, which hides a part of it:
+/// the largest ones are weighed with the loads that the corrected reading gives.
 fn suspect(judged: &Judged) -> Option<Suspect> {
     let joint = &judged.joint;
     let mut order: Vec<&GaugeTest> = joint.gauges.iter().collect();

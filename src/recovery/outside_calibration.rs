@@ -1,7 +1,7 @@
 //! Loads that exceed the loads of the calibration. A straight line through the applied loads is not valid beyond them.
 
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -101,15 +101,15 @@ pub fn check_load(
     let shown = |v: f64| number(v * factor);
     let names: Vec<String> = beyond.iter().map(|b| format!("`{}`", b.1.run)).collect();
     let message = format!(
-        "load `{}` reaches {} {unit} in `{}`, {} times the largest of the calibration ({} to {} {unit}). Runs beyond the range: {}. \
-         The calibration does not show that the strain grows in proportion so far, and the interval does not include it",
+        "load `{}` reaches {} {unit} in `{}`, {} times the largest load of the calibration ({} to {} {unit}). Runs beyond the range: {}. \
+         The calibration does not confirm proportional strain up to this load, and the interval does not include the error",
         load.name,
         shown(farthest.value),
         farthest.run,
         number(ratio),
         shown(load.range[0]),
         shown(load.range[1]),
-        few(&names)
+        list_few(&names)
     );
     Some(
         Finding::new(
@@ -117,7 +117,7 @@ pub fn check_load(
             CODE,
             load.name,
             message,
-            "calibrate with known loads of this size, or use the loads within the range alone",
+            "calibrate with known loads of this size, or use only the loads within the range",
         )
         .with_numbers(
             ratio,
@@ -148,9 +148,10 @@ pub fn check_strain<'a>(
         Finding::new(
             Severity::Info,
             CODE,
-            few(&names),
+            list_few(&names),
             format!(
-                "gauge `{gauge}` reads up to {} times its largest strain of the calibration, as several loads act together: that their strains add up was not calibrated",
+                "gauge `{gauge}` reads up to {} times its largest strain of the calibration, because several loads act together. The \
+                 calibration did not test the sum of their strains",
                 number(most)
             ),
             "calibrate with a run in which the loads act together",

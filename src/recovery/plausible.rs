@@ -3,7 +3,7 @@
 use super::errors::ErrorModel;
 use super::types::Readings;
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::{MICROSTRAIN, number};
 
 /// Strain that no reading exceeds: gauges for large elongation end at a fifth of it, and metals break before.
@@ -80,19 +80,19 @@ fn median_size(readings: &[Readings]) -> f64 {
 /// The finding on readings beyond what gauges follow, half of which are below `median_size`; `None` without gauges.
 fn beyond_gauges(gauges: &[&str], largest: f64, median_size: f64) -> Option<Finding> {
     let (severity, what, limit) = if largest > METAL_ENDS || median_size > MOST_BELOW {
-        let what = "are no strain of a metal that S holds for: the unit of the readings is not microstrain, or the channel is overloaded";
+        let what = "are beyond the elastic strain of a metal, for which S is valid: the unit of the readings is not microstrain, or the channel is overloaded";
         (Severity::Error, what, METAL_ENDS)
     } else {
-        let what = "are more than strain gauges follow and than S holds for: the channel is overloaded, or the part yields there";
+        let what = "are beyond the range of strain gauges and of S: the channel is overloaded, or the part yields there";
         (Severity::Warning, what, GAUGES_END)
     };
     (!gauges.is_empty()).then(|| {
         Finding::new(
             severity,
             "reading-beyond-gauges",
-            few(gauges),
+            list_few(gauges),
             format!("readings of up to {} microstrain {what}", number(largest / MICROSTRAIN)),
-            "state readings in microstrain (strain times 1e6); leave an overloaded channel out: [[correction]] ignore = true",
+            "state readings in microstrain (strain times 1e6); exclude an overloaded channel: [[correction]] ignore = true",
         )
         .with_numbers(largest / MICROSTRAIN, limit / MICROSTRAIN)
     })
@@ -104,9 +104,9 @@ pub fn impossible(gauges: &[&str], largest: f64) -> Option<Finding> {
         Finding::new(
             Severity::Error,
             "reading-impossible",
-            few(gauges),
+            list_few(gauges),
             format!(
-                "readings of up to {:.1e} microstrain are no strain: they are taken for no reading",
+                "readings of up to {:.1e} microstrain cannot be strain: they are treated as missing",
                 largest / MICROSTRAIN
             ),
             "check the unit (microstrain is expected), the channel's overload, and the file",
@@ -121,7 +121,7 @@ pub fn impossible_in_record(subject: &str, n: u64) -> Finding {
         Severity::Error,
         "reading-impossible",
         subject,
-        format!("{n} readings are too large to be strain: they are taken for no reading"),
+        format!("{n} readings are too large to be strain: they are treated as missing"),
         "check the unit (microstrain is expected), the channel's overload, and the file",
     )
     .with_numbers(n as f64, 0.0)
@@ -147,12 +147,12 @@ fn too_quiet(readings: &[Readings], errors: ErrorModel, resolved: f64) -> Option
             "readings-below-noise",
             "measured.strain",
             format!(
-                "no reading stands out of the noise: the largest is {:.1e} microstrain, the noise stated is {} microstrain. The unit of \
-                 the readings is not microstrain, or nothing acted, or the logger gave nothing",
+                "no reading exceeds the noise: the largest is {:.1e} microstrain, the stated noise is {} microstrain. The unit of the \
+                 readings is not microstrain, or no load acted, or the logger recorded no signal",
                 largest / MICROSTRAIN,
                 number(errors.noise / MICROSTRAIN)
             ),
-            "state readings in microstrain (strain times 1e6), or the noise that these gauges have",
+            "state readings in microstrain (strain times 1e6), or the actual noise of these gauges",
         )
         .with_numbers(rms, TOO_QUIET)
     })

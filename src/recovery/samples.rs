@@ -9,7 +9,7 @@ use super::plausible;
 use super::runs::{Order, recover_beyond};
 use super::types::{Readings, Recovery};
 use super::verdict::NOT_SOLVABLE;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::input_faults::Handling;
 use crate::sensitivity::Sensitivity;
 
@@ -68,12 +68,12 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Find
                 "samples-with-gaps",
                 subject,
                 format!(
-                    "in {} of {} samples some gauge gives nothing: their loads are those of the others, with wider intervals; in at least {blank} of them \
-                     some load is blank",
+                    "in {} of {} samples some gauge has no reading. Loads of these samples are computed from the other gauges, with wider \
+                     intervals. In at least {blank} of them some load is blank",
                     missing.gaps,
                     missing.samples()
                 ),
-                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+                "repair the channel, or exclude its gauge: [[correction]] ignore = true",
             )
             .with_numbers(missing.gaps as f64, 0.0),
         );
@@ -92,9 +92,9 @@ pub fn check_gaps(subject: &str, s: &Sensitivity, missing: &Missing) -> Vec<Find
         out.push(Finding::new(
             Severity::Error,
             "loads-without-values",
-            few(&unknown),
-            "in no sample do the gauges that read tell these loads",
-            "bring the silent gauges back, or drop these loads",
+            list_few(&unknown),
+            "in no sample do the gauges with readings determine these loads",
+            "repair the gauges without readings, or drop these loads",
         ));
     }
     out

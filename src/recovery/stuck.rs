@@ -66,8 +66,8 @@ pub fn check(
     runs.iter().filter_map(dead).collect()
 }
 
-/// Parts of a record, first and last of the samples looked at, in which no gauge changes by a digit while elsewhere they do: it stands still
-/// there, or its logger gave nothing and repeats itself. `samples` as in [`check`].
+/// Parts of a record, first and last of the examined samples, in which no gauge changes by a digit while elsewhere they do: the structure is at
+/// standstill there, or its logger gave nothing and repeats itself. `samples` as in [`check`].
 pub fn still_parts(samples: &[(usize, &[f64])]) -> Vec<[usize; 2]> {
     /// Gauges that keep still to the last digit, all of them, by chance in no part.
     const MANY: usize = 3;

@@ -89,7 +89,8 @@ pub(super) fn check(runs: &mut [RunEstimate], known: &Uncertainty) -> Vec<Findin
             CODE,
             "runs",
             format!(
-                "{} of {} runs have several loads at once, the known runs of the calibration one each: that the strain of several is the sum of theirs was not taught",
+                "{} of {} runs have several loads at once, and each known run of the calibration has one load. The calibration did not \
+                 test the sum of the strains of several loads",
                 found.len(),
                 runs.len()
             ),
@@ -120,11 +121,11 @@ fn widen(run: &mut RunEstimate, distance: f64, known: &Uncertainty) -> Finding {
         CODE,
         name,
         format!(
-            "run `{name}` tells several loads at once, where each known run of the calibration had one alone; the nearest load alone is {sigmas:.1} times farther \
-             off than scatter makes. Its strain is either of several loads, or of one whose strain is not as taught: between two places, in another direction or at another \
-             speed. The intervals of its loads hold both, {alone} alone too"
+            "run `{name}` has several loads at once, and each calibration run had a single load. The nearest single load deviates \
+             {sigmas:.1} times more than the scatter explains. Either several loads act, or one load acts at another place, direction or \
+             speed than in the calibration. The intervals include both cases, also {alone} as the single load"
         ),
-        "look which it was; calibrate with such runs too: one load as it acted here, or several known loads at once",
+        "find out which case applies, and add such calibration runs: one load as it acted here, or several known loads at once",
     )
     .with_numbers(sigmas, 1.0)
 }

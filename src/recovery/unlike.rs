@@ -47,12 +47,13 @@ pub fn check(gauges: &[String], runs: &[RunEstimate], known: &Uncertainty) -> Ve
                 CODE,
                 &r.estimate.run,
                 format!(
-                    "run `{}`: what the loads leave is {birge:.1} times what noise, scatter and the uncertainty of S make, most at {}. Its loads are estimated with \
-                     that much more scatter of all gauges together, or error of each gauge by itself, whichever makes its strain likelier, their intervals accordingly",
+                    "run `{}`: the residual is {birge:.1} times the residual expected from noise, scatter and the uncertainty of S, \
+                     largest at {}. The intervals of its loads include this residual, as scatter common to all gauges or as an error of \
+                     each gauge, whichever fits better",
                     r.estimate.run,
                     worst(gauges, r)
                 ),
-                "look for a load at a place that the calibration has not seen, a wrong zero, or a faulty gauge",
+                "check for a load at a place without a calibration run, a wrong zero, or a faulty gauge",
             )
             .with_numbers(birge, 1.0)
         })
@@ -69,12 +70,13 @@ fn above_stated(gauges: &[String], unlike: &[&RunEstimate], of: usize) -> Option
             "residual-above-stated-errors",
             "residual",
             format!(
-                "in {} of {of} runs residuals are up to {most:.1} times what noise, model uncertainty and what may be left of the mesh's error make, most in `{}` at {}. The loads of these runs are estimated with that much more error on every gauge, their intervals accordingly",
+                "in {} of {of} runs residuals are up to {most:.1} times the size from noise, model uncertainty and mesh error, largest in `{}` at {}. The intervals of these runs include this residual as an error of every gauge",
                 unlike.len(),
                 worst_run.estimate.run,
                 worst(gauges, worst_run)
             ),
-            "state the noise and `model_uncertainty_rel` you believe in, or refine the deck; if you do, a small load is missing or a gauge is off",
+            "state the actual noise and `model_uncertainty_rel`, or refine the deck; if both are correct, a small load is missing or a \
+             gauge is wrong",
         )
         .with_numbers(most, 1.0),
     )
@@ -116,7 +118,7 @@ pub fn estimate_loosely(
     together
 }
 
-/// With the least excess that explains what is left of a run.
+/// With the least excess that explains the residual of a run.
 fn explained(with: &dyn Fn(f64) -> (RunEstimate, f64)) -> (RunEstimate, f64) {
     let is = |more: f64| {
         let run = with(more).0;

@@ -8,7 +8,7 @@ use super::solved::Solved;
 use super::types::{Readings, RunEstimate, Widening};
 use crate::estimate::chi_square_tail;
 use crate::estimate::{NORMAL_95, student_95};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::linalg::{Matrix, dense};
 use crate::sensitivity::Sensitivity;
 use crate::units::{MICROSTRAIN, number};
@@ -80,8 +80,8 @@ pub(super) fn check(
             Severity::Warning,
             "no-redundancy",
             "gauges",
-            "there are no more gauges than loads: the residual is zero whatever the readings, and a faulty gauge can't be noticed",
-            "add gauges: each one above the number of loads checks the rest",
+            "there are no more gauges than loads: the residual is always zero, and a faulty gauge cannot be detected",
+            "add gauges: each gauge above the number of loads tests the others",
         ));
         return verdict;
     }
@@ -148,15 +148,15 @@ fn unsolvable(s: &Sensitivity, solved: &Solved) -> Vec<Finding> {
             .collect();
         let silent = s.gauges.len() - pattern.used.len();
         let why = match silent {
-            0 => "the gauges don't separate".to_owned(),
-            n => format!("{n} gauges are silent, and the others don't tell"),
+            0 => "the gauges do not separate".to_owned(),
+            n => format!("{n} gauges have no readings, and the other gauges do not determine"),
         };
         out.push(Finding::new(
             Severity::Error,
             NOT_SOLVABLE,
-            few(&names),
-            format!("{why} {}: these loads are left blank", unseen.join(", ")),
-            "bring the silent gauges back, drop loads, or state `expected` for loads with role \"nuisance\"",
+            list_few(&names),
+            format!("{why} {}: these loads are blank", unseen.join(", ")),
+            "repair the gauges without readings, drop loads, or state `expected` for loads with role \"nuisance\"",
         ));
     }
     out
@@ -332,7 +332,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
         let subject = if sizes.bad.is_empty() || sizes.bad.len() == sizes.n {
             "all runs".to_owned()
         } else {
-            few(&sizes.bad)
+            list_few(&sizes.bad)
         };
         return Some(
             Finding::new(
@@ -340,8 +340,8 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
                 UNEXPLAINED,
                 subject,
                 format!(
-                    "the loads asked for leave {:.0} % of the measured strain unexplained, {} times what {stated} make: something \
-                     else strains the structure, and these loads have taken over part of it. They can't be trusted, nor can their intervals",
+                    "the loads of the job leave {:.0} % of the measured strain unexplained, {} times the residual expected from {stated}. \
+                     An unlisted load or effect strains the structure. Do not use these loads or their intervals",
                     sizes.share * 100.0,
                     number(excess)
                 ),
@@ -354,7 +354,7 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
         let then = if evidence.pooled > 1.0 {
             format!("intervals are {} times as wide", number(evidence.pooled))
         } else {
-            "intervals stay as they are, since the model's stated error is most of their width"
+            "intervals do not change, because the stated model error is most of their width"
                 .to_owned()
         };
         return Some(
@@ -363,11 +363,11 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
                 "residual-above-stated-errors",
                 "residual",
                 format!(
-                    "residuals are {} times what {stated} make ({:.1} % of the measured strain): {then}",
+                    "residuals are {} times the residual expected from {stated} ({:.1} % of the measured strain): {then}",
                     number(excess),
                     sizes.share * 100.0
                 ),
-                "state the noise and `model_uncertainty_rel` you believe in; if you do, a small load is missing or a gauge is off",
+                "state the actual noise and `model_uncertainty_rel`; if both are correct, a small load is missing or a gauge is wrong",
             )
             .with_numbers(excess, 1.0),
         );
@@ -377,8 +377,8 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
             Severity::Info,
             "residual-below-stated-errors",
             "residual",
-            format!("residuals are {} times what {stated} make: intervals are wider than the readings call for", number(excess)),
-            "state a smaller noise or model uncertainty, if that is what you believe",
+            format!("residuals are {} times the residual expected from {stated}: intervals are wider than necessary", number(excess)),
+            "state a smaller noise or model uncertainty, if it is justified",
         )
         .with_numbers(excess, 1.0)
     })
@@ -386,15 +386,15 @@ fn size_finding(evidence: &Evidence, sizes: &Sizes, errors: ErrorModel) -> Optio
 
 fn missing_load_remedy(patterns: usize) -> String {
     match patterns {
-        0 | 1 => "look for a load that acts and is not among the [[load]] (payload, lateral forces, temperature), or a faulty gauge".to_owned(),
+        0 | 1 => "check for a load that acts and is not among the [[load]] (payload, lateral forces, temperature), or a faulty gauge".to_owned(),
         m => format!(
-            "the residuals of the runs follow {m} patterns: look for {m} loads or effects that act and are not among the [[load]] (payload and \
+            "the residuals of the runs follow {m} patterns. Check for {m} loads or effects that are not among the [[load]] (payload and \
              its moments, lateral forces, temperature), then for a faulty gauge"
         ),
     }
 }
 
-/// Number of patterns among the residuals of the runs that stand out of noise: singular values above the largest one of pure noise.
+/// Number of patterns above noise among the residuals of the runs: singular values above the largest one of pure noise.
 fn patterns(n: usize, runs: &[RunEstimate]) -> usize {
     let m = runs.len();
     let std = |g: usize, r: &RunEstimate| {

@@ -1,6 +1,6 @@
 //! Names of users in tables.
 
-use crate::series::cell::guarded;
+use crate::series::cell::guard_formula;
 use std::borrow::Cow;
 
 /// Returns the text as a cell of a CSV table. Text with a comma, a quote or a line break is quoted (RFC 4180).
@@ -17,7 +17,7 @@ use std::borrow::Cow;
 /// assert_eq!(csv_cell("=1+1"), "'=1+1");
 /// ```
 pub fn csv_cell(text: &str) -> Cow<'_, str> {
-    let text = guarded(text);
+    let text = guard_formula(text);
     if text.contains([',', ';', '"', '\n', '\r', '\t']) {
         Cow::Owned(format!("\"{}\"", text.replace('"', "\"\"")))
     } else {
@@ -28,7 +28,7 @@ pub fn csv_cell(text: &str) -> Cow<'_, str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::cell::unguarded;
+    use crate::series::cell::remove_guard;
 
     #[test]
     fn what_would_break_a_row_is_quoted_and_reads_back() {
@@ -44,7 +44,7 @@ mod tests {
             let text = format!("run,value\n{},1\n", csv_cell(name));
             let mut reader = csv::Reader::from_reader(text.as_bytes());
             let row = reader.records().next().unwrap().unwrap();
-            assert_eq!((unguarded(&row[0]), &row[1]), (name, "1"));
+            assert_eq!((remove_guard(&row[0]), &row[1]), (name, "1"));
         }
     }
 

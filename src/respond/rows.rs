@@ -210,8 +210,8 @@ fn left_out(anisotropic: usize, absent: usize) -> Vec<Finding> {
                 Severity::Warning,
                 "stress-not-formed",
                 "elements",
-                format!("{anisotropic} elements are not of one isotropic material: they have strain, and no von Mises stress here"),
-                "judge them by strain",
+                format!("{anisotropic} elements have a material that is not isotropic: they have strain, and no von Mises stress here"),
+                "assess them by strain",
             )
             .with_numbers(anisotropic as f64, 0.0),
         );
@@ -222,7 +222,9 @@ fn left_out(anisotropic: usize, absent: usize) -> Vec<Finding> {
                 Severity::Info,
                 "elements-without-strain",
                 "elements",
-                format!("{absent} elements have no strain in some load's subcase and are left out"),
+                format!(
+                    "{absent} elements have no strain in the subcase of a load and are left out"
+                ),
                 "ask for STRAIN(FIBER,CENTER) = ALL in every subcase",
             )
             .with_numbers(absent as f64, 0.0),

@@ -57,7 +57,8 @@ fn warning(
         "bar-point-from-shear-centre",
         &gauge.name,
         format!(
-            "gauge `{}` on CBAR {} (PBARL {}, section {}): the results state {} microstrain at its point under load `{}`, which Nastran measures from the shear centre of the section; measured from the centroid it is {} microstrain",
+            "gauge `{}` on CBAR {} (PBARL {}, section {}): the results state {} microstrain at its point under load `{}`. Nastran measures \
+             the point from the shear centre of the section. Measured from the centroid the strain is {} microstrain",
             gauge.name,
             gauge.element,
             property.id,
@@ -66,7 +67,8 @@ fn warning(
             load.load.name,
             micro(right)
         ),
-        "model the bar by CBEAM and PBEAML, or by a PBAR with points from the centroid, or leave `results` out so that the built-in solver computes the strain",
+        "model the bar by CBEAM and PBEAML, or by a PBAR with points from the centroid. Or delete `results`, so that the built-in solver \
+         computes the strain",
     )
 }
 

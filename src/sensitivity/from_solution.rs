@@ -70,7 +70,8 @@ impl NoStrain {
                 "ask for STRAIN of that element in every subcase, or move the gauge"
             }
             NoStrainCause::BetweenStations => {
-                "state a station of the results (an end, or a CBARAO or PBEAM station), or let the built-in solver compute the strain (leave `results` out)"
+                "state a station of the results (an end, or a CBARAO or PBEAM station), or delete `results`, so that the built-in solver \
+                 computes the strain"
             }
         }
     }
@@ -178,7 +179,7 @@ pub fn common_shells(loads: &[LoadCaseOf]) -> (Vec<ShellIx>, Vec<Finding>) {
                 "elements-not-in-every-subcase",
                 "candidates",
                 format!(
-                    "{left_out} shells have strain in some loads' subcases and not in others: they are no candidates ({} are)",
+                    "{left_out} shells have strain in the subcases of some loads only: they are not candidates ({} are)",
                     common.len()
                 ),
                 "ask for STRAIN(FIBER,CENTER) = ALL in every subcase",

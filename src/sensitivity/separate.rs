@@ -46,7 +46,7 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
                 "load-without-strain",
                 &load.name,
                 format!(
-                    "load `{}` strains none of the gauges: it can't be recovered",
+                    "load `{}` strains none of the gauges and cannot be recovered",
                     load.name
                 ),
                 "check its subcase and its `applied`, or add a gauge that it strains",
@@ -61,7 +61,7 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
                 Severity::Error,
                 "fewer-gauges-than-loads",
                 "gauges",
-                format!("{n} gauges can't separate {k} loads"),
+                format!("{n} gauges cannot separate {k} loads"),
                 format!("add at least {} gauges, or drop loads", k - n),
             )
             .with_numbers(n as f64, k as f64),
@@ -103,7 +103,7 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
                     Severity::Error,
                     "loads-not-separable",
                     names.join(", "),
-                    format!("these gauges can't separate {}: the combination {words} strains none of them", list(&names)),
+                    format!("these gauges cannot separate {}: the combination {words} strains none of them", list(&names)),
                     "add a gauge that this combination strains (`place` finds one), or drop or combine these loads",
                 )
                 .with_numbers(ratio, RANK_TOLERANCE),
@@ -119,11 +119,10 @@ pub fn check_separability(s: &Sensitivity) -> Vec<Finding> {
                     "loads-weakly-separable",
                     names.join(", "),
                     format!(
-                        "the loads are hard to separate: the combination {words} strains the gauges {:.0} times less than the best \
-                         separated one, and errors of the readings grow as much in it",
+                        "the combination {words} is {:.0} times harder to resolve than the best one, and its errors are larger by this factor",
                         1.0 / ratio
                     ),
-                    "add gauges where this combination strains the structure (`place` chooses them)",
+                    "add gauges with `place`, or recover the combination as one load",
                 )
                 .with_numbers(scaled_condition, CONDITION_LIMIT),
             );
@@ -177,7 +176,7 @@ fn digits(x: f64) -> String {
 
 fn list(names: &[String]) -> String {
     match names {
-        [one] => format!("`{one}` from nothing at all"),
+        [one] => format!("a combination with `{one}`"),
         [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
         [] => String::new(),
     }

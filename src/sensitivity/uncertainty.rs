@@ -140,8 +140,8 @@ impl Uncertainty {
         }
     }
 
-    /// Mean of the covariance of the strain over loads of standard deviations `scales` that are independent of each other, `n x n` by rows,
-    /// noise left out, `scale` in.
+    /// Mean of the covariance of the strain over loads of standard deviations `scales` that are independent, `n x n` by rows, noise left out, `scale`
+    /// in.
     pub fn expected_covariance(&self, n: usize, scales: &[f64]) -> Vec<f64> {
         let none = vec![0.0; scales.len()];
         let mut out = match self.additive.is_empty() && self.center.is_empty() {

@@ -4,9 +4,9 @@ use super::spectrum::Fourier;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a
-/// sinc under a Lanczos window; beyond the ends the end samples stand.
-pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
+/// x as it would read without a lateness that changes with time: out(t) = x(t + late(t)), `late` in s by sample, interpolated by a sinc under a
+/// Lanczos window; beyond the ends the end samples are repeated.
+pub fn remove_lateness(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64> {
     /// Samples to either side: signals up to three quarters of half the rate pass to better than a per mille.
     const SIDE: isize = 12;
     let last = x.len() as isize - 1;
@@ -45,17 +45,17 @@ pub fn retimed(x: &[f64], rate_hz: f64, late: impl Fn(usize) -> f64) -> Vec<f64>
 /// # Example
 /// A smooth pulse, delayed by 3.4 samples:
 /// ```
-/// use strainbridge::series::align::delayed;
+/// use strainbridge::series::align::delay;
 ///
 /// let pulse = |t: f64| (-0.5 * ((t - 50.0) / 4.0).powi(2)).exp();
 /// let x: Vec<f64> = (0..128).map(|i| pulse(f64::from(i))).collect();
-/// let late = delayed(&x, 100.0, 0.034);
+/// let late = delay(&x, 100.0, 0.034);
 /// assert_eq!(late.len(), x.len());
 /// for (i, v) in (20..100).zip(&late[20..100]) {
 ///     assert!((v - pulse(f64::from(i) - 3.4)).abs() < 2e-3);
 /// }
 /// ```
-pub fn delayed(x: &[f64], rate_hz: f64, seconds: f64) -> Vec<f64> {
+pub fn delay(x: &[f64], rate_hz: f64, seconds: f64) -> Vec<f64> {
     let offset = super::detrend::mean(x);
     let zero_mean: Vec<f64> = x.iter().map(|v| v - offset).collect();
     let mut fourier = Fourier::default();

@@ -93,7 +93,7 @@ pub fn read_header(bytes: &[u8]) -> Result<Header, HeaderError> {
             .ok_or_else(short)? as usize;
         let name = at(p + 2, n)
             .and_then(|b| std::str::from_utf8(b).ok())
-            .ok_or_else(|| fault("a column's name is no text"))?;
+            .ok_or_else(|| fault("the name of a column is not text"))?;
         names.push(name.to_owned());
         p += 2 + n;
     }
@@ -108,7 +108,7 @@ pub fn read_header(bytes: &[u8]) -> Result<Header, HeaderError> {
         .ok_or_else(|| fault("no columns"))?;
     let samples = usize::try_from(samples).map_err(|_| fault("too many samples"))?;
     if samples.checked_mul(row).is_none_or(|n| n > left) {
-        return Err(fault("fewer bytes than the header promises samples"));
+        return Err(fault("the file has fewer bytes than the header states"));
     }
     Ok(Header {
         width,

@@ -5,11 +5,11 @@ use std::borrow::Cow;
 /// Marks a text that a spreadsheet would take for a formula: an apostrophe before it makes it text there.
 const GUARD: char = '\'';
 
-/// The text with a guard where a spreadsheet would take it for a formula; [`unguarded`] takes it off.
+/// The text with a guard where a spreadsheet would take it for a formula; [`remove_guard`] takes it off.
 ///
 /// # Reference
 /// OWASP, CSV injection: cells that begin with `=`, `+`, `-`, `@`, tab or carriage return.
-pub fn guarded(text: &str) -> Cow<'_, str> {
+pub fn guard_formula(text: &str) -> Cow<'_, str> {
     if is_formula(text) {
         Cow::Owned(format!("{GUARD}{text}"))
     } else {
@@ -17,8 +17,8 @@ pub fn guarded(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// The text as it was before [`guarded`].
-pub fn unguarded(text: &str) -> &str {
+/// The text as it was before [`guard_formula`].
+pub fn remove_guard(text: &str) -> &str {
     text.strip_prefix(GUARD)
         .filter(|rest| is_formula(rest))
         .unwrap_or(text)
@@ -35,13 +35,13 @@ mod tests {
     #[test]
     fn formulas_are_guarded_and_read_back_and_other_names_are_left_alone() {
         for name in ["=cmd|' /C calc'!A0", "+1", "-LF.FZ", "@SUM(A1)", "\tx"] {
-            let cell = guarded(name);
+            let cell = guard_formula(name);
             assert!(!is_formula(&cell), "{name}");
-            assert_eq!(unguarded(&cell), name);
+            assert_eq!(remove_guard(&cell), name);
         }
         for name in ["LF.FZ", "'quoted'", "5", ""] {
-            assert_eq!(guarded(name), name);
-            assert_eq!(unguarded(name), name);
+            assert_eq!(guard_formula(name), name);
+            assert_eq!(remove_guard(name), name);
         }
     }
 }

@@ -43,7 +43,7 @@ pub fn line(x: &[f64]) -> (f64, f64) {
 }
 
 /// x less the mean of a zero record of the same channel.
-pub fn zeroed(x: &[f64], zero_record: &[f64]) -> Vec<f64> {
+pub fn subtract_zero(x: &[f64], zero_record: &[f64]) -> Vec<f64> {
     let m = mean(zero_record);
     x.iter().map(|v| v - m).collect()
 }

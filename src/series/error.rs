@@ -155,7 +155,7 @@ impl SeriesError {
                 "samples are missing or repeated; resample the file to even steps",
             ),
             Self::NoRate => (
-                "neither a `t` or `time` column nor a `sample_rate`".to_owned(),
+                "the record has neither a `t` or `time` column nor a `sample_rate`".to_owned(),
                 "state one of them",
             ),
             Self::TooShort {
@@ -182,7 +182,7 @@ impl SeriesError {
                 "give every sample its time",
             ),
             Self::Empty => (
-                "it contains no samples, only a header".to_owned(),
+                "it contains a header and no samples".to_owned(),
                 "record again, or leave the file out",
             ),
             Self::Hole {
@@ -198,7 +198,7 @@ impl SeriesError {
             Self::NotBuilt { name, feature } => {
                 let wrong = format!("it is {name}, which this build of strainbridge does not read");
                 let remedy = format!(
-                    "take a released binary, build with `--features {feature}`, or export the record as CSV or RPC III"
+                    "use a released binary, build with `--features {feature}`, or export the record as CSV or RPC III"
                 );
                 return (wrong, remedy);
             }

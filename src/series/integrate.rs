@@ -12,18 +12,18 @@ use super::spectrum::{Band, Fourier};
 /// The displacement of a sine is its acceleration over `-omega^2`:
 /// ```
 /// use std::f64::consts::TAU;
-/// use strainbridge::series::integrate::integrated;
+/// use strainbridge::series::integrate::integrate_in_band;
 /// use strainbridge::series::spectrum::Band;
 ///
 /// let (rate_hz, omega) = (200.0, TAU * 5.0);
 /// let acceleration: Vec<f64> = (0..4000).map(|i| (omega * f64::from(i) / rate_hz).sin()).collect();
 /// let band = Band { low_hz: 0.5, high_hz: f64::INFINITY };
-/// let displacement = integrated(&acceleration, rate_hz, band, 2);
+/// let displacement = integrate_in_band(&acceleration, rate_hz, band, 2);
 /// for (a, d) in acceleration.iter().zip(&displacement).skip(1000).take(2000) {
 ///     assert!((d * omega * omega + a).abs() < 2e-3);
 /// }
 /// ```
-pub fn integrated(x: &[f64], rate_hz: f64, band: Band, times: i32) -> Vec<f64> {
+pub fn integrate_in_band(x: &[f64], rate_hz: f64, band: Band, times: i32) -> Vec<f64> {
     let mut fourier = Fourier::default();
     let spectrum = fourier.spectrum(&without_mean(x), rate_hz);
     fourier.samples(&spectrum.band_integrated(band, times), 1)

@@ -18,7 +18,7 @@ pub const UNIT_OF: &str = "unit of ";
 
 fn broken(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
-        wrong: format!("it can't be written as Parquet ({e})"),
+        wrong: format!("it cannot be written as Parquet ({e})"),
         remedy: "report this as an error of the program",
     }
 }

@@ -110,8 +110,8 @@ fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Findin
     let peer = median(peers.to_vec()).unwrap_or(0.0);
     let scale = mean(&finite(&c.samples)).abs();
     if own <= 1e-9 * scale || own == 0.0 || own < DEAD_SHARE * peer {
-        let message = "The channel carries no signal; nothing that needs it can be trusted.";
-        let remedy = "Check sensor, supply and cable; leave the channel out of the job.";
+        let message = "The channel has no signal. Results that need it are not reliable.";
+        let remedy = "Check sensor, supply and cable, or remove the channel from the job.";
         return Some(
             Finding::new(Severity::Error, "dead-channel", &c.name, message, remedy)
                 .with_numbers(own, DEAD_SHARE * peer),
@@ -126,7 +126,7 @@ fn check_dead(c: &Channel, kind: Kind, own: f64, peers: &[f64]) -> Option<Findin
     // Values at an extreme that repeat are clipping, reported as such.
     if longest >= STUCK_RUN && check_clipped(c, kind).is_none() {
         let message = format!(
-            "The value stays the same over {longest} samples: the sensor or logger froze for a while."
+            "The value is constant over {longest} samples: the sensor or logger did not update."
         );
         return Some(
             Finding::new(
@@ -199,7 +199,8 @@ fn check_clipped(c: &Channel, kind: Kind) -> Option<Finding> {
         "{} peaks are cut flat at {level:.4} ({total} samples): the sensor or its amplifier saturated.",
         top.max(bottom)
     );
-    let remedy = "Measure again with a larger range; peaks and everything integrated from this channel are too small.";
+    let remedy =
+        "Measure again with a larger range. Peaks and integrals of this channel are too small.";
     Some(
         Finding::new(
             Severity::Error,
@@ -234,8 +235,7 @@ fn check_spikes(c: &Channel) -> Option<Finding> {
     let largest = bend.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let message =
         format!("{count} single samples differ from their neighbours by up to {largest:.4}.");
-    let remedy =
-        "Look for loose contacts; remove the spikes before band-limiting, which smears them.";
+    let remedy = "Check for loose contacts. Remove the spikes before the band limit is applied, which widens them.";
     Some(
         Finding::new(Severity::Warning, "spikes", &c.name, message, remedy)
             .with_numbers(largest, SPIKE_SIGMA * sigma),
@@ -273,7 +273,7 @@ fn check_drift(c: &Channel, kind: Kind, gravity: f64) -> Option<Finding> {
         return None;
     }
     let message = format!("The mean moves by {change:.4} over the record.");
-    let remedy = "Temperature or a loose sensor for accelerations; for forces also load that is gained or lost.";
+    let remedy = "Check for temperature or a loose sensor (accelerations), or for load that is gained or lost (forces).";
     Some(
         Finding::new(Severity::Warning, "drift", &c.name, message, remedy)
             .with_numbers(change, material),

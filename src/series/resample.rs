@@ -6,17 +6,17 @@
 ///
 /// # Example
 /// ```
-/// use strainbridge::series::resample::upsampled;
+/// use strainbridge::series::resample::upsample;
 ///
 /// let pulse = |t: f64| 3.0 + 0.1 * t + (-0.5 * ((t - 32.0) / 4.0).powi(2)).exp();
 /// let x: Vec<f64> = (0..65).map(|i| pulse(f64::from(i))).collect();
-/// let dense = upsampled(&x, 4);
+/// let dense = upsample(&x, 4);
 /// assert_eq!(dense.len(), 64 * 4 + 1);
 /// for (i, v) in dense.iter().enumerate() {
 ///     assert!((v - pulse(i as f64 / 4.0)).abs() < 1e-6);
 /// }
 /// ```
-pub fn upsampled(x: &[f64], factor: usize) -> Vec<f64> {
+pub fn upsample(x: &[f64], factor: usize) -> Vec<f64> {
     let n = x.len();
     let factor = factor.max(1);
     let (Some(first), Some(last)) = (x.first(), x.last()) else {

@@ -1,9 +1,9 @@
-use super::align::delayed;
+use super::align::delay;
 use super::channels::{Channel, Channels};
 use super::csv::read_csv;
 use super::detrend::{line, rms};
 use super::error::SeriesError;
-use super::integrate::integrated;
+use super::integrate::integrate_in_band;
 use super::quality::{Kind, check_channels};
 use super::spectrum::Band;
 use super::welch::{CrossSpectra, cross_spectra};
@@ -48,7 +48,7 @@ fn codes(record: &Channels) -> Vec<(String, &'static str)> {
 
 /// A live body acceleration: band-limited noise on gravity.
 fn live(seed: u64) -> Vec<f64> {
-    let x = integrated(
+    let x = integrate_in_band(
         &noise(16_000, seed),
         RATE,
         Band {
@@ -85,7 +85,7 @@ fn integration_in_the_frequency_domain_returns_a_sine_and_ignores_an_offset() {
     let a: Vec<f64> = (0..n)
         .map(|i| 9.81 - w * w * (w * i as f64 / RATE).sin())
         .collect();
-    let d = integrated(
+    let d = integrate_in_band(
         &a,
         RATE,
         Band {
@@ -113,7 +113,7 @@ fn a_high_pass_keeps_the_double_integral_of_noise_small_where_detrending_does_no
     let error = |d: &[f64]| {
         rms(&(5000..27_000).map(|i| d[i] - truth(i)).collect::<Vec<_>>()) / (0.01 / 2f64.sqrt())
     };
-    let open = without_line(&integrated(
+    let open = without_line(&integrate_in_band(
         &a,
         RATE,
         Band {
@@ -122,7 +122,7 @@ fn a_high_pass_keeps_the_double_integral_of_noise_small_where_detrending_does_no
         },
         2,
     ));
-    let banded = integrated(
+    let banded = integrate_in_band(
         &a,
         RATE,
         Band {
@@ -141,7 +141,7 @@ fn a_shift_by_part_of_a_sample_moves_a_sine_by_its_phase() {
     let sine = |i: usize, late: f64| 2.0 + (2.0 * PI * f * (i as f64 / RATE - late)).sin();
     let x: Vec<f64> = (0..8000).map(|i| sine(i, 0.0)).collect();
     for seconds in [0.0004, -0.005, 0.1234] {
-        let y = delayed(&x, RATE, seconds);
+        let y = delay(&x, RATE, seconds);
         // The ends carry the record's start and stop.
         for k in 2000..6000 {
             assert!((y[k] - sine(k, seconds)).abs() < 1e-2, "{seconds} {k}");
@@ -302,11 +302,11 @@ fn what_to_do_stays_whole_where_names_and_remedies_hold_colons() {
     let line = SeriesError::Line {
         line: 1,
         what: "no line names the columns".into(),
-        remedy: "begin with a header line: `time` and a name a channel",
+        remedy: "begin with a header line: `time` and one name for each channel",
     };
     assert_eq!(
         line.parts().1,
-        "begin with a header line: `time` and a name a channel"
+        "begin with a header line: `time` and one name for each channel"
     );
     assert_eq!(
         line.to_string(),

@@ -155,7 +155,7 @@ pub(crate) fn other_stations(read: &DeckModel, combination: &Subcase) -> Fault {
         read.deck.path(combination.at),
         combination.at.line,
         format!("subcase {}", combination.id),
-        "its subcases have bar strain at different stations, which can't be combined",
+        "its subcases have bar strain at different stations, which cannot be combined",
         "solve the sum of the loads as a SUBCASE with a LOAD card",
     )
 }

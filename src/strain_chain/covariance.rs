@@ -4,7 +4,7 @@
 //! calibration run had one load alone. Then little-endian f64: covariance of S by rows, entry `g k + l`, (strain per job unit)^2; scatter over gauges
 //! by rows; mean squares of S; if the header states `additive`, the covariance of readings at any load by rows.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, Faults};
 use crate::sensitivity::{Sensitivity, Uncertainty};
 use serde::{Deserialize, Serialize};
@@ -111,8 +111,8 @@ pub fn read_covariance(
             "loads",
             format!(
                 "it contains the loads {}, the job has {}",
-                few(&header.loads),
-                few(loads)
+                list_few(&header.loads),
+                list_few(loads)
             ),
         ));
     }

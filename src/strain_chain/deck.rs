@@ -1,7 +1,7 @@
 //! Decks and models: INCLUDE from the file system, the model of a deck or of an OP2 that holds the mesh.
 
 use crate::fe::mass_moved;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList};
 use crate::host::files::{Inputs, why_unreadable};
 use crate::host::what_is::binary_kind;
@@ -56,7 +56,7 @@ pub(crate) fn no_deck(given: &str, bytes: &[u8]) -> Option<Fault> {
     let kind = binary_kind(bytes).filter(|_| !looks_like_op2(bytes))?;
     let remedy = match format_of(bytes) {
         Some(_) => {
-            "name a Nastran deck; a record belongs to a job, as `[measured] strain` or `[vehicle] data`"
+            "name a Nastran deck; a record is named in a job, as `[measured] strain` or `[vehicle] data`"
         }
         None => "name a Nastran deck (text) or an OP2 that contains the mesh",
     };
@@ -118,7 +118,7 @@ fn mass_beyond(model: &Model, given: &str) -> Option<Fault> {
             given,
             "mass",
             "the mass of the model, its centre of gravity or moments of inertia exceed the range of numbers",
-            "look for a density, thickness, area or CONM2 with a wrong exponent",
+            "check for a density, thickness, area or CONM2 with a wrong exponent",
         )
     })
 }
@@ -182,8 +182,8 @@ fn notes_of(deck: &Deck, given: &str) -> Vec<Finding> {
         .iter()
         .map(|n| format!("`{}` line {}: {}", deck.path(n.at), n.at.line, n.text))
         .collect();
-    let message = few(&shown);
-    let remedy = "check that these lines are read as meant, and that the deck is complete";
+    let message = list_few(&shown);
+    let remedy = "check how these lines were read, and whether the deck is complete";
     let finding = Finding::new(Severity::Info, "deck-note", given, message, remedy);
     vec![finding.with_numbers(deck.notes.len() as f64, 0.0)]
 }
@@ -227,7 +227,7 @@ impl DeckModel {
     /// Returns a fault if results contain elements that this deck lacks, and no ENDDATA shows that the deck is complete.
     pub fn cut_beside(&self, findings: &[Finding]) -> Option<Fault> {
         let lacking = findings.iter().find(|f| f.code == "element-not-in-deck")?;
-        self.ends_open().then(|| self.open_end(&lacking.message))
+        self.ends_open().then(|| self.open_end(lacking.clause()))
     }
 
     fn open_end(&self, and: &str) -> Fault {

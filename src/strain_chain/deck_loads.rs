@@ -1,7 +1,7 @@
 //! Loads of a job compared with the loads of the subcases whose results they name.
 
 use crate::fe::{CaseResult, UnitLoad};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::words::short;
 use crate::job::{Job, JobLoad, LoadActs};
@@ -24,9 +24,9 @@ struct Resultant {
 
 /// Refuses loads whose subcase in the deck contains another load: the strain would belong to the other load.
 ///
-/// For a load at a grid, force and moment about the grid are compared, so that a couple may stand for a moment. Pressures, accelerations,
-/// temperatures and enforced displacements in its subcase are refused. A load set is compared with the LOAD of the subcase. A combination
-/// is the sum of its subcases. A subcase whose label differs in the results is not compared: the results are of another deck.
+/// For a load at a grid, force and moment about the grid are compared, so that a couple may represent a moment. Pressures, accelerations,
+/// temperatures and enforced displacements in its subcase are refused. A load set is compared with the LOAD of the subcase. A combination is the sum
+/// of its subcases. A subcase whose label differs in the results is not compared: the results are of another deck.
 ///
 /// # Errors
 /// Every such load.
@@ -155,7 +155,7 @@ impl Compared<'_> {
         let wrong = format!(
             "{} of the deck also contains {}, so its strain is not the strain of the load alone",
             self.subcase_in_words(),
-            few(&words)
+            list_few(&words)
         );
         let remedy = match set {
             Some(sid) => format!(

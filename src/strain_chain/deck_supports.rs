@@ -1,7 +1,7 @@
 //! Support that a job states compared with the SPC sets of the subcases whose results it reads.
 
 use crate::fe::{CaseResult, SupportChoice};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::job::Job;
 use crate::model::Model;
 use crate::strain_chain::deck::DeckModel;
@@ -54,7 +54,7 @@ pub(super) fn check_deck_supports<'a>(
         Some(sid) => format!("subcase {subcase} has SPC = {sid}"),
         None => format!("subcase {subcase} has no SPC"),
     });
-    let words = few(&words.collect::<Vec<_>>());
+    let words = list_few(&words.collect::<Vec<_>>());
     let wrong = match stated {
         SupportChoice::Deck => {
             format!("the loads of the job were solved on different supports: {words}")
@@ -67,8 +67,8 @@ pub(super) fn check_deck_supports<'a>(
             Severity::Warning,
             "support",
             deck.given.as_str(),
-            format!("{wrong}: the strain of the results belongs to the support of the deck"),
-            "solve all unit loads on the support that the structure has while gauges are read",
+            format!("{wrong}: the strain of the results is valid for the support of the deck"),
+            "solve all unit loads on the support of the structure during the measurement",
         )
     })
 }

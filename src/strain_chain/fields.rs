@@ -7,7 +7,8 @@ use super::load_cases::{check_labels, find_cases};
 use super::mesh::{MeshError, WantedAt, not_checked, take_out};
 use super::unit_loads::unit_loads;
 use crate::fe::from_results::{
-    Displacements, ReadOptions, other_element_types, repeated, solution_from_file, subcase_labels,
+    Displacements, ReadOptions, find_repeated_results, other_element_types, solution_from_file,
+    subcase_labels,
 };
 use crate::fe::{CaseResult, LoadCase, Solution, SolveOptions, UnitLoad, combine_results};
 use crate::gauge::CornerRows;
@@ -269,7 +270,7 @@ fn read_results(
         let read = work.stage("read results", |_| {
             ResultsFile::read(&bytes, &named.given).map(|file| {
                 let solution = solution_from_file(&deck.model, &named.given, &file, &options);
-                let repeated = repeated(&[&file], options.subcases.as_ref());
+                let repeated = find_repeated_results(&[&file], options.subcases.as_ref());
                 (solution, repeated, subcase_labels(&file))
             })
         });

@@ -117,7 +117,7 @@ pub fn read_given(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults> {
                     table.rows.get(*row).map_or(0, |r| r.0),
                     &*loads[l].name,
                     "blank",
-                    "give every influence coefficient (0 if there is none)",
+                    "give every influence coefficient (0 if a load does not strain the gauge)",
                 )),
                 Err(f) => faults.push(f),
             }
@@ -186,7 +186,7 @@ fn rows_of(
                     g.line,
                     "gauge",
                     format!("gauge `{reading}` has no row in `{file}`"),
-                    "add its row, or drop the gauge",
+                    "add its row, or remove the gauge",
                 )),
             }
         }

@@ -1,8 +1,8 @@
 //! Search for the case of the results in which each load of a job acts.
 
-use crate::fe::from_results::{HOLD_ONCE, Repeated, complete, repeated};
+use crate::fe::from_results::{HOLD_ONCE, Repeated, complete, find_repeated_results};
 use crate::fe::{CaseResult, Solution};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::{Job, JobLoad, NamedFile, Reference};
@@ -111,7 +111,7 @@ fn check_shared(
         let file = ResultsFile::read(bytes, &named.given);
         read.push(file.map_err(|e| results_fault(job, named, &e))?);
     }
-    let found = repeated(&read.iter().collect::<Vec<_>>(), Some(shared));
+    let found = find_repeated_results(&read.iter().collect::<Vec<_>>(), Some(shared));
     let names: Vec<&str> = files.iter().map(|f| f.given.as_str()).collect();
     let mut faults = FaultList::new();
     for taker in takers.iter().filter(|t| t.file.is_none()) {
@@ -123,9 +123,8 @@ fn check_shared(
                     "name the file that contains the load: result = \"{}\"",
                     first.copied().unwrap_or_default()
                 ),
-                _ => {
-                    "name result files in `model.results` of which only one contains it".to_owned()
-                }
+                _ => "name result files in `model.results` of which only one contains the load"
+                    .to_owned(),
             };
             faults.push(taker.fault(job, &r.words(&names), remedy));
         }
@@ -184,7 +183,7 @@ fn without_case(job: &Job, load: &JobLoad, solutions: &[Solution]) -> Fault {
     );
     let remedy = match there.is_empty() {
         true => "ask for STRAIN(FIBER,CENTER) = ALL and PARAM,POST,-1 in the run (`cases` writes such a deck)".to_owned(),
-        false => format!("state `subcase`; the results contain {}", few(&there)),
+        false => format!("state `subcase`; the results contain {}", list_few(&there)),
     };
     Fault::at(&*job.file, load.line, "load.subcase", wrong, remedy)
 }

@@ -9,7 +9,7 @@
 
 use super::specs::corrected_spec_of;
 use crate::fe::{CaseResult, LoadCase, ShellField, Solution, UnitLoad};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
@@ -105,7 +105,7 @@ pub fn refined_mesh(model: &Model, gauges: Option<&[Gauge]>) -> Result<RefinedMo
         })?
     };
     model.refined_at(&divided).ok_or_else(|| {
-        "the mesh can't be divided (shells with mid-side grids, bars or solids along shells in other displacement frames, or no shells)"
+        "the mesh cannot be refined (shells with mid-side grids, bars or solids along shells in other displacement frames, or no shells)"
             .to_owned()
     })
 }
@@ -132,7 +132,7 @@ fn gauges_of(job: &Job, model: &Model) -> Vec<Gauge> {
 /// Subtracts the mesh error from the strain of a job's unit loads and of its `reference` state. Returns it by load: strain on the deck's mesh less
 /// the limit.
 ///
-/// `None` if the job declines it, or if no finer mesh could be solved, which a finding reports. A job that says nothing about it gets it on decks
+/// `None` if the job declines it, or if no finer mesh could be solved, which a finding reports. A job without this key gets it on decks
 /// of shells with up to [`MOST_GRIDS_TWICE`] grids; a note states why a larger deck or another mesh has none.
 pub(super) fn take_out(
     work: &mut Work,
@@ -367,12 +367,13 @@ pub fn coarse_at_gauges(gauges: &[Gauge], errors: &[GaugeMeshError], left: f64) 
             "mesh-coarse-at-gauges",
             "model",
             format!(
-                "the deck's mesh is too coarse at {n} of {} gauges: the readings are off by {}. S is corrected for this error, and {:.0} % of it counts as uncertainty",
+                "the deck's mesh is too coarse at {n} of {} gauges: the readings have errors of {}. S is corrected for this error, and \
+                 {:.0} % of it is treated as uncertainty",
                 gauges.len(),
-                few(&named),
+                list_few(&named),
                 100.0 * left
             ),
-            "refine the deck around these elements (half the width leaves a quarter of the error), or move the gauges",
+            "refine the deck around these elements (half the width gives a quarter of the error), or move the gauges",
         )
         .with_numbers(worst, LARGE),
     )
@@ -394,7 +395,8 @@ pub(super) fn uncertainty(
     }
     if n * k > MOST_ENTRIES {
         let message = format!(
-            "S has {} entries, and above {MOST_ENTRIES} their covariance is not stored: S is corrected for the mesh error, but intervals do not include what may remain of it",
+            "S has {} entries, and above {MOST_ENTRIES} their covariance is not stored: S is corrected for the mesh error, but intervals \
+             do not include the remaining error",
             n * k
         );
         let remedy =

@@ -43,7 +43,7 @@ use crate::gauge::Gauge;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
 use crate::host::work::Work;
-use crate::job::correct::{check_channels, noted};
+use crate::job::correct::{check_channels, report_corrections};
 use crate::job::{Job, Measured};
 use crate::recovery::ErrorModel;
 use crate::sensitivity::{Sensitivity, from_cases};
@@ -93,7 +93,7 @@ pub fn prepare_beside(
     job: &Job,
     beside: Option<Beside<'_>>,
 ) -> Result<Prepared, Faults> {
-    work.findings.extend(noted(job));
+    work.findings.extend(report_corrections(job));
     let mut prepared = if job.sensitivity.is_some() {
         let sensitivity = given_as_asked(work, job)?;
         // A calibrated S stands beside its model, whose fields are wanted for responses and pictures.
@@ -154,7 +154,7 @@ pub fn given_as_asked(work: &mut Work, job: &Job) -> Result<Sensitivity, Faults>
             c.line,
             "correction.angle_deg",
             format!(
-                "S is given, so the row of gauge `{}` can't be turned",
+                "the job gives S, so the row of gauge `{}` cannot be turned",
                 c.gauge
             ),
             "turn it in the table of [sensitivity], or give a [model]",

@@ -59,8 +59,8 @@ pub fn other_deck(job: &Job, named: &NamedFile, finding: &Finding) -> Fault {
         &*job.file,
         named.line,
         &*named.key,
-        format!("`{}`: {}", named.given, finding.message),
-        &*finding.remedy,
+        format!("`{}`: {}", named.given, finding.clause()),
+        finding.remedy.trim_end_matches('.'),
     )
 }
 

@@ -1,7 +1,7 @@
 //! Finding about cards and statements of a deck that the built-in solver does not carry.
 
 use crate::fe::{LoadCase, UnitLoad, unsupported_cards};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::Model;
 use nastran::bdf::{Deck, Subcase};
 use nastran::place::Place;
@@ -53,13 +53,14 @@ fn refused_in(
     }
     let counted: Vec<String> = names.iter().map(|(n, c)| format!("{n}: {c}")).collect();
     let message = format!(
-        "{}: `{}` acts on the solution, and the built-in solver does not support it. Such entries: {} ({})",
+        "{}: `{}` affects the solution, and the built-in solver does not support it. Such entries: {} ({})",
         place(first.at),
         first.card,
         refused.len(),
-        few(&counted)
+        list_few(&counted)
     );
-    let remedy = "give results of Nastran in the job; the built-in solver refuses this model";
+    let remedy =
+        "give results of Nastran in the job; the built-in solver does not solve this model";
     let mut finding = Finding::new(Severity::Warning, NOT_SOLVED, given, message, remedy);
     finding.measured = Some(refused.len() as f64);
     Some(finding)

@@ -6,10 +6,10 @@ use crate::fe::{
     SupportChoice, UnitLoad, relief_finding, solution_of, solve_displacements, solve_modes,
     support_of,
 };
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::store::{Key, read_solution, write_solution};
-use crate::host::work::{Work, stopped};
+use crate::host::work::{Work, cancelled_fault};
 use crate::job::Job;
 use crate::model::Model;
 use crate::strain_chain::deck::DeckModel;
@@ -37,7 +37,7 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
     let fault =
         |wrong: String, remedy: &str| Fault::at(&*job.file, line, "model.support", wrong, remedy);
     let support = support_of(model, wanted).map_err(|e| {
-        let remedy = "write support = \"free\", or the id of the SPC set that holds the structure while gauges are read";
+        let remedy = "write support = \"free\", or the id of the SPC set that supports the structure during the measurement";
         Faults::from(fault(e.to_string(), remedy))
     })?;
     match moved_by(model, support) {
@@ -46,7 +46,7 @@ pub fn support_of_job(job: &Job, model: &Model) -> Result<Support, Faults> {
             format!(
                 "SPC set {sid} moves grid {grid} by {by}: the strain of this displacement belongs to no load, and would be in every column of S"
             ),
-            "hold it at 0, or name another set; `solve` on the deck uses displacements that its subcases enforce",
+            "set the displacement to 0, or name another set; `solve` on the deck uses displacements that its subcases enforce",
         ))),
     }
 }
@@ -80,7 +80,7 @@ pub fn support_finding(deck: &str, support: Support) -> Finding {
         "support",
         deck,
         format!("under unit loads the structure is {}", support.words()),
-        "state `support` in [model] if it is held otherwise while gauges are read",
+        "state `support` in [model] if the support during the measurement differs",
     )
 }
 
@@ -151,9 +151,9 @@ fn check_mpc_sets(read: &DeckModel) -> Result<(), Faults> {
     let words: Vec<String> = sets.iter().map(word).collect();
     let wrong = format!(
         "the deck's subcases select different MPC sets ({}): unit loads need one",
-        few(&words)
+        list_few(&words)
     );
-    let remedy = "select the MPC set of the structure above the subcases alone";
+    let remedy = "select the MPC set of the structure above the subcases only";
     Err(Faults::from(Fault::of(&read.given, "MPC", wrong, remedy)))
 }
 
@@ -487,7 +487,7 @@ fn identity(work: &mut Work, read: &DeckModel, cases: &[LoadCase], made: &str) -
 /// The solver's faults with file and line; that the work was stopped is no fault of the deck.
 pub fn faults_of(error: &FeError, read: &DeckModel) -> Faults {
     if *error == FeError::Stopped {
-        return stopped().into();
+        return cancelled_fault().into();
     }
     let list: FaultList = error
         .faults()

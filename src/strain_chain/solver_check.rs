@@ -2,7 +2,7 @@
 
 use crate::fe::deck_result_consistency::StrainDifference;
 use crate::fe::{CaseResult, Corners, SolveOptions};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::strain_chain::deck::DeckModel;
@@ -89,7 +89,7 @@ fn of_loads(deck: &DeckModel, differences: &[(&str, StrainDifference)]) -> Optio
         .collect();
     let message = format!(
         "the strain in the results differs from the strain that the built-in solver computes on this deck: {}",
-        few(&named)
+        list_few(&named)
     );
     let remedy = "give the deck of this run, or run the deck again: material, thickness, coordinates, normals, supports or the place of a load differ";
     let severity = match largest > 2.0 * RULES.share {
@@ -115,7 +115,7 @@ fn of_single_shells(deck: &DeckModel, differences: &[(&str, StrainDifference)]) 
     let ids: Vec<&u32> = largest.keys().collect();
     let message = format!(
         "the strain in the results has another sign or direction than the built-in solver computes on this deck, in elements {}",
-        few(&ids)
+        list_few(&ids)
     );
     let remedy = "give the deck of this run, or run the deck again: the order of the grids of these elements differs, and with it the upper surface or the element axes";
     let finding = Finding::new(Severity::Error, CODE, &*deck.given, message, remedy);

@@ -99,7 +99,7 @@ fn spec_of(model: &Model, g: &JobGauge) -> Result<GaugeSpec, Fault> {
         fault(
             "surface2",
             format!(
-                "gauge `{}`: `element2` is not parallel to `element`, so no side of it is the opposite side",
+                "gauge `{}`: `element2` is not parallel to `element`, and none of its sides is the opposite side",
                 g.name
             ),
             "state `surface2`",

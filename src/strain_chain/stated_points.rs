@@ -94,8 +94,8 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
                 "gauge-side-assumed",
                 &g.name,
                 format!(
-                    "{}:{}: the point stated for gauge `{}` {why}: strain is taken on the {side}, which reverses the bending strain if the other \
-                     side is meant",
+                    "{}:{}: the point stated for gauge `{}` {why}. Strain is taken on the {side}; on the other side the bending strain has \
+                     the opposite sign",
                     g.file, g.line, g.name
                 ),
                 "state `surface`, or a point on the skin",
@@ -115,8 +115,8 @@ fn side_finding(model: &Model, job: &Job, g: &JobGauge) -> Option<Finding> {
             "gauge-side-contradicted",
             &g.name,
             format!(
-                "{}:{}: the point stated for gauge `{}` is {} {unit} from the {} of element {element}, the stated surface, and {} {unit} from \
-                 its other side: strain is taken on the {}",
+                "{}:{}: the point stated for gauge `{}` is {} {unit} from the {} of element {element}, the stated surface, and {} {unit} \
+                 from its other side. Strain is taken on the {}",
                 g.file, g.line, g.name, short(here), g.surface.word(), short(other), g.surface.word()
             ),
             "correct `surface` or the point, or state one of the two alone",
@@ -171,8 +171,8 @@ fn off_their_elements(model: &Model, job: &Job) -> Vec<Finding> {
                 "point-off-element",
                 &g.name,
                 format!(
-                    "{}:{}: the point stated for gauge `{}` is {} {unit} from its element {element}, which is {} {unit} large: the strain is \
-                     that of the element",
+                    "{}:{}: the point stated for gauge `{}` is {} {unit} from its element {element}, which is {} {unit} large. Strain is \
+                     taken at the element",
                     g.file, g.line, g.name, short(found.distance), short(found.size)
                 ),
                 "correct the point or the element, or state one of the two alone",

@@ -31,7 +31,7 @@ pub fn unit_loads(job: &Job, model: &Model) -> Result<Vec<UnitLoad>, Faults> {
                     &*job.file,
                     l.line,
                     "load.grid",
-                    format!("load `{}` acts nowhere", l.name),
+                    format!("load `{}` has no place in the deck", l.name),
                     "add `grid` and `component`, or `load_set`",
                 ));
                 None

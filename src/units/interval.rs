@@ -36,7 +36,7 @@ pub fn plus_minus(value: f64, half: f64) -> String {
     format!("{} ± {}", rounded(value, of_value), rounded(half, of_half))
 }
 
-/// Returns the half width of a 95 % interval, `± 0.36`, with two significant digits; a dash stands for an unknown one.
+/// Returns the half width of a 95 % interval, `± 0.36`, with two significant digits; a dash for an unknown one.
 pub fn half_width(half: f64) -> String {
     match half.is_finite() && PLAIN.contains(&half) {
         true => format!("± {}", rounded(half, 1 - exponent(half))),

@@ -14,7 +14,7 @@ mod unit;
 mod tests;
 
 pub use interval::{half_width, plus_minus};
-pub use number::{fixed, number, percent};
+pub use number::{format_fixed, number, percent};
 pub use plausible::*;
 pub use report::*;
 pub use strain::microstrain_in;

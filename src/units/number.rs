@@ -23,7 +23,7 @@ pub fn number(x: f64) -> String {
 }
 
 /// Formats a number with `digits` decimals; a dash for NaN and infinity.
-pub fn fixed(x: f64, digits: usize) -> String {
+pub fn format_fixed(x: f64, digits: usize) -> String {
     match x.is_finite() {
         true => format!("{x:.digits$}"),
         false => UNKNOWN.into(),

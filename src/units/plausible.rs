@@ -47,7 +47,7 @@ pub fn check_units(
             "units-contradict-unitsys",
             "PARAM,UNITSYS",
             format!(
-                "The job states `{}`, the deck states PARAM,UNITSYS,{}",
+                "the job states `{}`, and the deck states PARAM,UNITSYS,{}",
                 system.name(),
                 text.trim()
             ),
@@ -129,12 +129,12 @@ fn metal_elsewhere(
 fn named_elsewhere(f: Finding, other: UnitSystem) -> Finding {
     Finding {
         message: format!(
-            "{}; in `{}` modulus and density are both those of a metal",
-            f.message,
+            "{}. In `{}` modulus and density both fit a metal.",
+            f.clause(),
             other.name()
         ),
         remedy: format!(
-            "write units = \"{}\" in the job if the deck is in it, else correct the densities of the deck",
+            "Write `units = \"{}\"` in the job if the deck is in it, else correct the densities of the deck.",
             other.name()
         ),
         ..f
@@ -184,7 +184,7 @@ fn implausible(
             code,
             format!("material {}", first.0),
             format!(
-                "In `{}` the {what} of material {}{others} is {:.3e} {unit}, outside {} to {} {unit}",
+                "in `{}` the {what} of material {}{others} is {:.3e} {unit}, outside {} to {} {unit}",
                 system.name(),
                 first.0,
                 first.1,

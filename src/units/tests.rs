@@ -53,15 +53,15 @@ fn steel_is_plausible_in_its_own_units_and_only_there() {
 #[test]
 fn a_number_that_is_not_known_is_a_dash() {
     assert_eq!(
-        (number(f64::NAN), fixed(f64::NAN, 2)),
+        (number(f64::NAN), format_fixed(f64::NAN, 2)),
         ("-".into(), "-".into())
     );
     assert_eq!(
-        (number(f64::INFINITY), fixed(f64::INFINITY, 2)),
+        (number(f64::INFINITY), format_fixed(f64::INFINITY, 2)),
         ("∞".into(), "-".into())
     );
     assert_eq!(
-        (number(0.5), fixed(0.5, 2)),
+        (number(0.5), format_fixed(0.5, 2)),
         ("0.5000".into(), "0.50".into())
     );
 }

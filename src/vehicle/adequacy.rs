@@ -1,4 +1,4 @@
-//! Whether a fitted model leaves more than its sensors do: then something is missing in it, and its parameters stand in for that.
+//! Whether the residual of a fitted model exceeds the errors of its sensors: then an effect is missing, and the parameters compensate for it.
 
 use super::adjustment::Adjustment;
 use super::layout::{Measures, Vehicle};
@@ -139,11 +139,11 @@ const DROWNED: f64 = 1.0;
 pub fn check_noise(channel: &str, share: f64, on: &str) -> Option<Finding> {
     (share >= DROWNED).then(|| {
         let message = format!(
-            "What `{channel}` reads in the band is less than the stated noise leaves of it ({on} data, {} times that): nothing can be learnt \
-             from it. Its unit is not the one it is taken for, its noise is stated too large, or nothing moved.",
+            "The signal of `{channel}` in the band is below its stated noise ({on} data, factor {}): it gives no information. The assumed \
+             unit is wrong, the stated noise is too large, or the body did not move.",
             number(share)
         );
-        let remedy = "State the unit after the name of the channel, `f_wheel [kN]`, or the noise that the sensor has.";
+        let remedy = "State the unit after the name of the channel, `f_wheel [kN]`, or the noise of the sensor.";
         let code = "readings-below-noise";
         Finding::new(Severity::Error, code, channel, message, remedy).with_numbers(share, DROWNED)
     })
@@ -161,7 +161,7 @@ pub fn check_lost(channel: &str, relative: f64, on: &str) -> Option<Finding> {
         "The model leaves {:.0} % of `{channel}` unexplained ({on} data): its parameters do not describe this vehicle.",
         100.0 * relative
     );
-    let remedy = "Look at signs and units of the channels, at the band and at the names of the columns; then run `reconcile` on this job.";
+    let remedy = "Check signs and units of the channels, the band and the names of the columns; then run `reconcile` on this job.";
     let code = "model-incomplete";
     Some(Finding::new(Severity::Error, code, channel, message, remedy).with_numbers(relative, LOST))
 }
@@ -173,13 +173,13 @@ pub fn check_adequacy(channel: &str, relative: f64, floor: [f64; 2], on: &str) -
         return None;
     }
     let message = format!(
-        "The model leaves {:.1} % of `{channel}` unexplained ({on} data) where noise and tolerances leave {:.1} %: something is missing in \
-         it, and the parameters stand in for that beyond their intervals.",
+        "The model leaves {:.1} % of `{channel}` unexplained ({on} data), and noise and tolerances explain {:.1} %. An effect is missing \
+         in the model, and the parameters compensate for it beyond their intervals.",
         100.0 * relative,
         100.0 * expected
     );
     let remedy =
-        "Run `reconcile` on this job: it looks for what is missing and writes the job with it.";
+        "Run `reconcile` on this job: it identifies the missing effect and writes an extended job.";
     let finding = Finding::new(
         Severity::Error,
         "model-incomplete",

@@ -1,6 +1,6 @@
 //! Known errors of a channel: gain, timing, a slow filter, a mains line.
 
-use crate::series::align::{delayed, retimed};
+use crate::series::align::{delay, remove_lateness};
 use crate::series::spectrum::Fourier;
 use rustfft::num_complex::Complex64;
 use std::f64::consts::{PI, SQRT_2};
@@ -127,7 +127,7 @@ impl Adjustment {
             return None;
         }
         let late = |i: usize| self.moving_lateness(start_s + i as f64 / rate_hz, start_s);
-        Some(retimed(x, rate_hz, late))
+        Some(remove_lateness(x, rate_hz, late))
     }
 
     /// Returns the corrected samples; their mean is kept as read, over the gain.
@@ -136,7 +136,7 @@ impl Adjustment {
             .retimed(x, start_s, rate_hz)
             .unwrap_or_else(|| x.to_vec());
         if self.delay_s != 0.0 {
-            out = delayed(&out, rate_hz, -self.delay_s);
+            out = delay(&out, rate_hz, -self.delay_s);
         }
         if !self.lags.is_empty() {
             let mean = crate::series::detrend::mean(&out);

@@ -153,7 +153,7 @@ pub(super) fn check_rigid(
                 100.0 * share,
                 vehicle.bodies[sensor.at.body].name
             );
-            let remedy = "Check places, signs and order of the accelerometers; the frame may also bend or twist in the band.";
+            let remedy = "Check places, signs and order of the accelerometers. The frame may also bend or twist in the band.";
             findings.push(
                 Finding::new(
                     Severity::Warning,

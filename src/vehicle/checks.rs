@@ -51,8 +51,8 @@ pub fn check_mass_closure(
          Masses, stiffness and forces share that error.",
         100.0 * (ratio - 1.0)
     );
-    let remedy = "Possible causes: accelerometers that read low (gain), a wheel force channel that reads high or was zeroed under load, load \
-         carried over from the other side or axle (roll, pitch), friction or a delay taken for mass. Weigh the axle; check gains.";
+    let remedy = "Possible causes: accelerometers with a low gain; a wheel force channel with a high gain or a zero under load; load transfer from the \
+     other side or axle (roll, pitch); friction or a delay that fits as mass. Weigh the axle and check the gains.";
     let finding = Finding::new(
         Severity::Warning,
         "mass-closure",
@@ -84,12 +84,12 @@ pub fn check_sides(parameters: &[Parameter], values: &[f64], sigmas: &[f64]) -> 
         let share = 2.0 * (a - b) / (a.abs() + b.abs());
         if share.abs() > SIDES_LIMIT && (a - b).abs() > 3.0 * spread {
             let message = format!(
-                "{} is {a:.5e}, {} is {b:.5e}: {:.0} % apart.",
+                "{} is {a:.5e} and {} is {b:.5e}: they differ by {:.0} %.",
                 p.name,
                 parameters[j].name,
                 100.0 * share.abs()
             );
-            let remedy = "Sides of one axle are usually alike: check gain and place of the sensors of either side, or a worn part.";
+            let remedy = "Both sides of an axle are usually equal: check gain and place of the sensors of either side, or a worn part.";
             findings.push(
                 Finding::new(Severity::Warning, "sides-differ", &p.name, message, remedy)
                     .with_numbers(share.abs(), SIDES_LIMIT),
@@ -109,16 +109,16 @@ fn mirrored(name: &str) -> Option<String> {
 /// A parameter that ended at its bound: the data ask for a value against nature.
 pub fn at_bound(name: &str, bound: f64, is_damping: bool) -> Finding {
     let what = if is_damping {
-        "Damping is indistinguishable from zero, or something else changes the phase."
+        "Damping is indistinguishable from zero, or another effect changes the phase."
     } else {
-        "The data ask for a value beyond it."
+        "The data require a value beyond the bound."
     };
-    let remedy = "Look for a delay between channels, friction taken for damping, a wrong sign or gain; run `reconcile`.";
+    let remedy = "Check for a delay between channels, friction that fits as damping, a wrong sign or gain; run `reconcile`.";
     Finding::new(
         Severity::Warning,
         "parameter-at-bound",
         name,
-        format!("`{name}` ended at its bound {}. {what}", number(bound)),
+        format!("`{name}` reached its bound {}. {what}", number(bound)),
         remedy,
     )
     .with_numbers(bound, bound)

@@ -20,9 +20,9 @@ pub fn scale_sentence(group: &[String], reference: &str, springs: &[String]) -> 
     let list = group.join(", ");
     let spring = springs.first().map_or("a spring rate", String::as_str);
     format!(
-        "{list} are known only up to one common factor: without a wheel force no equation holds a force, and all of them can be \
-         doubled without a trace in the accelerations. The ratios to {reference} are known. One more number fixes all: {reference} \
-         itself (weigh the axle and take the unsprung mass off), or {spring} (deflection under a known load), or a wheel force."
+        "{list} are known only up to one common factor: without a wheel force, a common factor does not change the accelerations. The \
+         ratios to {reference} are known. One more number determines all: {reference} (weigh the axle and subtract the unsprung mass), or \
+         {spring} (deflection under a known load), or a wheel force."
     )
 }
 
@@ -35,8 +35,7 @@ pub fn absent_sentence(names: &[String], unmeasured: &[String]) -> String {
         );
     }
     format!(
-        "{names} cannot be determined: every equation with them also contains an unmeasured wheel force ({}). Measure that force, or weigh the \
-         part.",
+        "{names} cannot be determined: every equation with them also contains an unmeasured wheel force ({}). Measure this force, or weigh the part.",
         unmeasured.join(", ")
     )
 }

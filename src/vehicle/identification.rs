@@ -135,7 +135,7 @@ impl Identification {
                 "nothing-identifiable",
                 &self.vehicle.name,
                 message,
-                "Add a measurement named under `unidentifiable`.",
+                "Add a measurement listed under `unidentifiable`.",
             )
         })
     }

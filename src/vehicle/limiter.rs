@@ -72,7 +72,7 @@ impl Limiter {
 
     /// Samples of a spectrum in the band, so many times integrated.
     pub fn limited(&mut self, s: &Spectrum, times: i32) -> Vec<f64> {
-        /// Width of what is left out about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
+        /// Width of the omitted band about a line, one sd of its bell: mains wander by less, and its echo dies within a second.
         const WIDTH_HZ: f64 = 0.15;
         let mut in_band = s.band_integrated_for(self.band, times, self.keep);
         if !self.lines_hz.is_empty() {

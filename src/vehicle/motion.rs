@@ -125,7 +125,7 @@ impl Motion {
 ///
 /// # Errors
 /// As [`motion`].
-pub fn resolved(
+pub fn resolve_constants(
     vehicle: &Vehicle,
     record: &Channels,
     treatment: &Treatment,
@@ -224,7 +224,7 @@ fn bridged(record: &Channels) -> (Channels, Vec<Finding>) {
         .zip(&gaps)
         .filter(|(_, n)| **n > 0)
         .map(|(channel, n)| {
-            let message = format!("{n} missing samples were bridged by straight lines.");
+            let message = format!("{n} missing samples are replaced by straight lines.");
             Finding::new(
                 Severity::Info,
                 "gaps-filled",

@@ -4,7 +4,7 @@ use super::equations::{Equation, equations};
 use super::fit::Allowed;
 use super::identification::IdentifyTask;
 use super::layout::{Parameter, Vehicle};
-use super::motion::{Motion, motion, resolved};
+use super::motion::{Motion, motion, resolve_constants};
 use super::treatment::{Treatment, VehicleError};
 use crate::series::channels::Channels;
 
@@ -75,7 +75,7 @@ pub(super) fn begun(
         ..Treatment::of(task.band)
     };
     let measured = with_measured_sensors(&task.vehicle, record);
-    let vehicle = resolved(&measured, record, &treatment)?;
+    let vehicle = resolve_constants(&measured, record, &treatment)?;
     let all = vehicle.parameters();
     let mut named = task.known.keys().chain(task.bounds.keys());
     if let Some(name) = named.find(|k| all.iter().all(|p| p.name != **k)) {

@@ -56,7 +56,7 @@ impl PresetError {
                 model,
                 examples,
             } => (
-                format!("term `{term}` means nothing in model `{model}`"),
+                format!("term `{term}` is not a term of model `{model}`"),
                 format!(
                     "write a coefficient such as {}, or an effect such as `cubic_stiffness`",
                     examples.join(", ")

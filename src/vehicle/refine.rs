@@ -4,7 +4,7 @@ use super::layout::{Measures, Vehicle};
 use super::simulate::{Drive, Simulated, SimulationError, simulate};
 use crate::linalg::levenberg::{Minimum, levenberg_marquardt};
 use crate::series::detrend::{rms, without_mean};
-use crate::series::integrate::integrated;
+use crate::series::integrate::integrate_in_band;
 use crate::series::spectrum::{Band, Fourier};
 use crate::series::{Channels, SeriesError};
 
@@ -102,8 +102,8 @@ pub fn comparison(
             Some(s) if !measured_wheels(b) || witnesses.contains(&b) => {
                 let a = record.samples(&s.channel)?;
                 Some(vec![[
-                    integrated(a, record.rate_hz, wide, 2),
-                    integrated(a, record.rate_hz, wide, 1),
+                    integrate_in_band(a, record.rate_hz, wide, 2),
+                    integrate_in_band(a, record.rate_hz, wide, 1),
                 ]])
             }
             _ => None,

@@ -3,7 +3,7 @@
 use super::layout::Vehicle;
 use super::term::Term;
 use crate::linalg::tall::left_inverse;
-use crate::series::resample::upsampled;
+use crate::series::resample::upsample;
 use thiserror::Error;
 
 /// Inputs of a simulation, at the sample rate of the record.
@@ -42,18 +42,18 @@ pub enum SimulationError {
     Inertia(String),
     /// The motion grew beyond bounds.
     #[error(
-        "the motion ran away at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
+        "the simulated motion diverged at {at_s:.3} s: a parameter has the wrong sign or the steps are too long"
     )]
     Diverged {
         /// When.
         at_s: f64,
     },
     /// A term that the simulation has no equation for.
-    #[error("link `{0}` has inertance, which is not simulated: leave the term out")]
+    #[error("link `{0}` has inertance, which cannot be simulated: delete the term")]
     Inertance(String),
     /// Histories of different length.
     #[error(
-        "histories that drive the simulation have {found} and {expected} samples: cut them to one length"
+        "the records that drive the simulation have {found} and {expected} samples: cut them to one length"
     )]
     Length {
         /// Length found.
@@ -239,7 +239,7 @@ fn machine<'a>(
             out.given.extend(
                 given
                     .iter()
-                    .map(|[d, v]| [upsampled(d, dense), upsampled(v, dense)]),
+                    .map(|[d, v]| [upsample(d, dense), upsample(v, dense)]),
             );
             continue;
         }
@@ -304,7 +304,7 @@ fn machine<'a>(
                 .enumerate()
                 .map(|(j, p)| (first + j, *p))
                 .collect();
-            out.wheels.push((phi, upsampled(force, dense)));
+            out.wheels.push((phi, upsample(force, dense)));
         }
     }
     Ok(out)

@@ -54,18 +54,20 @@ impl VehicleError {
                 channels,
             } => (
                 format!(
-                    "body `{body}` moves in {needed} ways, its accelerometers ({}) give {found}",
+                    "body `{body}` has {needed} degrees of freedom, its accelerometers ({}) determine {found}",
                     channels.join(", ")
                 ),
                 "add accelerometers at other places",
             ),
             Self::NoEquation(model) => (
-                format!("no equation of motion of model `{model}` holds measured quantities only"),
+                format!(
+                    "every equation of motion of model `{model}` contains a quantity that is not measured"
+                ),
                 "measure wheel forces, or accelerations of the body and its wheels",
             ),
             Self::Bounds { name, high } => {
                 return (
-                    format!("`{name}` is positive by nature, and its upper limit is {high}"),
+                    format!("`{name}` cannot be negative, and its upper limit is {high}"),
                     "write [low, high] with a high above 0, or leave the parameter free".to_owned(),
                 );
             }
@@ -74,7 +76,7 @@ impl VehicleError {
                     "`{name}` is declared known, but the model's parameters are {}",
                     present.join(", ")
                 ),
-                "write one of these names, or take it out",
+                "write one of these names, or delete it",
             ),
         };
         (wrong, remedy.to_owned())

@@ -3,7 +3,7 @@
 use crate::host::context::Context;
 use crate::host::fault::Faults;
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::series::channels::Channels;
@@ -83,7 +83,7 @@ impl Answer for Identified {
         format!(
             "{} of {} identified{fit}.",
             asked().filter(|p| p.identifiable).count(),
-            counted(asked().count(), "parameter")
+            count_of(asked().count(), "parameter")
         )
     }
 }

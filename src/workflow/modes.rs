@@ -7,7 +7,7 @@ use crate::gauge::{CornerRows, build, reading};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::Model;
@@ -82,7 +82,7 @@ impl Answer for Modes {
     const RESULT: &'static str = "The modes";
 
     fn verdict(&self) -> String {
-        let n = counted(self.modes.len(), "elastic mode");
+        let n = count_of(self.modes.len(), "elastic mode");
         let (Some(first), Some(last)) = (self.modes.first(), self.modes.last()) else {
             return format!("{n}; the structure is {}.", self.support);
         };

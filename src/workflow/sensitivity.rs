@@ -4,7 +4,7 @@ use crate::gauge::{Gauge, GaugeSpec, build};
 use crate::host::context::Context;
 use crate::host::fault::Faults;
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{AngleStep, Job};
 use crate::sensitivity::{check_separability, common_shells, from_cases};
@@ -52,8 +52,8 @@ impl Answer for Sensed {
         );
         format!(
             "Sensitivities of {} to {}: rank {}, {scaled}.",
-            counted(self.gauges, "gauge"),
-            counted(self.loads.len(), "load"),
+            count_of(self.gauges, "gauge"),
+            count_of(self.loads.len(), "load"),
             c.rank
         )
     }
@@ -88,7 +88,7 @@ impl Answer for Sensed {
 pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
     let mut work = Work::of_job(cx, job);
     check_tables(&work, job)?;
-    let prepared = prepared(&mut work, job)?;
+    let prepared = prepare_sensitivity(&mut work, job)?;
     let s = &prepared.sensitivity;
     let loads: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let units = load_units(job, &loads).into_iter().map(|u| u.name);
@@ -109,7 +109,7 @@ pub fn sensitivity(job: &Job, cx: &Context) -> Result<Outcome<Sensed>, Faults> {
 ///
 /// # Errors
 /// Every fault of the job and of the files it names.
-pub(crate) fn prepared(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
+pub(crate) fn prepare_sensitivity(work: &mut Work, job: &Job) -> Result<Prepared, Faults> {
     let prepared = if job.gauges.is_empty() && job.sensitivity.is_none() {
         match job.with_spots_as_gauges() {
             Some(as_gauges) => prepare(work, &as_gauges)?,

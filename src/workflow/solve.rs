@@ -8,7 +8,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::linalg::sparse::OrderingMethod;
@@ -99,8 +99,8 @@ impl Answer for SolvedCases {
         let support = support.map_or_else(String::new, |s| format!("; the structure is {s}"));
         format!(
             "{} solved on {}{first}{support}.",
-            counted(self.solution.cases.len(), "load case"),
-            counted(self.grids, "grid")
+            count_of(self.solution.cases.len(), "load case"),
+            count_of(self.grids, "grid")
         )
     }
 }
@@ -351,7 +351,7 @@ fn other_sequence(read: &DeckModel) -> Option<Finding> {
         "solution-sequence",
         &read.given,
         format!(
-            "SOL {sequence} has no static subcases: the loads that its subcases select are solved as linear statics"
+            "SOL {sequence} has no static subcases: the loads of its subcases are solved as linear statics"
         ),
         "write SOL 101 if statics is meant",
     ))

@@ -5,12 +5,12 @@ use crate::fe::from_results::{
     Displacements, ReadOptions, other_element_types, solution_from_results,
 };
 use crate::fe::strain_rows::{n_rows, without_normal_strain};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::files::FileBytes;
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::model::Model;
 use crate::strain_chain::deck::{looks_like_op2, read_model};
@@ -46,8 +46,8 @@ impl Answer for Strains {
     fn verdict(&self) -> String {
         format!(
             "{} of strain in {}, from {}.",
-            counted(self.rows, "row"),
-            counted(self.subcases, "static subcase"),
+            count_of(self.rows, "row"),
+            count_of(self.subcases, "static subcase"),
             self.solution.source
         )
     }
@@ -102,7 +102,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
             "deck-fault",
             given.as_str(),
             f.to_string(),
-            "see `check`; the mesh is used as it is",
+            "see `check`; the mesh is used unchanged",
         )
     };
     work.findings.extend(deck.faults.iter().map(warn));
@@ -133,12 +133,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
         return Err(cut.into());
     }
     if let Some(other) = other_element_types(&solution.findings) {
-        let fault = Fault::of(
-            other.subject.as_str(),
-            "results",
-            other.message.as_str(),
-            other.remedy.as_str(),
-        );
+        let fault = Fault::from_finding(&*other.subject, "results", other);
         return Err(fault.into());
     }
     work.findings.append(&mut solution.findings);
@@ -148,7 +143,7 @@ pub fn strains(deck: &Path, results: &[PathBuf], cx: &Context) -> Result<Outcome
         work.findings.push(Finding::new(
             Severity::Info,
             "normal-strain-unknown",
-            format!("properties {}", few(&ids)),
+            format!("properties {}", list_few(&ids)),
             "the strain along their thickness is unknown: the basic-frame tensor contains only the part in the surface",
             "",
         ));

@@ -176,7 +176,7 @@ fn misspelt(file: &str, record: &Channels, model: &Vehicle) -> Option<Finding> {
             Severity::Warning,
             "channel-misspelt",
             file,
-            format!("did you mean {}? What has another name is taken as not measured", pairs.join(", ")),
+            format!("did you mean {}? A channel with another name is treated as not measured", pairs.join(", ")),
             "Name the columns after the model's channels, or assign the columns with `columns` of [vehicle].",
         )
     })
@@ -200,7 +200,7 @@ fn possible(file: &str, record: &Channels, used: impl Fn(&str) -> bool) -> Resul
                 at + 1,
                 short(c.samples[at])
             );
-            let remedy = "leave the field blank where the logger gave nothing";
+            let remedy = "leave the field blank if the logger recorded nothing";
             Some(Fault::of(file, c.name.clone(), wrong, remedy))
         })
         .collect();

@@ -6,7 +6,7 @@ use crate::host::fault::{Fault, Faults};
 use crate::host::files::Input;
 use crate::host::manifest::Manifest;
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use serde::Serialize;
 use serde_json::Value;
@@ -31,12 +31,12 @@ impl Answer for Verified {
 
     fn verdict(&self) -> String {
         format!(
-            "{} the same as the inputs give now, {}.",
+            "{} equal to the results of the present inputs, {}.",
             match self.same.len() {
                 1 => "1 file is".to_owned(),
                 n => format!("{n} files are"),
             },
-            counted(self.differs.len(), "difference")
+            count_of(self.differs.len(), "difference")
         )
     }
 }
@@ -69,7 +69,7 @@ pub struct Made {
 ///
 /// # Errors
 /// Returns a fault if the folder has no `result.json` of strainbridge.
-pub fn made(folder: &Path) -> Result<Made, Fault> {
+pub fn read_made(folder: &Path) -> Result<Made, Fault> {
     let file = folder.join("result.json");
     let name = file.display().to_string();
     let fault = |wrong: String| {
@@ -154,7 +154,7 @@ pub fn verify(
     cx: &Context,
 ) -> Result<Outcome<Verified>, Faults> {
     let mut work = Work::new(cx);
-    let made = made(folder)?;
+    let made = read_made(folder)?;
     work.sources.push(folder.join("result.json"));
     let main = main_input(folder, &made)?;
     let anew = work.stage("recompute", |_| again(&made, &main))?;
@@ -176,15 +176,15 @@ pub fn main_input(folder: &Path, made: &Made) -> Result<PathBuf, Fault> {
         Fault::of(
             folder.display().to_string(),
             "inputs",
-            "the job or deck that it was made from isn't found",
-            "call `verify` from the folder that the command was called from",
+            "the job or deck of this folder is not found",
+            "call `verify` from the folder in which the command was called",
         )
     })
 }
 
 /// Compares a folder with a recomputation of it in another.
 fn compare(folder: &Path, again: &Path) -> Result<Verified, Faults> {
-    let (old, new) = (made(folder)?, made(again)?);
+    let (old, new) = (read_made(folder)?, read_made(again)?);
     let mut out = Verified::default();
     for (i, input) in old.inputs.iter().enumerate() {
         // The main input may be named from elsewhere now.
@@ -254,7 +254,7 @@ impl Verified {
         let n = self.differs.len();
         let message = format!(
             "{} from the result that its inputs give now, the first in `{}`",
-            counted(n, "difference"),
+            count_of(n, "difference"),
             first.file
         );
         let finding = Finding::new(

@@ -488,8 +488,8 @@ fn a_gap_is_a_warning_and_loads_that_no_sample_tells_are_an_error() {
         "{lines}"
     );
     assert!(
-        said.contains("in 50 of 1200 samples")
-            && said.contains("in at least 50 of them some load is blank"),
+        said.contains("In 50 of 1200 samples")
+            && said.contains("In at least 50 of them some load is blank"),
         "{said}"
     );
     // Every gauge reads somewhere, two of them nowhere together.

@@ -241,7 +241,7 @@ fn days_that_are_not_there_and_shares_that_are_not_one_are_faults() {
         (
             kind("a", 0.5, "1") + &kind("b", 0.5, "*"),
             2,
-            "of the kinds",
+            "belongs to the kinds",
         ),
         (
             kind("a", 0.5, "1") + &kind("a", 0.5, "2"),
@@ -635,7 +635,7 @@ fn what_failed_is_tried_again() {
             .unwrap();
         let said = String::from_utf8(done.stderr).unwrap();
         assert!(
-            said.contains("0 results kept from an earlier run"),
+            said.contains("0 results stored by an earlier run"),
             "{said}"
         );
     }
@@ -657,7 +657,7 @@ fn a_copy_under_the_name_of_another_vehicle_is_an_error() {
     };
     assert_eq!(subject, "Z_3.csv");
     assert!(
-        message.contains("A_3.csv, which counts for A: Z lacks"),
+        message.contains("A_3.csv, which is used for A: the record of Z is missing"),
         "{message}"
     );
 }

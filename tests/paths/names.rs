@@ -47,7 +47,7 @@ const CARD_LINE: usize = 15;
 const STATEMENT_LINE: usize = 5;
 
 /// Reason of a card that acts only together with what this deck lacks.
-const UNUSED: &str = "acts on nothing in this deck 1";
+const UNUSED: &str = "acts on no element of this deck 1";
 
 fn warns_of(t: &Tried, name: &str) -> bool {
     let of = |f: &&Finding| f.code == "card-not-solved" && f.message.contains(name);
@@ -299,7 +299,7 @@ fn a_suport1_set_that_the_deck_lacks_is_refused() {
         let refused = of("SUPORT1 = 5\n", &format!("SUPORT1,6,1,1\n{inrel}"));
         let why = refused.expect_err(inrel);
         assert!(
-            why.contains("SUPORT1 = 5") && why.contains("no such set"),
+            why.contains("SUPORT1 = 5") && why.contains("no set of this number"),
             "{why}"
         );
     }

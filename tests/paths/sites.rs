@@ -4,7 +4,7 @@ use crate::command::shared;
 use strainbridge::fe::CaseResult;
 use strainbridge::fe::from_results::{ReadOptions, solution_from_file};
 use strainbridge::fe::strain_tensor::Surface;
-use strainbridge::gauge::{Bridge, CornerRows, GaugeSpec, build, moved, reading};
+use strainbridge::gauge::{Bridge, CornerRows, GaugeSpec, build, reading, strain_gradient_gauge};
 use strainbridge::model::{Model, ShellIx};
 use strainbridge::placement::angle_variance;
 use strainbridge::placement::candidates::{Angles, Choice, Scatter};
@@ -132,7 +132,7 @@ fn forms_of_misplacement_are_the_changes_of_gauges_moved_along_both_directions()
                 let square: Option<f64> = ways
                     .into_iter()
                     .map(|w| {
-                        let g = moved(&gauge, &model, w)?;
+                        let g = strain_gradient_gauge(&gauge, &model, w)?;
                         let mut sum = 0.0;
                         for (l, load) in loads.iter().enumerate() {
                             sum += (reading(&g, load.case)? * scales[l] / 1000.0 * 1e6).powi(2);

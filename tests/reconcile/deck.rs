@@ -122,7 +122,7 @@ fn a_turned_sign_is_found_on_a_deck_whose_mesh_makes_two_percent_and_nothing_els
     };
     assert_eq!(found["named"], serde_json::json!(["sign_flip:G09"]));
     assert!(closed(&found, &truth) > 0.7, "{}", found["gap"]);
-    // The mesh alone makes 2.2 % by another program's finer mesh; ours is half as wide, not infinitely fine.
+    // The mesh alone causes 2.2 % by another program's finer mesh; ours is half as wide, not infinitely fine.
     let mesh = found["gap"]["mesh"].as_f64().expect("a number");
     let known = truth["model_error_gap"].as_f64().expect("a number");
     assert!((mesh - known).abs() < 0.3 * known, "{mesh} {known}");

@@ -547,12 +547,12 @@ fn without_hold_out_nothing_is_called_held_out_and_the_page_goes_from_verdict_to
     let at = |title: &str| page.find(&format!("<h2>{title}</h2>"));
     let places = [
         "Verdict",
-        "Where the gap sits",
+        "Largest gaps",
         "What was added",
         "Gap before and after",
         "Scatter before and after",
         "The gap on the model",
-        "What remains",
+        "Remaining gap",
     ]
     .map(|t| at(t).unwrap_or_else(|| panic!("no heading {t}")));
     assert!(places.is_sorted(), "{places:?}");

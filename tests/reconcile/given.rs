@@ -4,7 +4,7 @@ use super::hidden;
 use super::hidden::generator::{Background, EFFECTS, UNMODELLED, hide};
 use super::hidden::judge::{Answer, judge};
 use strainbridge::reconcile::effect::{Member, library};
-use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, judged, predict};
+use strainbridge::reconcile::strain::{FoundAnew, StrainFrame, examine, predict, proof_residuals};
 use strainbridge::reconcile::{GapBasis, Outcome, Verdict};
 
 fn case(name: &str) -> Option<(StrainFrame, serde_json::Value)> {
@@ -160,7 +160,7 @@ fn an_effect_of_size_zero_explains_nothing_of_the_gap() {
                 parameters: &neutral,
             }];
             for anew in [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads] {
-                let gap = judged(&frame, &member, &[], anew)
+                let gap = proof_residuals(&frame, &member, &[], anew)
                     .expect("a covariance")
                     .numbers();
                 // The same numbers in another order of summation.

@@ -63,7 +63,7 @@ fn a_temperature_set_that_is_missing_or_even_is_refused_with_line_and_remedy() {
     write("strain.csv", &strain);
     write("runs.csv", &runs);
     write("deck.bdf", &Mesh(1).deck(1.0, Some([20.0, 20.0, 0.0])));
-    for (sid, words) in [(31, "the same everywhere"), (32, "no temperature set 32")] {
+    for (sid, words) in [(31, "is uniform"), (32, "no temperature set 32")] {
         let told = format!("{MEASURED}temperature_set = {sid}\n");
         write("job.toml", &Mesh(1).job(&told));
         let done = std::process::Command::new(env!("CARGO_BIN_EXE_strainbridge"))

@@ -127,7 +127,7 @@ fn a_region_that_lost_stiffness_is_named_where_it_is_and_not_as_several_bad_gaug
             .join(format!("reconcile_local_{k}/model/job.out/report.html"));
         let page = std::fs::read_to_string(page).expect("the page");
         assert!(
-            page.contains(&format!("stiffness less than the model's: {one}")),
+            page.contains(&format!("stiffness less than in the model: {one}")),
             "{said}"
         );
     }

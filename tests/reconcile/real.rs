@@ -95,7 +95,7 @@ fn on_stage_means_of_the_bridge_settlement_and_temperature_are_rivals_and_the_lo
         assert!(outcome.next_measurement.contains(name));
     }
     assert!(
-        outcome.next_measurement.contains("logged while it happens"),
+        outcome.next_measurement.contains("with time stamps"),
         "{}",
         outcome.next_measurement
     );

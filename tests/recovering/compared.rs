@@ -330,7 +330,7 @@ fn what_can_not_be_compared_or_cut_is_refused_with_its_line() {
         (
             "[compare]\nfile = \"other.csv\"\n".to_owned(),
             "columns",
-            "no column is named after a load",
+            "no column has the name of a load",
         ),
         (
             "[compare]\nfile = \"runs.csv\"\n".to_owned(),

@@ -72,7 +72,7 @@ fn runs_held_out_in_a_file_of_their_own_have_zeros_of_their_own() {
     let (code, said, _) = reconcile("held-without-zero", &all[..2], &none);
     assert_eq!(code, Some(2), "{said}");
     assert!(
-        said.contains("`held.csv` has none of these runs: add a run without load"),
+        said.contains("`held.csv` contains none of these runs: add a run without load"),
         "{said}"
     );
     let unknown = with_own_zero(9, 12, -700.0, ["Z3", "other"]);

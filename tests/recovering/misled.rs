@@ -52,7 +52,7 @@ fn a_channel_that_dies_within_a_record_counts_as_blank_from_there_on() {
             let message = f["message"].as_str().unwrap();
             f["code"] == "gauge-silent"
                 && f["subject"] == "G3"
-                && message.contains("one and the same value from t = 1.500000 s to t = 3.990000 s")
+                && message.contains("a constant reading from t = 1.500000 s to t = 3.990000 s")
         };
         assert!(findings.iter().any(names), "{findings:?}");
         assert!(r["damage"][0]["damage"].as_f64().unwrap() > 0.0);

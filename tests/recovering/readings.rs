@@ -107,7 +107,7 @@ fn a_record_where_runs_are_needed_has_one_message_in_every_command() {
     let of_calibrate = faults_of(calibrate(&job, &cx));
     let of_reconcile = faults_of(reconcile(&job, &cx));
     assert_eq!(of_calibrate[0], of_reconcile[0]);
-    assert!(of_calibrate[0].wrong.contains("can't be read as runs"));
+    assert!(of_calibrate[0].wrong.contains("cannot be read as runs"));
 }
 
 #[test]

@@ -257,7 +257,7 @@ fn columns_of_a_table_of_loads_that_nothing_reads_are_named() {
     let job = Job::read("job.toml", &files).unwrap();
     let found = respond(&job, &Context::new(&files)).unwrap();
     let list = found.findings.to_vec();
-    assert!(unread(&list)[0].message.ends_with("`Q`"), "{list:?}");
+    assert!(unread(&list)[0].message.ends_with("`Q`."), "{list:?}");
 }
 
 /// The same loads as a table, as a binary record and in RPC III give the same stress; the 16 bits of RPC III are a step of 1/32,000 of the largest.
@@ -328,7 +328,7 @@ fn loads_of_every_record_format_give_the_stress_of_their_table() {
     assert!(
         faults
             .to_string()
-            .contains("no column is named after a load"),
+            .contains("no column has the name of a load"),
         "{faults}"
     );
 }
@@ -399,7 +399,7 @@ fn loads_in_another_unit_than_the_report_give_the_same_stress() {
     }
 }
 
-/// Damage of twice the loads is `2^m` times the damage, with intervals of the loads it has one, and runs make no cycles.
+/// Damage of twice the loads is `2^m` times the damage, with intervals of the loads it has one, and runs form no cycles.
 #[test]
 fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
     let answer = |key: &str, factor: f64| {
@@ -424,7 +424,7 @@ fn fatigue_scales_with_the_power_of_the_loads_and_needs_a_history() {
     }
     let said = answer("run", 1.0).map(|_| ()).unwrap_err().to_string();
     assert!(
-        said.contains("respond.slope") && said.contains("make no cycles"),
+        said.contains("respond.slope") && said.contains("form no cycles"),
         "{said}"
     );
 }

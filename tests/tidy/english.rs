@@ -73,7 +73,8 @@ pub(super) const REPLACED: [&str; 25] = [
     "upheavals",
 ];
 
-const LONGEST: usize = 25;
+/// Largest number of words in a sentence.
+pub(super) const LONGEST: usize = 25;
 
 /// Returns the paragraphs, list items and table rows of a page, without boxes, pictures and targets of links.
 fn paragraphs(page: &str) -> Vec<String> {
@@ -103,7 +104,7 @@ fn paragraphs(page: &str) -> Vec<String> {
 }
 
 /// Returns the sentences of a paragraph; cells of a table and code spans count as one word or one sentence each.
-fn sentences(paragraph: &str) -> Vec<String> {
+pub(super) fn sentences(paragraph: &str) -> Vec<String> {
     let mut plain = String::new();
     for (n, part) in paragraph.split('`').enumerate() {
         plain += if n % 2 == 0 { part } else { "CODE" };
@@ -115,7 +116,7 @@ fn sentences(paragraph: &str) -> Vec<String> {
     plain.lines().map(|s| s.trim().to_owned()).collect()
 }
 
-fn length(sentence: &str) -> usize {
+pub(super) fn length(sentence: &str) -> usize {
     let words = sentence.split_whitespace();
     words
         .filter(|w| w.chars().any(char::is_alphanumeric))

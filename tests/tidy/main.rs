@@ -7,6 +7,7 @@ mod doc_comments;
 mod english;
 mod imports;
 mod size;
+mod strings;
 mod words;
 
 use std::path::{Path, PathBuf};

@@ -265,7 +265,8 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
     let of_rows = |c: &Candidates| {
         let spec = Spec::new(10, 6);
         let by_d = place(c, &spec).unwrap();
-        strainbridge::placement::condition::best(c, &spec, &by_d, &[0.0; 36]).unwrap()
+        strainbridge::placement::condition::find_least_condition(c, &spec, &by_d, &[0.0; 36])
+            .unwrap()
     };
     let s = sensitivity(&forty_four(), &columns).values;
     let (least, got) = (least_condition(&s), of_rows(&rows_at(&s)));
@@ -278,7 +279,9 @@ fn ten_gauges_for_the_condition_number_are_within_a_fifth_of_the_least_that_a_se
     let (_, all) = candidates_of(own(), &columns, Scatter::uniform(1.0));
     let spec = Spec::new(10, 6);
     let by_d = place(&all, &spec).unwrap();
-    let got = strainbridge::placement::condition::best(&all, &spec, &by_d, &[0.0; 36]).unwrap();
+    let got =
+        strainbridge::placement::condition::find_least_condition(&all, &spec, &by_d, &[0.0; 36])
+            .unwrap();
     let stride = all.n_places() / 250;
     let some = strainbridge::linalg::Matrix::from_fn(250, 6, |r, l| {
         let step = (r % 12) as u16;

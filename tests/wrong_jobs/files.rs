@@ -242,7 +242,7 @@ fn a_record_whose_rate_changes_is_told_so_and_keeps_its_samples() {
         kept.map(|(_, l)| format!("{l}\n")).collect()
     });
     let (_, said) = call(&dir, &["recover", "fleet.toml", "--out", "changed"]);
-    assert!(said.contains("the sample rate changes at"), "{said}");
+    assert!(said.contains("The sample rate changes at"), "{said}");
     assert!(said.contains("from 20 Hz to 10 Hz"), "{said}");
     assert!(!said.contains("record-gaps"), "{said}");
     assert_eq!(samples("changed"), samples("whole"));

@@ -132,7 +132,7 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
     }
     for (key, wrong) in [
         ("zero", "differences from their mean"),
-        ("hold_out", "nothing would be held out"),
+        ("hold_out", "no data would remain to be held out"),
     ] {
         let dir = copied(&format!("own_{key}"), "frame");
         edit(&dir, "recover.toml", |t| {
@@ -290,7 +290,7 @@ fn an_answer_that_does_not_get_to_standard_output_is_no_success() {
             .unwrap();
         let said = String::from_utf8_lossy(&done.stderr);
         assert_eq!(done.status.code(), Some(2), "{arguments:?}: {said}");
-        assert!(said.contains("standard output can't be written"), "{said}");
+        assert!(said.contains("standard output cannot be written"), "{said}");
     }
 }
 

@@ -69,11 +69,11 @@ const SAYS: [(&str, &[&str]); 9] = [
     (
         "readings-below-noise",
         &[
-            "state readings in microstrain",
+            "State readings in microstrain",
             "State the unit after the name of the channel",
         ],
     ),
-    ("reading-beyond-gauges", &["state readings in microstrain"]),
+    ("reading-beyond-gauges", &["State readings in microstrain"]),
     ("reading-impossible", &["microstrain is expected"]),
     ("ballast-beyond-model", &["[runs] units"]),
     ("model-far-above-readings", &["[runs] units"]),

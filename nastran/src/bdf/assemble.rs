@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicUsize;
 
-use super::continuation_name::{Claimed, asks, bare, claim, is_marked, key};
+use super::continuation_name::{Claimed, asks, claim, is_marked, key, strip_marks};
 use super::emit::emit;
 use super::fault::{Fault, Wrong};
 use super::fields::{excerpt, note_fault};
@@ -152,7 +152,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
     }
 
     fn continuation(&mut self, cut: &Cut<'a>, line: &Line) {
-        let wanted = bare(cut.head);
+        let wanted = strip_marks(cut.head);
         let asked = wanted.is_empty() || asks(self.label, wanted);
         match self.open {
             Open::Card | Open::Replica if asked || self.takes(wanted) => {
@@ -168,7 +168,8 @@ impl<'a, 'b> Assembler<'a, 'b> {
 
     /// Whether the open card takes a continuation of another name: neither it nor the name asks for others.
     fn takes(&self, wanted: &[u8]) -> bool {
-        let is_free = !matches!(self.label, [b'+' | b'*', ..]) || bare(self.label).is_empty();
+        let is_free =
+            !matches!(self.label, [b'+' | b'*', ..]) || strip_marks(self.label).is_empty();
         is_free && (self.claimed.is_empty() || !self.claimed.contains(&key(wanted)))
     }
 
@@ -194,10 +195,10 @@ impl<'a, 'b> Assembler<'a, 'b> {
 
     fn orphan(&mut self, cut: &Cut<'a>, line: &Line) {
         self.finish();
-        let label = key(bare(cut.head));
+        let label = key(strip_marks(cut.head));
         let mut scratch = Vec::new();
         self.label = cut.fields(&mut scratch);
-        let next = key(bare(self.label));
+        let next = key(strip_marks(self.label));
         let asks = is_marked(self.label);
         self.part.orphans.push(Orphan {
             label,
@@ -215,7 +216,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         let span = self.span(line);
         if let Some(orphan) = self.part.orphans.last_mut() {
             orphan.lines.push(span);
-            orphan.next = key(bare(self.label));
+            orphan.next = key(strip_marks(self.label));
             orphan.asks = is_marked(self.label);
         }
     }
@@ -241,7 +242,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         if self.before_name == Name::default() {
             let what = Wrong::Replication {
                 found: excerpt(trim(line.text)),
-                why: "no card stands before it",
+                why: "no card is above it",
             };
             let at = Place {
                 source: self.source,
@@ -317,7 +318,7 @@ impl<'a, 'b> Assembler<'a, 'b> {
         let Some(mut template) = self.template.take() else {
             let what = Wrong::Replication {
                 found: "=(n)".to_owned(),
-                why: "no line with increments stands before it",
+                why: "no line with increments is above it",
             };
             note_fault(
                 &mut self.part.faults,

@@ -12,23 +12,23 @@ use crate::place::{Place, SourceIx};
 pub(super) type Claimed = HashSet<Vec<u8>>;
 
 /// Returns the name without the marks of columns 1 and 73, which are no part of it. MSC Nastran writes names that begin with `+`.
-pub(super) fn bare(label: &[u8]) -> &[u8] {
+pub(super) fn strip_marks(label: &[u8]) -> &[u8] {
     match label {
-        [b'+' | b'*', rest @ ..] => bare(trim(rest)),
+        [b'+' | b'*', rest @ ..] => strip_marks(trim(rest)),
         other => other,
     }
 }
 
 /// Returns whether a mark in column 73 shows that the name after it is the name of a continuation.
 pub(super) fn is_marked(label: &[u8]) -> bool {
-    matches!(label, [b'+' | b'*', ..]) && !bare(label).is_empty()
+    matches!(label, [b'+' | b'*', ..]) && !strip_marks(label).is_empty()
 }
 
 /// Returns the name in field 10 where column 73 holds another mark than `+` or `*`.
 fn behind_mark(label: &[u8]) -> &[u8] {
     match label {
         [b'+' | b'*', ..] | [] => &[],
-        [_, rest @ ..] => bare(trim(rest)),
+        [_, rest @ ..] => strip_marks(trim(rest)),
     }
 }
 
@@ -40,7 +40,7 @@ pub(super) fn key(name: &[u8]) -> Vec<u8> {
 /// Whether field 10 asks for the continuation of this name.
 pub(super) fn asks(label: &[u8], wanted: &[u8]) -> bool {
     let is = |name: &[u8]| name.eq_ignore_ascii_case(wanted);
-    !wanted.is_empty() && (is(bare(label)) || is(behind_mark(label)))
+    !wanted.is_empty() && (is(strip_marks(label)) || is(behind_mark(label)))
 }
 
 /// Returns the name of the continuation that a finished card still asks for: one after `+` or `*`, or any that is claimed.
@@ -49,7 +49,7 @@ pub(super) fn claim<'a>(label: &'a [u8], claimed: &Claimed) -> Option<&'a [u8]> 
     if let [] | [b'+' | b'*'] = label {
         return None;
     }
-    let name = bare(label);
+    let name = strip_marks(label);
     if name.is_empty() || name.len() < label.len() {
         return Some(name).filter(|n| !n.is_empty());
     }
@@ -91,13 +91,13 @@ pub(super) fn askers(names: &Claimed, chunks: &[Chunk], sources: &[Source]) -> V
             if waits
                 && cut.lead == Lead::Continuation
                 && let Some(asker) = found.last_mut()
-                && bare(cut.head).eq_ignore_ascii_case(&asker.name)
+                && strip_marks(cut.head).eq_ignore_ascii_case(&asker.name)
             {
                 asker.continuation = Some(at);
             }
             fields.clear();
             let label = cut.fields(&mut fields);
-            let asked = [bare(label), behind_mark(label)];
+            let asked = [strip_marks(label), behind_mark(label)];
             let named = asked.into_iter().filter(|n| !n.is_empty());
             let name = named.map(key).find(|n| names.contains(n));
             waits = name.is_some();
@@ -112,10 +112,10 @@ pub(super) fn askers(names: &Claimed, chunks: &[Chunk], sources: &[Source]) -> V
 }
 
 /// Returns the names of continuations that the card above them does not ask for.
-pub(super) fn unasked(loose: &[Span], sources: &[Source]) -> Claimed {
+pub(super) fn find_unclaimed(loose: &[Span], sources: &[Source]) -> Claimed {
     let name = |span: &Span| {
         let text = span.text(sources);
-        key(bare(cut(without_comment(text)).head))
+        key(strip_marks(cut(without_comment(text)).head))
     };
     loose.iter().map(name).collect()
 }

@@ -197,7 +197,7 @@ impl Wrong {
                 format!("the card has no such field, found: {found}")
             }
             Self::NoContinuation { label } => {
-                format!("the card names a continuation that no line has: {label}")
+                format!("the card refers to a continuation that does not exist: {label}")
             }
             Self::NotACard { found } if found.is_empty() => {
                 "the line is neither a card nor a continuation".to_owned()
@@ -211,7 +211,7 @@ impl Wrong {
             }
             Self::Orphan { label } => format!("the continuation belongs to no card: {label}"),
             Self::Ambiguous { label, why } => {
-                format!("the continuation can belong to more than one card, for {why}: {label}")
+                format!("the continuation can belong to more than one card, because {why}: {label}")
             }
             Self::Replication { found, why } => {
                 format!("the replicated field cannot be filled ({why}): {found}")
@@ -245,7 +245,7 @@ impl Wrong {
                     n => format!(" ({n} cards)"),
                 };
                 let meant = near.map_or(String::new(), |n| format!(", did you mean `{n}`?"));
-                format!("Nastran does not know this name{more}{meant}")
+                format!("Nastran has no card of this name{more}{meant}")
             }
         }
     }
@@ -278,15 +278,15 @@ impl Wrong {
                 "give each continuation a separate name, or put it directly below its card"
             }
             Self::Replication { .. } => {
-                "write the card out, or put the card that is to be repeated above"
+                "write the card in full, or put the card to be repeated above"
             }
             Self::TooManyReplicated { .. } => {
                 "correct the count in =(n), or write the cards to a file"
             }
             Self::IncludeNotFound { .. } => {
-                "put the file where INCLUDE says, relative to the first deck, or define the symbol as an environment variable"
+                "put the file at the path of the INCLUDE statement, relative to the first deck, or define the symbol as an environment variable"
             }
-            Self::IncludeCycle { .. } => "remove the INCLUDE that leads back",
+            Self::IncludeCycle { .. } => "remove the INCLUDE that causes the loop",
             Self::IncludeDepth { .. } | Self::IncludeCount { .. } => {
                 "join some of the included files"
             }

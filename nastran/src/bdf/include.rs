@@ -1,4 +1,4 @@
-//! INCLUDE: which paths a name may stand for, and who reads them.
+//! INCLUDE: which paths a name may mean, and who reads them.
 
 use std::collections::BTreeMap;
 
@@ -20,7 +20,7 @@ pub struct Loaded {
     pub path: String,
     /// Bytes of the file.
     pub bytes: Vec<u8>,
-    /// Path of another file that the name may stand for, where its contents differ.
+    /// Path of another file that the name may mean, with other contents.
     pub differing_path: Option<String>,
 }
 
@@ -38,8 +38,8 @@ impl IncludeRequest {
     /// Paths to try. A bare file name: the including file's folder, then the first deck's; a path with folders: the other way round. Then
     /// both with `\` for `/`.
     ///
-    /// `symbol` gives the value of a logical symbol or environment variable, which stands in `SYMBOL:path`,
-    /// `$SYMBOL/path`, `${SYMBOL}/path` and `%SYMBOL%/path`. `Err` holds a symbol that has no value.
+    /// `symbol` gives the value of a logical symbol or environment variable, which is used in `SYMBOL:path`, `$SYMBOL/path`, `${SYMBOL}/path` and
+    /// `%SYMBOL%/path`. `Err` holds a symbol that has no value.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Continuations that do not stand below their card: found by name when all lines are read.
+//! Continuations that are not below their card: found by name when all lines are read.
 
 use std::collections::{HashMap, HashSet};
 use std::sync::atomic::AtomicUsize;

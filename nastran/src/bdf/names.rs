@@ -33,7 +33,7 @@ pub struct Label {
 pub(super) struct NameReader {
     /// Name for the next property or material card.
     pending: Option<(Named, String, Place)>,
-    /// ANSA: the name stands on the next comment line.
+    /// ANSA: the name is on the next comment line.
     next_line: Option<(Named, u32)>,
 }
 

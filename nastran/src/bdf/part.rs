@@ -89,7 +89,7 @@ pub(super) struct Deferred {
     pub lines: Vec<Span>,
 }
 
-/// Continuation lines that name a card which did not stand above.
+/// Continuation lines that name a card that was not above them.
 #[derive(Clone, Debug)]
 pub(super) struct Orphan {
     pub label: Vec<u8>,

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicUsize;
 use super::budget::BUDGET;
 use super::case;
 use super::chunk::read_chunks;
-use super::continuation_name::{Claimed, unasked};
+use super::continuation_name::{Claimed, find_unclaimed};
 use super::deck::Deck;
 use super::fault::{Fault, Wrong};
 use super::fields::MAX_FAULTS;
@@ -127,7 +127,7 @@ fn refuse_several_defaults(deck: &mut Deck) {
                 field: None,
                 what: Wrong::Statement {
                     found: format!("{n} cards"),
-                    why: "a deck may have one card of this name",
+                    why: "a deck may contain one card of this name",
                 },
             });
         }
@@ -150,7 +150,7 @@ fn read_bulk(chunks: &[Chunk], sources: &[Source]) -> Part {
     let mut budget = AtomicUsize::new(BUDGET);
     let mut part = read_chunks(chunks, sources, &budget, &Claimed::default());
     if !part.loose.is_empty() {
-        let claimed = unasked(&part.loose, sources);
+        let claimed = find_unclaimed(&part.loose, sources);
         budget = AtomicUsize::new(BUDGET);
         part = read_chunks(chunks, sources, &budget, &claimed);
     }

@@ -63,7 +63,7 @@ pub(super) struct Sections<'l> {
     done: bool,
 }
 
-/// The sections of the deck in `bytes`, its INCLUDEs taken in where they stand.
+/// The sections of the deck in `bytes`, with the text of its INCLUDEs in their places.
 pub(super) fn read_sections<'l>(
     main_path: &str,
     bytes: Vec<u8>,
@@ -277,7 +277,7 @@ impl Sections<'_> {
         self.notes.push(Note {
             at,
             text: format!(
-                "`{text}` begins bulk data that is not read: the model lacks what it defines"
+                "`{text}` begins bulk data that is not read: the model lacks its definitions"
             ),
         });
         self.parts.push(Note {
@@ -331,7 +331,7 @@ impl Sections<'_> {
                         source: SourceIx(source),
                         line,
                     };
-                    let text = "ENDDATA of an included file ends the deck: what follows its INCLUDE is not read".to_owned();
+                    let text = "ENDDATA of an included file ends the deck: the lines after its INCLUDE are not read".to_owned();
                     self.notes.push(Note { at, text });
                 }
                 (end, line.saturating_add(1))

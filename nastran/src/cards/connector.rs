@@ -32,7 +32,7 @@ pub struct Weld {
     pub grids: [Option<u32>; 2],
     /// XS, YS, ZS: instead of GS, basic frame.
     pub xs: Option<[f64; 3]>,
-    /// A mid-side grid stands in a list of GRIDID.
+    /// A list of GRIDID contains a mid-side grid.
     pub mid_sides: bool,
 }
 

@@ -119,7 +119,7 @@ pub struct Cards {
 pub struct UnreadEntry {
     /// Name of the entry, or the code of its record where the name is not known.
     pub name: String,
-    /// Id of the element, property or set; `None` where the entry stands for a record whose entries have no known length.
+    /// Id of the element, property or set; `None` for a record whose entries have no known length.
     pub id: Option<u32>,
     /// Whether it is a load, which acts where its set is selected.
     pub is_load: bool,

@@ -118,7 +118,7 @@ fn inflate(packed: &[u8], limit: usize) -> Option<Vec<u8>> {
     (out.len() <= limit).then_some(out)
 }
 
-/// Undoes the byte shuffle: plane `j` holds byte `j` of every element; leftover bytes stand behind the planes.
+/// Undoes the byte shuffle: plane `j` holds byte `j` of every element; leftover bytes follow the planes.
 fn unshuffle(data: &[u8], element: usize) -> Vec<u8> {
     let n = data.len().checked_div(element).unwrap_or(0);
     if element <= 1 || n <= 1 {

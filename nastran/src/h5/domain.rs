@@ -1,4 +1,4 @@
-//! `/NASTRAN/RESULT/DOMAINS`: what a DOMAIN_ID stands for.
+//! `/NASTRAN/RESULT/DOMAINS`: meaning of a DOMAIN_ID.
 
 use super::H5Error;
 use super::table::Table;

@@ -18,7 +18,7 @@ pub enum H5Error {
     Damaged(Damage),
     /// The file is HDF5, but without `/NASTRAN/RESULT`.
     #[error(
-        "no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it holds input only"
+        "no group `/NASTRAN/RESULT`: this is not a Nastran result file, or it contains input only"
     )]
     NoResults,
     /// A table without a required field.

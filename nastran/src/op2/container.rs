@@ -248,7 +248,7 @@ impl Container {
                     if number != expected {
                         self.damage.push(Damage {
                             at: format!("table {}", table.name),
-                            what: format!("record {number} stands where record {expected} should"),
+                            what: format!("record {number} was found, expected record {expected}"),
                         });
                     }
                     let one = cursor.key()?;
@@ -309,7 +309,7 @@ impl Container {
     fn note_stop(&mut self, file: &[u8], stop: &Stop) {
         let offset = stop.offset(file);
         self.harm(format!(
-            "{stop} at byte {offset} of {}; what stands before it was read",
+            "{stop} at byte {offset} of {}; the tables before it were read",
             file.len()
         ));
         self.stopped = Some((offset, stop.to_string()));

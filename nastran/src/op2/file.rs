@@ -164,8 +164,8 @@ impl<'a> Op2<'a> {
         read_weight(Words::new(&self.record_bytes(rows), self.format), reference)
     }
 
-    /// The cards of the geometry blocks, and what was passed over in them. A card that stands in two tables (`GEOM1` and `GEOM1S`) is
-    /// taken once; what the solver derives from other cards (PSHELL of a PCOMP, PBAR of a PBARL) is left out.
+    /// The cards of the geometry blocks, and what was passed over in them. A card that is in two tables (`GEOM1` and `GEOM1S`) is taken once; what
+    /// the solver derives from other cards (PSHELL of a PCOMP, PBAR of a PBARL) is left out.
     pub fn cards(&self) -> (Cards, Vec<Note>) {
         let mut out = Geometry::default();
         let mut seen: HashSet<(usize, u64)> = HashSet::new();
@@ -187,7 +187,7 @@ impl<'a> Op2<'a> {
         (out.cards, out.notes)
     }
 
-    /// The bytes of a record: as they stand where it is one piece, else put together.
+    /// The bytes of a record: unchanged if it is one piece, else joined.
     fn record_bytes(&self, record: usize) -> Cow<'a, [u8]> {
         let Some(r) = self.records.get(record) else {
             return Cow::Borrowed(&[]);

@@ -6,14 +6,14 @@ use super::rows::{Layout, layout};
 use super::words::{Format, Words};
 use crate::results::{Analysis, Block, Damage, Note, Quantity};
 
-/// Where the rows of a block stand, and what is needed to decode them.
+/// Position of the rows of a block, and the data needed to decode them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Span {
     pub table: usize,
     pub record: usize,
     pub table_code: i32,
     pub random: bool,
-    /// Entity of a SORT2 record that holds a single step, so that its rows can be decoded as they stand.
+    /// Entity of a SORT2 record that holds a single step, so that its rows can be decoded unchanged.
     pub entity: Option<u32>,
     pub layout: Option<Layout>,
 }
@@ -96,7 +96,7 @@ fn index_table(
             c.damage.push(Damage {
                 at: format!("table {}, subcase {}", table.name, block.subcase),
                 what: format!(
-                    "{words} words are no whole number of rows of {}",
+                    "{words} words are not a whole number of rows of {}",
                     block.num_wide
                 ),
             });
@@ -112,7 +112,7 @@ fn index_table(
         let number = r.saturating_sub(table.records.start).saturating_add(3);
         c.damage.push(Damage {
             at: format!("table {}, record {number}", table.name),
-            what: "no identification record stands before these rows".to_owned(),
+            what: "no identification record precedes these rows".to_owned(),
         });
     }
     found

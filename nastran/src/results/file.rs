@@ -49,7 +49,7 @@ pub enum ResultsFile<'a> {
 pub enum ResultsError {
     /// No kind of result file begins like this.
     #[error(
-        "`{name}`: neither OP2 nor punch nor HDF5 results: give a file with result output (PARAM,POST,-1 or (PUNCH) or MDLPRM,HDF5)"
+        "`{name}` is neither an OP2 nor a punch nor an HDF5 file: give a file with result output (PARAM,POST,-1 or (PUNCH) or MDLPRM,HDF5)"
     )]
     UnknownKind {
         /// The file's name, as the caller gave it.

@@ -293,7 +293,7 @@ fn a_wrong_lane_and_loggers_tared_under_load_are_named_without_being_told() {
     let said = c.findings.iter().find(|f| f.subject == "R39").unwrap();
     assert!(
         said.message
-            .contains("stated is load `east`, its strain is that of `middle`"),
+            .contains("the stated load is `east`, and the strain fits `middle`"),
         "{}",
         said.message
     );
@@ -389,8 +389,8 @@ enum Planted {
     Dead,
 }
 
-/// Half of the whole runs of a bridge teach, the others are weighed with a fault at gauges drawn among those that read a fifth of the
-/// largest: the gauges at fault, and those named.
+/// Half of the whole runs of a bridge are calibration runs. The others are recovered with a fault at gauges drawn among those that read a fifth of
+/// the largest: the gauges at fault, and those named.
 fn with_fault(b: &Bridge, planted: Planted, seed: u64) -> (Vec<String>, Vec<String>) {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let whole = |i: &usize| b.runs[*i].2.iter().all(|v| v.is_finite());

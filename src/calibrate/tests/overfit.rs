@@ -31,7 +31,7 @@ fn what_an_unshrunk_scatter_says_of_loads_is_widened_by_the_patterns_it_has_lear
             let c = Matrix::from_row_slice(N, N, c).try_inverse().unwrap();
             (columns.transpose() * c * &columns).try_inverse().unwrap()
         };
-        let added = overfit::added(&sample, (&sample, 0.0), &columns, dof).unwrap();
+        let added = overfit::overfit_scatter(&sample, (&sample, 0.0), &columns, dof).unwrap();
         let all: Vec<f64> = sample.iter().zip(&added).map(|(a, b)| a + b).collect();
         let times = 1.0 / (1.0 - (N - k) as f64 / dof).powi(2);
         let apart = loads(&all) - loads(&sample) * times;

@@ -218,7 +218,7 @@ fn used(
             ),
         ],
         words: format!(
-            "Payload size and place from strain and wheel forces: off by {:.1} % (rms).",
+            "Payload size and place from strain and wheel forces: error {:.1} % (rms).",
             100.0 * off
         ),
         command: "payload",
@@ -235,7 +235,7 @@ fn used(
             number_of(&hottest["element"], "element with the largest stress"),
         ],
         words: format!(
-            "Hottest element {}: {:.0} ± {:.0} MPa in run {}.",
+            "Largest stress in element {}: {:.0} ± {:.0} MPa in run {}.",
             hottest["element"],
             hottest["max_von_mises"].as_f64().unwrap_or(f64::NAN),
             NORMAL_95 * hottest["sigma"].as_f64().unwrap_or(f64::NAN),
@@ -270,7 +270,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
             number_of(&step.result["residual_rms_microstrain"], "microstrain residual"),
         ],
         words: format!(
-            "Wheel loads are off by {:.1} % (rms against what was measured), and the residual shows that they are unreliable.",
+            "Wheel loads deviate by {:.1} % (rms) from the measured loads, and the residual shows that they are unreliable.",
             100.0 * before
         ),
         command: "recover",
@@ -332,7 +332,7 @@ fn told(folder: &Path, work: &mut Work) -> Result<Story, Faults> {
             ),
         ],
         words: format!(
-            "With the effect in the model the wheel loads are off by {:.1} %.",
+            "With the effect in the model the wheel loads deviate by {:.1} %.",
             100.0 * after
         ),
         command: "recover",
@@ -373,7 +373,12 @@ fn write(folder: &Path, name: &str, text: &str) -> Result<PathBuf, Faults> {
 fn unwritable(path: &Path, e: &std::io::Error) -> Fault {
     let shown = path.display().to_string();
     let remedy = "name another folder: strainbridge demo DIR";
-    Fault::of(shown, "output", format!("can't be written ({e})"), remedy)
+    Fault::of(
+        shown,
+        "output",
+        format!("the folder cannot be written ({e})"),
+        remedy,
+    )
 }
 
 /// Runs a command of the story and writes its files.

@@ -24,13 +24,13 @@ pub(super) fn page(chapters: &[Chapter], figures: &Figures) -> Page {
             vec![
                 Block::Cards(chapters.iter().map(card).collect()),
                 Block::Note(
-                    "Every step is a folder with its job, tables and report: start your own from them.".to_owned(),
+                    "Every step is a folder with its job, tables and report: copy one to start your own job.".to_owned(),
                 ),
             ],
         ),
     ];
     Page::new(
-        "A truck becomes its own load cell",
+        "A truck as its own load cell",
         "Strain gauges and a finite element model give wheel loads with intervals",
         &[],
         sections,

@@ -177,7 +177,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
         &mut MemoryLoader::default(),
     );
     let model = Model::from_deck(&deck).0;
-    let missing = || program("a grid of the story is gone".into());
+    let missing = || program("a grid of the story is missing".into());
     let wheels: Vec<GridIx> = WHEELS
         .iter()
         .map(|w| model.grid_ix(w.1))
@@ -201,7 +201,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
     // The truck itself is finer than its model: what it reads comes from a mesh half as wide.
     let real = model
         .refined()
-        .ok_or_else(|| program("the mesh can't be divided".into()))?;
+        .ok_or_else(|| program("the mesh cannot be refined".into()))?;
     let standing = solve_standing(&real.model, 2, &wheels, &loads, None)
         .map_err(|e| program(e.to_string()))?;
     let gauges: Vec<Gauge> = glued
@@ -220,7 +220,7 @@ pub(super) fn simulate(glued: &[Glued]) -> Result<Simulated, Faults> {
             on_refined(&gauge, &model, &real)
         })
         .collect::<Option<_>>()
-        .ok_or_else(|| program("a gauge can't be laid".into()))?;
+        .ok_or_else(|| program("a gauge cannot be placed".into()))?;
     let at = model.grids.get(payload.us()).map_or(none, |g| g.x);
     let flipped = reads_most(&gauges, &standing, &turns, at);
     let gains: Vec<f64> = gauges

@@ -70,7 +70,7 @@ pub(super) fn relations(
     let singular = normal.singular_values();
     if !(singular.min() > 1e-10 * singular.max()) {
         return Err(refuse(
-            "its grids do not fix the motion of the reference grid: they lie on a line, or too few dofs are listed",
+            "its grids do not fix the motion of the reference grid: they are on a line, or too few dofs are listed",
             "add a grid off the line, or rotations (123456) to the arms",
         ));
     }

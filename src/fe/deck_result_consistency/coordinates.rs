@@ -1,4 +1,4 @@
-//! Grids that stand elsewhere.
+//! Grids with other coordinates.
 
 use crate::finding::{Finding, Severity};
 use crate::model::Model;
@@ -6,7 +6,7 @@ use crate::model::Model;
 /// Share of the model's size by which coordinates may differ: the rounding of single precision geometry blocks, with room.
 const COORDINATE_TOLERANCE: f64 = 1e-5;
 
-/// A finding where grids of the same id stand at different places in the deck and in the geometry of the result file `name`.
+/// A finding if grids of one id have different coordinates in the deck and in the geometry of the result file `name`.
 pub fn check_coordinates(model: &Model, name: &str, geometry: &Model) -> Vec<Finding> {
     let size = size(model);
     let limit = COORDINATE_TOLERANCE * size;

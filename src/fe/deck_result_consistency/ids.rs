@@ -1,6 +1,6 @@
 //! Elements and grids that one has and the other lacks.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::model::Model;
 use nastran::results::{Analysis, Block, Quantity, ResultsFile};
 use std::collections::{BTreeMap, BTreeSet};
@@ -35,7 +35,7 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
                 "{} of {} grids of the deck have no displacements in the file: {}",
                 absent.len(),
                 ours_g.len(),
-                few(&absent)
+                list_few(&absent)
             );
             let remedy =
                 "request DISPLACEMENT = ALL if the deck is the run's deck; else give that deck";
@@ -56,7 +56,7 @@ pub fn check_ids(model: &Model, name: &str, file: &ResultsFile) -> Vec<Finding> 
             "{} of {} shells of the deck have no results in the file: {}",
             shells.len(),
             model.shells.len(),
-            few(&shells)
+            list_few(&shells)
         );
         let remedy =
             "request STRAIN(FIBER) = ALL, or a SET with the elements that may carry gauges";
@@ -144,7 +144,7 @@ fn lacking(
         "{} of {} {what}s with results are not in the deck: {}",
         absent.len(),
         theirs.len(),
-        few(&absent)
+        list_few(&absent)
     );
     let finding = Finding::new(severity, code, name, message, "give the deck of this run");
     findings.push(finding.with_numbers(absent.len() as f64, 0.0));

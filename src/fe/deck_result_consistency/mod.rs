@@ -1,7 +1,7 @@
 //! Do deck and results belong together?
 //!
 //! - `ids` elements and grids that one has and the other lacks;
-//! - `coordinates` grids that stand elsewhere;
+//! - `coordinates` grids with other coordinates;
 //! - `output` strain that was not asked for, PARAM,OMID;
 //! - `freedom` reactions in a job that should have none;
 //! - `strain` strain that the built-in solver computes otherwise.

@@ -46,8 +46,8 @@ pub fn check_output(model: &Model, name: &str, file: &ResultsFile) -> Vec<Findin
         );
     }
     if model.params.omid {
-        let message = "PARAM,OMID,YES: solvers may put out shell strain in the material frame; it is read as in the element frame, which was \
-                       not verified with this parameter";
+        let message = "PARAM,OMID,YES: solvers may write shell strain in the material frame; it is read as in the element frame, which was not verified \
+         with this parameter";
         findings.push(Finding::new(
             Severity::Warning,
             "omid",

@@ -36,7 +36,7 @@ pub(super) fn rod_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, Re
         model.materials.get(rod.material.us()).map(|m| m.kind)
     else {
         return Err(refuse(
-            "its material is no MAT1".to_owned(),
+            "its material is not a MAT1".to_owned(),
             "rods need a MAT1",
         ));
     };

@@ -138,7 +138,7 @@ pub(super) fn shear_panel_stiffness(model: &Model, i: usize) -> Result<ElementMa
     else {
         return Err(refuse(
             panel,
-            "its material is no MAT1",
+            "its material is not a MAT1",
             "shear panels need a MAT1",
         ));
     };
@@ -153,7 +153,7 @@ pub(super) fn shear_panel_stiffness(model: &Model, i: usize) -> Result<ElementMa
     let plane = Plane::new(&x).ok_or_else(|| {
         refuse(
             panel,
-            "its corners make no convex quadrilateral",
+            "its corners do not form a convex quadrilateral",
             "check their order",
         )
     })?;

@@ -4,10 +4,10 @@ use crate::linalg::{Matrix, Vector, dense};
 use crate::model::{GridIx, Model, Vec3};
 use std::fmt;
 
-/// How a structure stands: contacts, and the displacement of each under a unit force up at each.
+/// Support of a structure on a floor: contacts, and the displacement of each under a unit force up at each.
 ///
-/// With `C` (`n x n`) the displacement along `axis` of contact j under a unit force at contact i of the free structure (balanced by its
-/// inertia), `k` the rate of what stands between a contact and the floor, and a rigid motion `t + theta x r`, the reactions `R` obey
+/// With `C` (`n x n`) the displacement along `axis` of contact j under a unit force at contact i of the free structure (balanced by its inertia), `k`
+/// the rate of the spring between a contact and the floor, and a rigid motion `t + theta x r`, the reactions `R` obey
 ///
 /// `sum_i C_ji R_i + R_j / k + t + theta_b r_c - theta_c r_b = -lift_j` at every contact,
 /// `sum R = -F`, `sum r_c R = -M_b`, `-sum r_b R = -M_c`,
@@ -66,13 +66,13 @@ impl FloorError {
         match self {
             Self::OnALine { contacts } => vec![(
                 format!(
-                    "the {contacts} contacts lie on a line or at a point: they can't carry the weight without falling over"
+                    "the {contacts} contacts are on a line or at a point: they cannot carry the weight without falling over"
                 ),
                 "name the wheels on both sides".to_owned(),
             )],
             Self::Springs { motions, springs } => vec![(
                 format!(
-                    "springs to ground ({springs}) hold {motions} of 6 rigid motions: a floor under the wheels would carry the structure a second time"
+                    "springs to ground ({springs}) hold {motions} of 6 rigid motions: a floor under the wheels would support the structure twice"
                 ),
                 "remove the springs to ground, so that the wheels alone carry the structure"
                     .to_owned(),

@@ -3,7 +3,7 @@
 //! - `shells` fibre, curvature and corner rows, strain from stress where a file has no strain;
 //! - `beams` the three forms of bar and beam rows;
 //! - `displacement` from displacement frames to basic;
-//! - [`repeated`](repeated()) subcases that are there more than once;
+//! - [`find_repeated_results`](find_repeated_results()) subcases that are there more than once;
 //! - `tally` input that was found and can't be used, each kind reported once.
 
 mod beams;
@@ -20,7 +20,7 @@ pub use merge::complete;
 pub use read::{
     Displacements, ReadOptions, solution_from_file, solution_from_results, subcase_labels,
 };
-pub use repeated::{HOLD_ONCE, Repeated, repeated};
+pub use repeated::{HOLD_ONCE, Repeated, find_repeated_results};
 pub use tally::other_element_types;
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::beams::BeamCollector;
 use super::blocks::{is_bar, is_shell_or_bar};
 use super::displacement::to_basic;
 use super::merge::merge;
-use super::repeated::repeated;
+use super::repeated::find_repeated_results;
 use super::shells::ShellCollector;
 use super::tally::{Met, Tally};
 use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
@@ -51,7 +51,7 @@ pub fn solution_from_results(
     let solutions = solutions.map(|(name, file)| solution_from_file(model, name, file, options));
     let solutions: Vec<Solution> = solutions.collect();
     let (names, files): (Vec<&str>, Vec<&ResultsFile>) = files.iter().copied().unzip();
-    let mut found = repeated(&files, options.subcases.as_ref());
+    let mut found = find_repeated_results(&files, options.subcases.as_ref());
     found.retain(|r| r.is_of_strain());
     let mut all = merge(solutions, &found);
     all.findings.extend(found.iter().map(|r| r.finding(&names)));
@@ -124,7 +124,7 @@ pub fn solution_from_file(
         } else {
             list(&passed_over)
         };
-        let message = format!("no static subcase in the file; it holds: {what}");
+        let message = format!("the file has no static subcase; it contains: {what}");
         let remedy = "give the results of a static run (SOL 101)";
         solution.findings.push(Finding::new(
             Severity::Error,
@@ -143,7 +143,7 @@ pub fn solution_from_file(
             "not-static",
             name,
             message,
-            "nothing to do if the static subcases are meant",
+            "nothing, if only the static subcases are needed",
         ));
     }
     solution

@@ -29,7 +29,10 @@ type Key = (u32, Quantity, u32, Option<u8>, String);
 
 /// Returns the static subcases, `wanted` ones or all, whose strain (stress where there is no strain) or displacement is there more than once
 /// with different values. Elements that are spread over several tables or files are no repetition, and neither are equal values.
-pub fn repeated(files: &[&ResultsFile], wanted: Option<&BTreeSet<u32>>) -> Vec<Repeated> {
+pub fn find_repeated_results(
+    files: &[&ResultsFile],
+    wanted: Option<&BTreeSet<u32>>,
+) -> Vec<Repeated> {
     let mut groups: BTreeMap<Key, Vec<(usize, usize)>> = BTreeMap::new();
     let mut strained: BTreeSet<(u32, bool)> = BTreeSet::new();
     for (f, file) in files.iter().enumerate() {

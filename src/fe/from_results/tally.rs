@@ -110,7 +110,7 @@ fn finding(met: Met, entry: &Entry, name: &str) -> Finding {
             Warning,
             "fibre-distance-differs",
             format!(
-                "{n} shells have strain at other fibre distances than Z1 and Z2 of the deck; they are used as they are: elements {ids}"
+                "{n} shells have strain at other fibre distances than Z1 and Z2 of the deck; they are used unchanged: elements {ids}"
             ),
             "give the deck of this run: thickness or Z1, Z2 differ",
         ),

@@ -137,7 +137,7 @@ impl SolutionStore for Folder {
                 Ok(Some(bytes))
             }
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-            Err(e) => Err(format!("the stored solution can't be read ({e})")),
+            Err(e) => Err(format!("the stored solution cannot be read ({e})")),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The sign and unit of an accelerometer by the gravity in its mean.
 
 use super::{ChannelKind, MotionChannel, MotionFault, names, of_kind, other_units, shows};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 
 /// Returns the faults that the means of accelerometers show: minus gravity, or gravity in another unit.
@@ -65,7 +65,7 @@ pub fn findings_by_gravity(channels: &[MotionChannel], gravity: f64, file: &str)
             "{} in `{file}`: the mean shows gravity, which is {} in the unit of the job (means: {})",
             fault.describe(channels),
             number(gravity),
-            few(&means.collect::<Vec<_>>())
+            list_few(&means.collect::<Vec<_>>())
         );
         Finding::new(
             Severity::Error,

@@ -1,7 +1,7 @@
 //! The unit of all accelerations or all wheel forces by the masses that the equations give.
 
 use super::{ChannelKind, MotionChannel, RULES, of_kind, other_units, shows};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 
 /// Masses that the equations give, and what else fixes the scale of accelerations and forces.
@@ -125,7 +125,7 @@ pub fn finding_of_scale(
         });
     let message = format!(
         "the file states no unit of {}, and nothing in the record confirms one: {} is assumed.{}",
-        few(&open),
+        list_few(&open),
         first.unit,
         in_g.unwrap_or_default()
     );

@@ -63,8 +63,8 @@ pub(super) fn corrections(
             });
             let other = raw.exchanged_with.as_ref().map(|s| s.value());
             if other.is_some() && other == gauge.as_ref() {
-                let wrong = "a channel can't be exchanged with itself";
-                let remedy = "name the other channel, or leave `exchanged_with` out";
+                let wrong = "a channel cannot be exchanged with itself";
+                let remedy = "name the other channel, or delete `exchanged_with`";
                 c.fault(section, "correction.exchanged_with", wrong, remedy);
             }
             let any = |_: f64| true;
@@ -114,7 +114,7 @@ pub fn check_names(job: &Job, faults: &mut FaultList) {
                     "gauge `{}` is turned on the model, and the job has no [model]",
                     correction.gauge
                 ),
-                "drop `angle_deg`, or turn the gauge where S is computed",
+                "delete `angle_deg`, or turn the gauge where S is computed",
             ));
         }
     }

@@ -6,7 +6,7 @@ use super::super::shapes::NumberOrWord;
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::measured::time_unit;
-use super::units::{stated, units};
+use super::units::{stated_quantities, units};
 use crate::reconcile::strain::WheelForces;
 use crate::units::ReportUnits;
 
@@ -45,7 +45,7 @@ pub(super) fn compare(
                 .map(|(load, column)| (load.value().clone(), column.value().clone()))
                 .collect(),
             units: units(c, raw.units.as_ref(), default, "compare.units"),
-            stated_units: stated(raw.units.as_ref()),
+            stated_units: stated_quantities(raw.units.as_ref()),
             noise,
             wheel_forces: WheelForces::Measured,
             ground: None,

@@ -48,7 +48,7 @@ pub(super) fn fleet(c: &mut Collector, raw: Option<&Spanned<RawFleet>>) -> Optio
             slope,
             "fleet.slope_below_knee",
             "it applies below `knee_range`, and the job has no `knee_range`",
-            "add `knee_range`, or leave it out",
+            "add `knee_range`, or delete this key",
         );
     }
     let hours = c.positive(&raw.mission_hours, "fleet.mission_hours");
@@ -118,7 +118,7 @@ fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
         let Some(k) = kind(c, section) else { continue };
         if !names.insert(k.name.clone()) {
             let wrong = format!("`{}` occurs twice", k.name);
-            let remedy = "give every kind of days its own name";
+            let remedy = "give every kind of days a separate name";
             c.fault(section, "fleet.mission.name", wrong, remedy);
         }
         out.push(k);
@@ -131,7 +131,7 @@ fn mission(c: &mut Collector, raw: &RawFleet) -> Vec<MissionKind> {
         // .4995 and .5 are one unit of the last digit away, but for the last bits of their sum.
         if (sum - 1.0).abs() > rounding + 1e-9 {
             let wrong = format!("the shares sum to {sum:.4}, expected 1");
-            let remedy = "state what the rest of the hours is, or correct the shares";
+            let remedy = "state the remaining share of the hours, or correct the shares";
             c.fault(first, "fleet.mission.share", wrong, remedy);
         }
         out.iter_mut().for_each(|k| k.share /= sum);
@@ -150,7 +150,7 @@ fn kind(c: &mut Collector, section: &Spanned<RawMission>) -> Option<MissionKind>
         |x| x > 0.0 && x <= 1.0,
     );
     if raw.days.is_empty() && raw.vehicles.is_empty() {
-        let wrong = "neither days nor vehicles are named";
+        let wrong = "the entry names neither days nor vehicles";
         let remedy = "add `days = [\"2026-05-*\"]` or `vehicles = [\"T1\"]`";
         c.fault(section, "fleet.mission.days", wrong, remedy);
     }

@@ -210,7 +210,7 @@ pub(crate) fn with_pair(
     if surface2.is_some() && pair.is_none() {
         fault(
             "`surface2` needs the element of the second pair",
-            "give `element2`, or drop `surface2`: the second pair is then on the opposite side",
+            "give `element2`, or delete `surface2`: the second pair is then on the opposite side",
         );
     }
     // Without a stated side a stated point may determine it.
@@ -226,14 +226,14 @@ pub(in crate::job) const STATION_ALONE: &str =
     "a station is a place along a bar or beam, and the gauge states no `point`";
 /// Remedy of [`STATION_ALONE`].
 pub(in crate::job) const POINT_STATED: &str =
-    "state `point` (C, D, E or F) of a bar or beam, or leave `station` out";
+    "state `point` (C, D, E or F) of a bar or beam, or delete `station`";
 
 /// Fault of a recovery point at a position.
 pub(in crate::job) const POINT_ALONE: &str =
     "a recovery point is on a bar or beam, and the gauge states a position without its `element`";
 /// Remedy of [`POINT_ALONE`].
 pub(in crate::job) const ELEMENT_STATED: &str =
-    "state `element`, a bar or beam; on a shell leave `point` out";
+    "state `element`, a bar or beam; on a shell delete `point`";
 
 /// Shares of a bar's length.
 const STATION: &str = "0 (end A) to 1 (end B)";
@@ -309,14 +309,14 @@ pub(crate) fn check_gauge(g: &JobGauge, faults: &mut FaultList) {
         fault(
             "element2",
             "a quarter bridge has no second pair",
-            "drop `element2` and `surface2`, or set `bridge`",
+            "delete `element2` and `surface2`, or set `bridge`",
         );
     }
     if g.rosette.is_some() && g.bridge != Bridge::Quarter {
         fault(
             "rosette",
             "a rosette's legs are quarter bridges",
-            "drop `bridge` or `rosette`",
+            "delete `bridge` or `rosette`",
         );
     }
     if matches!(g.place, StatedPlace::Position(..)) && g.pair.is_some() && !on_element {

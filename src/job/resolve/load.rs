@@ -76,7 +76,12 @@ pub(super) fn loads(c: &mut Collector, raw: &[Spanned<RawLoad>], behind: Behind)
                 "load `{}` occurs twice, first on line {}",
                 load.name, first.line
             );
-            c.fault(section, "load.name", wrong, "give every load its own name");
+            c.fault(
+                section,
+                "load.name",
+                wrong,
+                "give every load a separate name",
+            );
         }
         out.push(load);
     }
@@ -126,7 +131,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
             at,
             key,
             "needs `grid`",
-            "drop it, or give `grid` and `component` instead of `load_set`",
+            "delete it, or give `grid` and `component` instead of `load_set`",
         );
     };
     match (&raw.grid, &raw.load_set) {
@@ -153,7 +158,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
                     component,
                     "load.component",
                     "a load set has no component",
-                    "drop it, or give `grid` instead of `load_set`",
+                    "delete it, or give `grid` instead of `load_set`",
                 );
             }
             Some(LoadActs::Set(*set.value()))
@@ -172,7 +177,7 @@ fn acts(c: &mut Collector, section: &Spanned<RawLoad>, behind: Behind) -> Option
             c.fault(
                 section,
                 "load.grid",
-                "neither `grid` nor `load_set`",
+                "the load has neither `grid` nor `load_set`",
                 "add `grid = 101` and `component = \"FZ\"`, or `load_set = 12`",
             );
             None

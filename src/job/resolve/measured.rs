@@ -8,7 +8,7 @@ use super::super::shapes::{NumberOrNumbers, NumberOrWord, Texts};
 use super::super::spanned::Spanned;
 use super::super::types::*;
 use super::placement::DEFAULT_NOISE_MICROSTRAIN;
-use super::units::{stated, units};
+use super::units::{stated_quantities, units};
 use crate::payload::Place;
 use crate::reconcile::strain::WheelForces;
 use crate::series::record::seconds_in;
@@ -19,8 +19,8 @@ const DEFAULT_HOTTEST: usize = 20;
 /// Power of the load range in pseudo-damage if the job states none: usual for welded and cast parts of vehicles.
 const DEFAULT_SLOPE: f64 = 5.0;
 
-/// `[measured]`; where there is a `[fleet]`, its records stand in for the strain file.
-pub(super) fn measured(
+/// `[measured]`; where there is a `[fleet]`, its records replace the strain file.
+pub(super) fn resolve_measured(
     c: &mut Collector,
     raw: Option<&Spanned<RawMeasured>>,
     fleet: Option<&Spanned<RawFleet>>,
@@ -66,20 +66,20 @@ pub(super) fn measured(
         }
     };
     if let (Some(at), Some(_)) = (&raw.zero_runs, &raw.zero) {
-        let wrong = "both `zero` and `zero_runs`";
+        let wrong = "the section has both `zero` and `zero_runs`";
         c.fault(at, "measured.zero_runs", wrong, "state one of the two");
     }
     let own = |other: &NamedFile| other.given == strain.given;
     let zero = c.named(&raw.zero, "measured.zero");
     if let (Some(at), Some(_)) = (&raw.zero, zero.as_ref().filter(|z| own(z))) {
         let wrong = "this is the strain file itself: loads would be differences from their mean";
-        let remedy = "name a file measured without load, or leave it out";
+        let remedy = "name a file measured without load, or delete this key";
         c.fault(at, "measured.zero", wrong, remedy);
     }
     if let (Some(at), HoldOut::File(_)) = (&raw.hold_out, &hold_out)
         && matches!(&hold_out, HoldOut::File(file) if own(file))
     {
-        let wrong = "this is the strain file itself: nothing would be held out";
+        let wrong = "this is the strain file itself: no run would remain to be held out";
         let remedy = "name runs of it, or another file";
         c.fault(at, "measured.hold_out", wrong, remedy);
     }
@@ -177,7 +177,7 @@ pub(super) fn runs(
             ground,
             "runs.ground",
             "measured wheel forces already contain the effect of the ground",
-            "write `wheel_forces = \"flat_ground_model\"` as well, or leave it out",
+            "write `wheel_forces = \"flat_ground_model\"` as well, or delete this key",
         );
     }
     Some(Runs {
@@ -189,7 +189,7 @@ pub(super) fn runs(
             .map(|(k, v)| (k.value().clone(), v.value().clone()))
             .collect(),
         units: units(c, raw.units.as_ref(), default, "runs.units"),
-        stated_units: stated(raw.units.as_ref()),
+        stated_units: stated_quantities(raw.units.as_ref()),
         noise,
         wheel_forces,
         ground: c.positive(&raw.ground, "runs.ground"),

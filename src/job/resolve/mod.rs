@@ -60,7 +60,7 @@ pub(super) fn resolve_job(
     let criterion = placement::default_criterion(&loads);
     let model = load::model(&mut c, raw.model.as_ref());
     load::check_results(&mut c, model.as_ref(), &loads);
-    let measured = measured::measured(&mut c, raw.measured.as_ref(), raw.fleet.as_ref());
+    let measured = measured::resolve_measured(&mut c, raw.measured.as_ref(), raw.fleet.as_ref());
     one_source(&mut c, &raw);
     Job {
         read: Vec::new(),
@@ -150,7 +150,7 @@ fn check_names_of<'a>(gauges: impl Iterator<Item = &'a JobGauge>, faults: &mut F
         let (wrong, remedy) = match first.name == g.name {
             true => (
                 format!("gauge `{}` is stated twice, first at {at}", g.name),
-                "give every gauge its own name",
+                "give every gauge a separate name",
             ),
             false => (
                 format!(

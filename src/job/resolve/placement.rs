@@ -105,7 +105,7 @@ pub(super) fn candidates(c: &mut Collector, raw: Option<&Spanned<RawCandidates>>
             .collect();
         out.bridges.dedup();
         if out.bridges.is_empty() && raw.rosette.is_none() {
-            let wrong = "no wiring to choose from";
+            let wrong = "the list contains no wiring";
             c.fault(b, "candidates.bridge", wrong, "name `quarter`, for one");
         }
     }

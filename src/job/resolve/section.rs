@@ -19,7 +19,7 @@ pub(super) fn sections(c: &mut Collector, raw: &[Spanned<RawSection>]) -> Vec<Re
                 item,
                 "section.name",
                 wrong,
-                "give every section its own name",
+                "give every section a separate name",
             );
         }
         let times = |s: &RecordSection| match s.extent {

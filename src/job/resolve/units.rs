@@ -57,7 +57,7 @@ pub(super) fn units(
 }
 
 /// Quantities of which a unit is stated.
-pub(super) fn stated(raw: Option<&RawUnits>) -> Vec<Quantity> {
+pub(super) fn stated_quantities(raw: Option<&RawUnits>) -> Vec<Quantity> {
     let Some(raw) = raw else { return Vec::new() };
     let all = [
         (&raw.force, Quantity::Force),

@@ -26,7 +26,7 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
             c.fault(
                 g,
                 &key("gain"),
-                "a gain of 0 leaves nothing to divide by".to_owned(),
+                "a gain of 0 is not valid: readings are divided by it".to_owned(),
                 "write reading over truth, such as 1.05, or -1 for a reversed sign",
             );
             1.0
@@ -45,7 +45,7 @@ fn correction(c: &mut Collector, channel: &str, r: &RawCorrection) -> ChannelCor
             c.fault(
                 one,
                 &key("slip_s"),
-                "a slip has a time and a size, one of them is missing".to_owned(),
+                "a slip has a time and a size, and one of them is missing".to_owned(),
                 "state `slip_at_s` and `slip_s`",
             );
             None
@@ -134,8 +134,8 @@ pub(super) fn vehicle(c: &mut Collector, raw: Option<&Spanned<RawVehicle>>) -> O
     if let (Some(data), Some(at)) = (&raw.data, &raw.hold_out)
         && data.value() == at.value()
     {
-        let wrong = "this is the data file itself: nothing would be held out";
-        let remedy = "name a record that is not fitted, or leave it out";
+        let wrong = "this is the data file itself: no data would remain to be held out";
+        let remedy = "name a record that is not fitted, or delete this key";
         c.fault(at, "vehicle.hold_out", wrong, remedy);
     }
     model.as_ref().zip(data.as_ref())?;
@@ -334,7 +334,7 @@ fn described(c: &mut Collector, entry: &Spanned<RawEffect>) -> Option<DescribedE
             c.fault(
                 entry,
                 "reconcile.effect",
-                "neither a `signature` nor one complete `edit`",
+                "the entry has neither a `signature` nor one complete `edit`",
                 "give signature = \"change.csv\", edit = { property = 14, thickness_scale = 0.9 } or edit = { cbush = 77, stiffness_scale = 0.5 }",
             );
             return None;

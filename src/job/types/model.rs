@@ -14,6 +14,7 @@ pub struct ModelFiles {
     pub support: SupportChoice,
     /// Line of `support`, or of the section.
     pub support_line: u32,
-    /// Whether the error of the mesh is subtracted from the strain of the built-in solver and weighed. `None`: where the deck is small.
+    /// Whether the error of the mesh is subtracted from the strain of the built-in solver and its remainder is in the covariance. `None`: for small
+    /// decks.
     pub mesh_error: Option<bool>,
 }

@@ -71,7 +71,7 @@ pub struct Placement {
     pub gauge_factor_rel: f64,
     /// Noise of a wiring's reading, microstrain, where it is not `noise_microstrain`.
     pub noise_by_bridge: Vec<(Bridge, f64)>,
-    /// Whether the layout is chosen for what is left after the worst loss of a gauge.
+    /// Whether the layout is optimal after the worst loss of a gauge.
     pub loss: Loss,
     /// Gauges of the job that stay; `gauges` counts those to be added.
     pub keep: Keep,

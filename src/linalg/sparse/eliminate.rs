@@ -1,7 +1,7 @@
 //! Elimination of the first unknowns of a dense symmetric matrix, lower triangles by columns.
 //!
-//! Blocks are halved until they are so narrow that they stay in registers; the rest is matrix products. Large matrices are cut into tiles of
-//! a fixed size that threads share, so that rounding doesn't depend on how many there are. What stands above diagonals is never read.
+//! Blocks are halved until they are so narrow that they stay in registers; the rest is matrix products. Large matrices are cut into tiles of a fixed
+//! size that threads share, so that rounding doesn't depend on how many there are. Entries above diagonals are never read.
 
 use super::narrow;
 use faer::linalg::matmul::matmul;

@@ -101,7 +101,7 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Eliminates the supernode: its columns of the factor, each from its diagonal down, into `packed`, and what is left for its parent.
+    /// Eliminates the supernode: its columns of the factor, each from its diagonal down, into `packed`, and the remainder for its parent.
     ///
     /// A lost pivot is held by a spring, and the front is formed again: only for structures that are refused anyway.
     ///

@@ -156,7 +156,7 @@ impl Builder<'_> {
                 "GS",
                 stated.at,
                 "a connector with both ends on one shell",
-                "name the shell of each side (ELEM, ELPAT), or give the sheets properties of their own",
+                "name the shell of each side (ELEM, ELPAT), or give the sheets different properties",
             );
             return None;
         }

@@ -315,7 +315,7 @@ impl Builder<'_> {
                 name,
                 "GB",
                 w.at,
-                "a weld from a patch to a corner of its own",
+                "a weld from a patch to one of its corners",
                 "name a grid of the other sheet",
             );
             return None;

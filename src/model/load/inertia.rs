@@ -86,7 +86,7 @@ impl Builder<'_> {
         })
     }
 
-    /// Returns the load of an ACCEL1. A range stands for the grids in it that exist.
+    /// Returns the load of an ACCEL1. A range means the existing grids in it.
     fn accel1(&mut self, card: &Placed<Accel1>) -> Option<Load> {
         let name = format!("ACCEL1 {}", card.sid);
         let f = self.frame(card.cid.into(), &name, "CID", card.at)?;

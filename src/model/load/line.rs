@@ -57,7 +57,7 @@ impl Builder<'_> {
                 None => format!("at X1 {}", p.x1),
             };
             let kind = FaultKind::Unsupported {
-                what: format!("a load {places}, off the element or from B to A,"),
+                what: format!("a load {places}, outside the element or from B to A,"),
                 remedy: "give places on the element, X1 no farther than X2",
             };
             self.fault(name, "X1", p.at, kind);

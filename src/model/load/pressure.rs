@@ -116,7 +116,7 @@ impl Builder<'_> {
                     let found = format!("G1 {first}, G3 or G4 {other}");
                     let kind = FaultKind::Word {
                         found,
-                        expected: "corners that tell a face of the element",
+                        expected: "corners that determine a face of the element",
                     };
                     self.fault(name.clone(), "G1", p.at, kind);
                 }

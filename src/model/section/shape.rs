@@ -1,7 +1,7 @@
 //! The section types of PBARL and PBEAML.
 //!
-//! Element y points up in the manual's figures and z to the right; recovery points C D E F stand where the figures have them.
-//! The element axis runs through the shear centre. Dimensions DIM1, DIM2 .. are `d[0]`, `d[1]` ..
+//! Element y points up in the manual's figures and z to the right; recovery points C D E F are at the places of the figures. The element axis runs
+//! through the shear centre. Dimensions DIM1, DIM2 .. are `d[0]`, `d[1]` ..
 //!
 //! # Reference
 //! MSC Nastran Quick Reference Guide, PBARL and PBEAML (figures of the types). Torsion: W. C. Young, Roark's Formulas for Stress

@@ -80,7 +80,7 @@ impl RigidKind {
         }
     }
 
-    /// Returns the grids, dependent or not; some may stand several times.
+    /// Returns the grids, dependent or not; some may occur several times.
     pub fn grids(&self) -> Vec<GridIx> {
         match self {
             Self::Body {

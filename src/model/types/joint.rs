@@ -21,7 +21,7 @@ pub struct Joint {
     pub k: [f64; 6],
     /// How it came onto its patches.
     pub placed: Placement,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 

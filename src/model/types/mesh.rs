@@ -61,7 +61,7 @@ pub struct Shell {
     pub zoffs: f64,
     /// Corner thicknesses (the property's where the card has none).
     pub thickness: [f64; 4],
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 
@@ -86,7 +86,7 @@ pub struct Beam {
     pub warping: Option<[GridIx; 2]>,
     /// SA and SB are stated, and the property has no CW: it twists without warping, and they stay where they are.
     pub idle_points: bool,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 
@@ -134,7 +134,7 @@ pub struct Bush {
     pub frame_assumed: bool,
     /// Stress and strain recovery coefficients SA, ST, EA, ET.
     pub recovery: [f64; 4],
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 
@@ -188,7 +188,7 @@ pub struct PointMass {
     pub matrix: crate::linalg::Matrix6<f64>,
     /// Offset of the centre of gravity from the grid, basic frame (0 for CONM1).
     pub offset: Vec3,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 
@@ -201,7 +201,7 @@ pub struct ScalarMass {
     pub mass: f64,
     /// Grid and dof (0-based, displacement frame of the grid); `None` ground.
     pub ends: [Option<(GridIx, u8)>; 2],
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 
@@ -212,6 +212,6 @@ pub struct GridNormal {
     pub grid: GridIx,
     /// Unit vector, basic frame; its sign does not matter.
     pub n: Vec3,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }

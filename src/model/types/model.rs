@@ -51,7 +51,7 @@ pub struct Model {
     pub scalar_masses: Vec<ScalarMass>,
     /// SNORM, ascending grid.
     pub normals: Vec<GridNormal>,
-    /// RBE1, RBE2, RBE3, RBAR, RSPLINE; what stands for rigid components of bushes and for grids that pierce a connector's patch.
+    /// RBE1, RBE2, RBE3, RBAR, RSPLINE; the equations of rigid components of bushes and for grids that pierce a connector's patch.
     pub rigids: Vec<Rigid>,
     /// MPC sets.
     pub mpcs: Vec<MpcSet>,

@@ -79,7 +79,7 @@ pub struct BeamProperty {
     pub bar_centroid: [f64; 2],
     /// Warping constant CW at A and B (integral omega^2 dA); it counts for elements with warping points.
     pub warping: [f64; 2],
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }
 

@@ -1,4 +1,4 @@
-//! A card that no part of the model stands for.
+//! A card that the model does not contain.
 
 use nastran::place::Place;
 
@@ -9,6 +9,6 @@ pub struct UnsupportedCard {
     pub card: String,
     /// Element id or set id.
     pub id: Option<u32>,
-    /// Where it stands.
+    /// Place of the card in the deck.
     pub at: Place,
 }

@@ -47,7 +47,7 @@ fn layouts_for_the_condition_number_are_within_a_fifth_of_the_least_of_all_subse
             .fold(f64::INFINITY, f64::min);
         let spec = Spec::new(s, k);
         let by_d = place(&c, &spec).unwrap();
-        let got = condition::best(&c, &spec, &by_d, &vec![0.0; k * k]).unwrap();
+        let got = condition::find_least_condition(&c, &spec, &by_d, &vec![0.0; k * k]).unwrap();
         assert_eq!(got.gauges.len(), s);
         let own = of(&got.gauges);
         // Eigenvalues of S'S carry the square of the condition number.
@@ -67,7 +67,7 @@ fn a_layout_for_the_condition_number_keeps_the_spacing() {
         ..Spec::new(6, 3)
     };
     let by_d = place(&c, &spec).unwrap();
-    let got = condition::best(&c, &spec, &by_d, &[0.0; 9]).unwrap();
+    let got = condition::find_least_condition(&c, &spec, &by_d, &[0.0; 9]).unwrap();
     let mut places: Vec<u32> = got.gauges.iter().map(|g| g.place).collect();
     places.sort_unstable();
     assert!(places.windows(2).all(|w| w[1] - w[0] >= 3), "{places:?}");

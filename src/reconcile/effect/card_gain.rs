@@ -52,7 +52,7 @@ impl ChannelFault for CardGain {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "shunt-calibrate one gauge of {place} and one outside: a wrong amplifier shows in the first alone"
+            "shunt-calibrate one gauge of {place} and one gauge outside it: a wrong amplifier gain shows in the first gauge alone"
         )
     }
 }

@@ -56,8 +56,6 @@ impl ChannelFault for CrossSensitivity {
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!(
-            "shunt the neighbours of gauge {place} in the list of channels and see whether it moves"
-        )
+        format!("shunt the channels next to gauge {place} and check whether its reading changes")
     }
 }

@@ -33,6 +33,8 @@ impl ChannelFault for DeadChannel {
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("check the leads and the insulation of gauge {place}; a shunt moves a live channel")
+        format!(
+            "check the leads and the insulation of gauge {place}: a shunt changes the reading of a working channel"
+        )
     }
 }

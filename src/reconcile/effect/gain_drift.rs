@@ -24,7 +24,7 @@ impl ChannelFault for GainDrift {
         "gain_drift"
     }
     fn parameters(&self) -> Vec<Parameter> {
-        let unit = "of the gain, first run to last";
+        let unit = "of the gain, from the first run to the last";
         vec![Parameter {
             unit,
             neutral: 0.0,
@@ -52,7 +52,7 @@ impl ChannelFault for GainDrift {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "repeat the first run at the end, and shunt-calibrate {place} before and after: a gain that moves shows"
+            "repeat the first run at the end, and shunt-calibrate {place} before and after: the shunt shows a gain that drifts"
         )
     }
 }

@@ -73,7 +73,7 @@ impl ChannelFault for GaugeAngle {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "photograph gauge {place} with a protractor; a load that shears the member there shows an angle, not a gain"
+            "photograph gauge {place} with a protractor. A load that shears the member there distinguishes a wrong angle from a wrong gain"
         )
     }
 }

@@ -45,7 +45,7 @@ impl ChannelFault for GaugeGain {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "shunt-calibrate gauge {place}: a wrong gain shows, a wrong angle or place does not"
+            "shunt-calibrate gauge {place}: the shunt shows a wrong gain, and does not show a wrong angle or position"
         )
     }
 }

@@ -56,6 +56,6 @@ impl ChannelFault for GaugePosition {
         )
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("measure where gauge {place} sits")
+        format!("measure the installed position of gauge {place}")
     }
 }

@@ -44,7 +44,7 @@ impl ChannelFault for GaugeSwap {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "warm one of the gauges {} with a hand and see which channel moves",
+            "warm one of the gauges {} by hand and check which channel changes",
             place.replace('+', " and ")
         )
     }

@@ -32,6 +32,6 @@ impl StrainEffect for GlobalScale {
         Extension::Scale(1.0 + parameters.first().copied().unwrap_or(0.0) / 100.0)
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        "shunt-calibrate any gauge: a common gain shows there, a wrong modulus or a wrong force scale does not".into()
+        "shunt-calibrate any gauge: the shunt shows a common gain, and does not show a wrong modulus or a wrong scale of the forces".into()
     }
 }

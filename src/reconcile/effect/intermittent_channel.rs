@@ -66,6 +66,8 @@ impl ChannelFault for IntermittentChannel {
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("move the leads of gauge {place} while it is read: a loose contact jumps")
+        format!(
+            "move the leads of gauge {place} while it is read: the reading of a loose contact jumps"
+        )
     }
 }

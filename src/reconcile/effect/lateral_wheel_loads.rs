@@ -89,6 +89,6 @@ impl StrainEffect for LateralWheelLoads {
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        "put the wheels on turntables or greased plates and repeat a run: side forces vanish, everything else stays".into()
+        "put the wheels on turntables or greased plates and repeat a run: side forces vanish, all other effects remain".into()
     }
 }

@@ -50,18 +50,18 @@ impl ModelDiscrepancy {
     fn words(self) -> &'static str {
         match self {
             Self::LoadDependent => {
-                "strain is not in proportion to the load (a joint that closes, a spring that stiffens)"
+                "strain is not proportional to the load (a joint that closes, a spring that stiffens)"
             }
             Self::StrainDependent => {
-                "readings are not in proportion to strain (range, yielding, bonding)"
+                "readings are not proportional to strain (range, yielding, bond)"
             }
-            Self::Memory => "strain depends on the run before (friction, hysteresis)",
+            Self::Memory => "strain depends on the previous run (friction, hysteresis)",
             Self::CrossTalk => "channels leak into their neighbours (wiring, multiplexer)",
-            Self::Scatter => "readings scatter from run to run as no load explains",
+            Self::Scatter => "readings scatter from run to run, and no load explains the scatter",
             Self::RelativeScatter => "readings scatter from run to run in proportion to their size",
-            Self::Wander(_) => "zeros wander slowly from run to run",
+            Self::Wander(_) => "zeros drift slowly from run to run",
             Self::Zeros => {
-                "readings of many gauges are off by a constant each (zeros taken in another state: loaded, warm, or with other leads)"
+                "readings of many gauges have a constant offset each (zeros read under load, at another temperature, or with other leads)"
             }
         }
     }
@@ -233,14 +233,16 @@ impl StrainEffect for ModelDiscrepancy {
             Self::Memory => {
                 "approach one load from below and from above: friction shows as a loop".into()
             }
-            Self::CrossTalk => "shunt one gauge and look at its neighbours".into(),
+            Self::CrossTalk => {
+                "shunt one gauge and check the readings of the adjacent channels".into()
+            }
             Self::LoadDependent | Self::StrainDependent => {
                 "load in equal steps to the full payload and back".into()
             }
             Self::Zeros => "unload to the installation state and read the zeros again".into(),
             Self::Wander(_) => "read the zeros between runs (`zero` in the runs file)".into(),
             Self::Scatter | Self::RelativeScatter => {
-                "repeat one run three times: scatter shows, an effect of the loads repeats".into()
+                "repeat one run three times: scatter changes, an effect of the loads repeats".into()
             }
         }
     }

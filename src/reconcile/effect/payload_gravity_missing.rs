@@ -33,6 +33,6 @@ impl StrainEffect for PayloadGravityMissing {
         Extension::PayloadWeight
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        "repeat a run without payload: what is missing with the payload's weight vanishes".into()
+        "repeat a run without payload: the gap of a missing payload weight vanishes".into()
     }
 }

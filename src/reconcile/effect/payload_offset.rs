@@ -73,6 +73,6 @@ impl StrainEffect for PayloadOffset {
         Extension::PayloadOffset { dx, dy }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        "measure where the payload lies, or lift it off and repeat: an offset goes with it".into()
+        "measure the position of the payload, or remove the payload and repeat the run: the gap of an offset vanishes".into()
     }
 }

@@ -73,7 +73,7 @@ impl ChannelFault for RosetteLegs {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "follow the leads of the rosette at {place}, or shunt one leg and see which channel moves"
+            "trace the leads of the rosette at {place}, or shunt one leg and check which channel changes"
         )
     }
 }

@@ -56,7 +56,7 @@ impl StrainEffect for RunExchange {
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         format!(
-            "look up the notes and the times of runs {} in the log of the measurement",
+            "check the notes and the times of runs {} in the test log",
             self.names.join(" and ")
         )
     }

@@ -119,7 +119,7 @@ impl StrainEffect for RunRecord {
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        format!("repeat run {}, or look up its weighing notes", self.name)
+        format!("repeat run {}, or check its weighing notes", self.name)
     }
     fn runs(&self) -> Vec<usize> {
         vec![self.run]

@@ -65,6 +65,6 @@ impl ChannelFault for SaturatedChannel {
         Extension::channel(names, Correction::Ignore)
     }
     fn separate_by(&self, place: &str) -> String {
-        format!("lower the amplifier's gain of gauge {place} and repeat the heaviest run")
+        format!("lower the amplifier gain of gauge {place} and repeat the heaviest run")
     }
 }

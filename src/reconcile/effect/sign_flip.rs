@@ -31,7 +31,7 @@ impl ChannelFault for SignFlip {
     }
     fn separate_by(&self, place: &str) -> String {
         format!(
-            "press or warm the structure by hand at gauge {place} and look at the sign, or shunt one arm"
+            "press or warm the structure at gauge {place} and check the sign of its reading, or shunt one arm"
         )
     }
 }

@@ -161,7 +161,7 @@ impl StrainEffect for SmoothError {
     }
     fn discrepancy(&self) -> Option<Discrepancy> {
         Some(Discrepancy::Smooth(
-            "the model is off by a factor that changes smoothly from place to place (`smooth`): no single effect of the library",
+            "the model is wrong by a factor that changes smoothly with position (`smooth`), and no single effect of the library explains it",
         ))
     }
     fn smooth(&self) -> Option<&SmoothError> {
@@ -193,7 +193,7 @@ impl StrainEffect for SmoothError {
         Extension::Nothing
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        "add gauges between those where the model is most off: a smooth error of the model continues there, a fault of single gauges does not"
+        "add gauges between the gauges with the largest model error: a smooth error of the model continues there, a fault of single gauges does not"
             .into()
     }
 }

@@ -130,20 +130,20 @@ impl StrainEffect for Stiffness {
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         match self.of {
             StiffnessOf::Zone => format!(
-                "measure the thickness at {0}, or add a gauge inside and one outside that zone",
+                "measure the thickness at {0}, or add one gauge inside and one gauge outside this zone",
                 self.name
             ),
             StiffnessOf::Joint => {
                 format!(
-                    "measure how far the two sides of joint {} move against each other under load",
+                    "measure the relative displacement of the two sides of joint {} under load",
                     self.name
                 )
             }
             StiffnessOf::Local => format!(
-                "look for a crack or a loose joint at {}, and add a gauge on either side of it",
+                "inspect {} for a crack or a loose joint, and add a gauge on either side of it",
                 self.name
             ),
-            StiffnessOf::Described => format!("look whether {} is there", self.name),
+            StiffnessOf::Described => format!("check whether {} exists", self.name),
         }
     }
 }

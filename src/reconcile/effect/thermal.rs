@@ -88,8 +88,8 @@ impl StrainEffect for Thermal {
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         match self.pattern {
-            Pattern::Uniform => "log the frame's temperature in every run, or glue a dummy gauge on a free plate beside".into(),
-            Pattern::Gradient => "log the temperature on both sides of the rails in every run".into(),
+            Pattern::Uniform => "record the temperature of the frame in every run, or add a dummy gauge on a free plate next to it".into(),
+            Pattern::Gradient => "record the temperature on both sides of the rails in every run".into(),
         }
     }
 }

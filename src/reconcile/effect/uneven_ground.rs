@@ -1,4 +1,4 @@
-//! `uneven_ground`: the wheels stand on ground that is not flat, so the forces differ from those computed for flat ground.
+//! `uneven_ground`: the ground under the wheels is not flat, so the forces differ from those computed for flat ground.
 
 use super::{Amplitudes, Extension, Nuisance, Stage, StrainEffect};
 use crate::reconcile::strain::{StrainFrame, WheelForces, ground_patterns};
@@ -55,6 +55,6 @@ impl StrainEffect for UnevenGround {
         }
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
-        "weigh every wheel where it stands, or turn the truck end for end on the same ground".into()
+        "weigh every wheel at its place, or turn the truck end for end on the same ground".into()
     }
 }

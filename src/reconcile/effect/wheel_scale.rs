@@ -97,10 +97,10 @@ impl StrainEffect for WheelScale {
     }
     fn separate_by(&self, _frame: &StrainFrame) -> String {
         if self.loads.len() > 1 {
-            return "weigh a known mass on one of the scales, and look up the unit in which they are noted".into();
+            return "weigh a known mass on one of the scales, and check the unit of the recorded wheel loads".into();
         }
         format!(
-            "exchange the scale under {} with that of another wheel and repeat: the factor goes with the scale",
+            "exchange the scale under {} with the scale of another wheel and repeat: the factor follows the scale",
             self.place
         )
     }

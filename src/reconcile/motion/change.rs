@@ -169,7 +169,7 @@ impl Change {
         const DENSE: i32 = 18;
         /// Constants of terms need no finer step.
         const FINEST: f64 = 0.005;
-        /// Seconds that a step of one stands for in the time of a change of mass.
+        /// Seconds for each unit step in the time of a change of mass.
         const SPAN_S: f64 = 12.0;
         let vary = |make: &dyn Fn(f64) -> Option<Self>| {
             SIDES.iter().filter_map(|s| make(s * step)).collect()

@@ -34,7 +34,7 @@ pub fn adjustments(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
 }
 
 /// Returns the corrections of the job and of a set including its mains lines, as a job states them.
-pub fn stated(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
+pub fn state_corrections(frame: &MotionFrame, parts: &[Part]) -> Vec<Adjustment> {
     let mut out = adjustments(frame, parts);
     for p in parts {
         if let Change::Line { channel, hz } = &p.shape {

@@ -287,11 +287,11 @@ pub fn size(x: &[Complex64]) -> f64 {
 
 /// Size of the measured quantity of an equation.
 pub fn reference(design: &Design, equation: usize, values: &[f64]) -> f64 {
-    size(&measured(design, equation, values))
+    size(&measured_quantity(design, equation, values))
 }
 
 /// The measured quantity of an equation: its outside force, or mass times acceleration where none acts.
-pub fn measured(design: &Design, equation: usize, values: &[f64]) -> Bins {
+pub fn measured_quantity(design: &Design, equation: usize, values: &[f64]) -> Bins {
     let e = &design.equations[equation];
     if size(&e.target) > 0.0 {
         return e.target.clone();

@@ -12,7 +12,7 @@ use super::found::Found;
 use super::frame::MotionFrame;
 use super::gap::fitted_gap;
 use super::growing::fit_of_clock;
-use super::judge::judged;
+use super::judge::conclude;
 use super::noise::Background;
 use super::outcome::MotionOutcome;
 use super::part::Part;
@@ -77,7 +77,7 @@ pub fn examine(frame: &MotionFrame, only: &[String]) -> Result<MotionOutcome, Ve
         forms: vec![],
     };
     let found = searched(&mut scorer, null, broken);
-    judged(&mut scorer, found)
+    conclude(&mut scorer, found)
 }
 
 /// Sets of effects by evidence, the background found with them.

@@ -8,7 +8,7 @@ use super::corrections::adjustments;
 use super::design::{Bins, Design, design};
 use super::fitted::{MotionFit, whitened};
 use super::frame::MotionFrame;
-use super::limits::{plausible, within_tolerance};
+use super::limits::{has_plausible_sizes, within_tolerance};
 use super::noise::{Background, Whitener, covariance, log_determinant};
 use super::part::{ColumnOf, Part};
 use super::response::responses;
@@ -40,7 +40,11 @@ impl Effort {
 }
 
 /// Returns the value of each held parameter; `None` for a free parameter.
-pub fn held(frame: &MotionFrame, vehicle: &Vehicle, design: &Design) -> Vec<Option<f64>> {
+pub fn held_parameters(
+    frame: &MotionFrame,
+    vehicle: &Vehicle,
+    design: &Design,
+) -> Vec<Option<f64>> {
     let names = vehicle.parameters();
     let mut out: Vec<Option<f64>> = names
         .iter()
@@ -122,7 +126,7 @@ pub fn fit(
         }
     }
     let out = last?;
-    plausible(&frame.rules, candidates, &out).then_some(out)
+    has_plausible_sizes(&frame.rules, candidates, &out).then_some(out)
 }
 
 /// Relative change of the squared residual between rounds at which a fit has settled.
@@ -153,7 +157,7 @@ impl Problem {
         background: &Background,
     ) -> Self {
         let n = d.equations.len();
-        let held = held(frame, &d.vehicle, d);
+        let held = held_parameters(frame, &d.vehicle, d);
         let (responses, whitener, log_det) = match values {
             Some(x) => {
                 let h = responses(d, x);

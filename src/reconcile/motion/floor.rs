@@ -6,7 +6,7 @@ use super::frame::MotionFrame;
 use super::noise::{Background, Whitener, covariance};
 use super::part::Part;
 use super::response::responses;
-use crate::estimate::columns::{PriorColumn, solved};
+use crate::estimate::columns::{PriorColumn, solve_with_priors};
 use crate::reconcile::rules::MotionRules;
 use rustfft::num_complex::Complex64;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
@@ -48,7 +48,7 @@ impl Floor {
 }
 
 /// Parameters by least squares without nuisance, all equations alike, over one or more designs of a vehicle.
-pub fn plain(designs: &[&Design], free: &[usize], target: &[Vec<Bins>]) -> Vec<f64> {
+pub fn fit_without_nuisance(designs: &[&Design], free: &[usize], target: &[Vec<Bins>]) -> Vec<f64> {
     let stacked = |of: &dyn Fn(&Design, usize) -> Vec<f64>| -> Vec<f64> {
         designs
             .iter()
@@ -64,7 +64,7 @@ pub fn plain(designs: &[&Design], free: &[usize], target: &[Vec<Bins>]) -> Vec<f
         })
         .collect();
     let rows = stacked(&|d, k| even(d).rows(&slices(&target[k])));
-    solved(&columns, &rows).x
+    solve_with_priors(&columns, &rows).x
 }
 
 /// Equal weights of all equations and bins.
@@ -77,8 +77,8 @@ fn even(d: &Design) -> Whitener {
     Whitener::of(&vec![s; d.f_hz.len()], n)
 }
 
-/// Floors by equation of a design `judged`, its parameters `values` found by [`plain`] on the designs `learnt` in the `free` ones, effects
-/// `parts` in the model.
+/// Floors by equation of a design `judged`, its parameters `values` found by [`fit_without_nuisance`] on the designs `learnt` in the `free` ones,
+/// effects `parts` in the model.
 ///
 /// A tolerance of one sd leaves column - A beta there, beta the parameters that take its column on the learnt designs: what the
 /// parameters take up is no gap. Several tolerances make a quadratic form of normal deviates; its quantile is that of the chi-square
@@ -160,7 +160,7 @@ fn left_by_tolerances(
                 .iter()
                 .map(|d| d.get(k).cloned().unwrap_or_default())
                 .collect();
-            let beta = plain(learnt, free, &target);
+            let beta = fit_without_nuisance(learnt, free, &target);
             for (e, column) in judged.equations.iter().zip(&mut column) {
                 for (i, own) in &e.columns {
                     let Some(b) = free.iter().position(|f| f == i).map(|at| beta[at]) else {

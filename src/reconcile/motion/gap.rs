@@ -1,10 +1,10 @@
 //! Gap of a vehicle model: residual of the equations over the measured quantity, within the frequency band.
 
 use super::corrections::{adjustments, lines};
-use super::design::{Bins, Design, design, measured, size};
-use super::fit::held;
+use super::design::{Bins, Design, design, measured_quantity, size};
+use super::fit::held_parameters;
 use super::fitted::MotionFit;
-use super::floor::{Floor, floors, plain};
+use super::floor::{Floor, fit_without_nuisance, floors};
 use super::frame::MotionFrame;
 use super::gap_profile::{GapProfile, gap_profile};
 use super::noise::{BANDS, band_of};
@@ -81,7 +81,7 @@ impl Proof {
         match self {
             Self::HeldOut => "held-out data",
             Self::CrossValidated => {
-                "segments of the record, each under parameters of the others (cross-validated)"
+                "segments of the record, each with parameters from the other segments (cross-validated)"
             }
             Self::Fitted => "the fitted record itself",
         }
@@ -227,7 +227,7 @@ fn gap_of(
     let mean = equations.iter().map(|e| e.gap.powi(2)).sum::<f64>() / equations.len().max(1) as f64;
     let (mut sum, mut squares) = (0.0, 0.0);
     for (i, l) in left.iter().enumerate() {
-        let whole = size(&measured(d, i, &values))
+        let whole = size(&measured_quantity(d, i, &values))
             .max(f64::MIN_POSITIVE)
             .powi(2);
         for v in l {
@@ -258,7 +258,7 @@ fn equation_gap(
     values: &[f64],
     floor: f64,
 ) -> EquationGap {
-    let there = measured(d, equation, values);
+    let there = measured_quantity(d, equation, values);
     let whole = size(&there).max(f64::MIN_POSITIVE);
     let mut power = vec![0.0; BANDS];
     let mut edge = [0.0; BANDS];
@@ -283,7 +283,7 @@ fn equation_gap(
 
 /// Returns the parameters of a fit's model with the smallest gap: least squares on `designs`, without nuisance, all equations weighted alike.
 fn plain_values(frame: &MotionFrame, fit: &MotionFit, designs: &[&Design]) -> Vec<f64> {
-    let held = held(frame, &fit.assembled.vehicle, &fit.design);
+    let held = held_parameters(frame, &fit.assembled.vehicle, &fit.design);
     let fixed: Vec<f64> = held.iter().map(|v| v.unwrap_or(0.0)).collect();
     let target: Vec<Vec<Bins>> = designs
         .iter()
@@ -292,7 +292,7 @@ fn plain_values(frame: &MotionFrame, fit: &MotionFit, designs: &[&Design]) -> Ve
             d.residual(&fixed).into_iter().map(negative).collect()
         })
         .collect();
-    let x = plain(designs, &fit.free, &target);
+    let x = fit_without_nuisance(designs, &fit.free, &target);
     let mut out: Vec<f64> = held.iter().map(|h| h.unwrap_or(f64::NAN)).collect();
     fit.free.iter().zip(&x).for_each(|(&i, x)| out[i] = *x);
     if x.iter().all(|x| x.is_finite()) {

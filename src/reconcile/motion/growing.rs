@@ -9,7 +9,7 @@ use super::noise::Background;
 use super::part::Part;
 use crate::series::channels::{Channel, Channels};
 
-/// The first stretch, s; each of the next is twice as long, up to the whole: what is left of a rate's error on one is small on the next.
+/// The first stretch, s; each of the next is twice as long, up to the whole: the remaining error of a rate on one is small on the next.
 const BEGIN_S: f64 = 15.0;
 /// Rates that the first begins with.
 const RATES: [f64; 9] = [-8e-3, -6e-3, -4e-3, -2e-3, 0.0, 2e-3, 4e-3, 6e-3, 8e-3];

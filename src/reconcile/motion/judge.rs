@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::channel_check::BrokenChannel;
-use super::corrections::stated;
+use super::corrections::state_corrections;
 use super::detectable::smallest_sizes;
 use super::effect_units::unit_of_change;
 use super::fit::{Effort, fit};
@@ -13,7 +13,7 @@ use super::limits::{beyond_tolerance, stands_out};
 use super::next::next_measurement;
 use super::noise::Background;
 use super::outcome::{MotionEffect, MotionOutcome};
-use super::proven::proven;
+use super::proven::remove_unproven;
 use super::scorer::MotionScorer;
 use super::sentences::remains;
 use crate::reconcile::checks::{Check, ahead, reasons, verdict};
@@ -69,7 +69,7 @@ fn refit_under_noise(scorer: &MotionScorer, old: &MotionFit) -> MotionFit {
 }
 
 /// The verdict with everything that belongs to it.
-pub(super) fn judged(
+pub(super) fn conclude(
     scorer: &mut MotionScorer,
     found: Found,
 ) -> Result<MotionOutcome, VehicleError> {
@@ -84,7 +84,7 @@ pub(super) fn judged(
     let empty = all.iter().find(|s| s.set.is_empty()).cloned();
     let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
     let best = nameable(scorer, &all, best);
-    let (best, mut told) = proven(scorer, &all, best);
+    let (best, mut told) = remove_unproven(scorer, &all, best);
     let before = Gaps::of(scorer, &null);
     let after = if best.set.is_empty() {
         Gaps::of(scorer, null_under_background)
@@ -102,13 +102,13 @@ pub(super) fn judged(
             "its evidence is not decisive".into()
         }),
         Check::of(stands_out(rules, &best.fit), || {
-            "a size of it does not stand out of its own scatter".into()
+            "the size of one of its effects does not exceed its own scatter".into()
         }),
         Check::of(after.at_floor(rules, excess), || {
-            "what it leaves lies above the floor".into()
+            "the residual with it exceeds the floor".into()
         }),
         Check::of(gap.falls && gap.is_above_floor(), || {
-            "the gap that judges does not fall by it from above the floor by more than its sampling error".into()
+            "with it, the gap of the proof does not fall from above the floor by more than its sampling error".into()
         }),
         Check::unless(ahead(
             (best.set.len(), best.log_evidence),
@@ -135,7 +135,7 @@ pub(super) fn judged(
             .map(|&c| scorer.candidates[c].id.as_str())
             .collect();
         told.push(format!(
-            "{} comes nearest and is not named: {}",
+            "{} is nearest and is not identified: {}",
             ids.join(" + "),
             reasons(&checks).join(", ")
         ));
@@ -161,7 +161,7 @@ pub(super) fn judged(
         },
         best_attempt: attempt,
         covariance,
-        corrections: stated(frame, &best.fit.parts),
+        corrections: state_corrections(frame, &best.fit.parts),
         remains: remains(
             rules,
             verdict,

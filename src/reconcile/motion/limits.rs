@@ -5,7 +5,7 @@ use super::change::Change;
 use super::fitted::MotionFit;
 use super::frame::MotionFrame;
 use super::part::ColumnOf;
-use crate::estimate::columns::{PriorColumn, Solved, solved};
+use crate::estimate::columns::{PriorColumn, Solved, solve_with_priors};
 use crate::reconcile::rules::MotionRules;
 use crate::vehicle::term::{Side, Term, share_done};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
@@ -24,13 +24,13 @@ pub fn within_tolerance(
     columns: &mut [PriorColumn],
     target: &[f64],
 ) -> Solved {
-    /// Narrowing settles in a few rounds; what is left beyond is small.
+    /// Narrowing settles in a few rounds; the remaining change is small.
     const ROUNDS: usize = 6;
     /// Beyond the limit by less than this share is at it.
     const SLACK: f64 = 1.05;
     let declared: Vec<Option<f64>> = columns.iter().map(|c| c.prior).collect();
     let most = tolerance_limit(rules, declared.iter().flatten().count());
-    let mut s = solved(columns, target);
+    let mut s = solve_with_priors(columns, target);
     for _ in 0..ROUNDS {
         let mut beyond = false;
         for ((c, declared), x) in columns.iter_mut().zip(&declared).zip(&s.x) {
@@ -44,7 +44,7 @@ pub fn within_tolerance(
         if !beyond {
             break;
         }
-        s = solved(columns, target);
+        s = solve_with_priors(columns, target);
     }
     if columns.iter().zip(&declared).any(|(c, d)| c.prior != *d) {
         // Sigmas are those of the declared tolerances: a narrowed prior knows nothing.
@@ -56,7 +56,7 @@ pub fn within_tolerance(
                 prior: *d,
             })
             .collect();
-        s.covariance = solved(&as_declared, target).covariance;
+        s.covariance = solve_with_priors(&as_declared, target).covariance;
     }
     // What was taken counts as the declared tolerance has it.
     s.penalty = declared
@@ -149,7 +149,7 @@ const LONGEST_DELAY_S: f64 = 0.15;
 const MOST_CLOCK_PPM: f64 = 1e4;
 
 /// Whether every effect's size is one that nature allows.
-pub fn plausible(rules: &MotionRules, candidates: &[Candidate], fit: &MotionFit) -> bool {
+pub fn has_plausible_sizes(rules: &MotionRules, candidates: &[Candidate], fit: &MotionFit) -> bool {
     fit.parts.iter().zip(&fit.sizes).all(|(p, sizes)| {
         let Some([x, _]) = sizes.first() else {
             return true;

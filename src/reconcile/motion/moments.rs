@@ -5,7 +5,7 @@
 
 use super::columns::{parameter_column, slices};
 use super::design::{Bins, Design};
-use super::fit::held;
+use super::fit::held_parameters;
 use super::frame::MotionFrame;
 use super::limits::END;
 use crate::estimate::columns::{Basis, PriorColumn};
@@ -20,7 +20,7 @@ use rustfft::num_complex::Complex64;
 /// Equations and bins weigh alike, as at the start of every fit: the moment needs no parameter that was found without the step, and those may be
 /// far from any vehicle.
 pub fn best_steps(frame: &MotionFrame, d: &Design, bodies: &[usize]) -> Vec<Vec<MassStep>> {
-    let fixed: Vec<Option<f64>> = held(frame, &d.vehicle, d);
+    let fixed: Vec<Option<f64>> = held_parameters(frame, &d.vehicle, d);
     let bins = d.f_hz.len();
     let columns: Vec<PriorColumn> = (0..fixed.len())
         .filter(|&i| fixed[i].is_none() && d.has(i))

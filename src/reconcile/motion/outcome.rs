@@ -80,10 +80,7 @@ impl MotionOutcome {
     pub fn refuse(&mut self, wrong: &Finding) {
         self.verdict = Verdict::Unknown;
         self.effects.clear();
-        self.remains = format!(
-            "An input is wrong. {}.",
-            wrong.message.trim_end_matches('.')
-        );
+        self.remains = format!("An input is wrong. {}.", wrong.clause());
         self.next_measurement.clone_from(&wrong.remedy);
     }
 }

@@ -7,7 +7,7 @@ use crate::reconcile::proven::{Useless, Without, without_useless};
 use crate::reconcile::search::{Scored, Scorer};
 
 /// Returns `best` without members that do not reduce the gap ([`without_useless`]), and a message on each of these members.
-pub(super) fn proven(
+pub(super) fn remove_unproven(
     scorer: &mut MotionScorer,
     all: &[Scored<MotionFit>],
     best: Scored<MotionFit>,
@@ -33,7 +33,7 @@ pub(super) fn proven(
     });
     let told = |u: &Useless| {
         format!(
-            "{} explains more of the fitted record, but the gap that judges does not fall by it ({:.2} % with it, {:.2} % without)",
+            "{} explains more of the fitted record, but does not reduce the gap of the proof ({:.2} % with it, {:.2} % without)",
             scorer.candidates[u.candidate].id,
             100.0 * u.with,
             100.0 * u.without

@@ -19,25 +19,25 @@ pub(super) fn remains(
     let place = worst.map_or_else(String::new, |w| format!(" Largest in {}.", w.words()));
     let noise = rules.noise_factor * rules.noise_factor;
     let state = match verdict {
-        Verdict::Named if chi[1] < noise => "What is left is at the floor of sensor noise.",
+        Verdict::Named if chi[1] < noise => "The residual is at the floor of sensor noise.",
         Verdict::None | Verdict::BelowDetectability if chi[0] < noise => {
             "Model and record agree within sensor noise."
         }
-        Verdict::Unknown => "A gap remains that nothing in the library explains.",
+        Verdict::Unknown => "A gap remains that no effect of the library explains.",
         _ => {
-            "What is left is above sensor noise, within what the declared tolerances leave in one complete model of a hundred."
+            "The residual exceeds sensor noise. The declared tolerances of a complete model cause as much in one of 100 cases."
         }
     };
     let judged = match proof {
         Proof::HeldOut => String::new(),
         p => format!(
-            " There is no `hold_out` to judge by: gaps are those of {}.",
+            " The job has no `hold_out` record: the stated gaps are those of {}.",
             p.words()
         ),
     };
     let told: String = told.iter().map(|t| format!(" {t}.")).collect();
     format!(
-        "{state}{told} Left on the fitted record: {:.2} % of the measured quantity, noise and tolerances {:.2} %.{place}{judged}",
+        "{state}{told} Residual on the fitted record: {:.2} % of the measured quantity, noise and tolerances {:.2} %.{place}{judged}",
         100.0 * left[1],
         100.0 * left[2]
     )

@@ -97,11 +97,11 @@ fn simulated(
         .iter()
         .any(|l| l.terms.iter().any(|t| t.is_of_time()));
     if !v.steps.is_empty() || of_time {
-        return Err("a mass or spring that changes is not simulated".into());
+        return Err("a mass or spring that changes cannot be simulated".into());
     }
     let fitted = first(&corrected(&frame.data, adjust), FITTED);
     if adjust.iter().any(|a| !a.lines_hz.is_empty()) {
-        return Err("a record with a mains line is not simulated".into());
+        return Err("a record with mains interference cannot be simulated".into());
     }
     let judging = match &frame.hold_out {
         Some(record) => corrected(record, &Adjustment::elsewhere(adjust)),

@@ -78,14 +78,14 @@ impl GapSits {
     pub fn words(&self) -> String {
         let percent = |v: f64| format!("{:.2} %", 100.0 * v);
         let mut out = format!(
-            "`{}`: {} of the measured quantity, floor {}",
+            "`{}`: gap {} of the measured quantity, floor {}",
             self.equation,
             percent(self.gap),
             percent(self.floor)
         );
         if let Some(b) = &self.band_hz {
             out += &format!(
-                "; most of it between {:.1} and {:.1} Hz ({})",
+                "; the largest part is between {:.1} and {:.1} Hz ({})",
                 b.from,
                 b.to,
                 percent(b.gap)
@@ -93,7 +93,7 @@ impl GapSits {
         }
         if let Some(t) = &self.time_s {
             out += &format!(
-                "; largest from {:.1} to {:.1} s ({}, least {} in another eighth of the record)",
+                "; largest from {:.1} to {:.1} s ({}; smallest eighth of the record {})",
                 t.from,
                 t.to,
                 percent(t.gap),
@@ -102,7 +102,7 @@ impl GapSits {
         }
         if let Some(a) = &self.size_over_rms {
             out += &format!(
-                "; at {:.2} to {:.2} times the root mean square of the motion {}, least {} in another class of size",
+                "; largest at {:.2} to {:.2} times the root mean square of the motion ({}; smallest amplitude class {})",
                 a.from,
                 a.to,
                 percent(a.gap),

@@ -71,12 +71,12 @@ pub(super) fn outcome_of_dead(
     let remains = match compared.as_slice() {
         [] if is_fitted => {
             format!(
-                "The record that judges says nothing of the equations that {names} does not enter: there is no gap to state."
+                "The hold-out record does not contain the equations without {names}: no gap can be stated."
             )
         }
-        [] => format!("No equation can be compared without {names}: there is no gap to state."),
+        [] => format!("No equation can be compared without {names}: no gap can be stated."),
         list => format!(
-            "Gaps are those of the equations that {names} does not enter: {}.",
+            "Gaps are stated for the equations without {names}: {}.",
             list.join(", ")
         ),
     };

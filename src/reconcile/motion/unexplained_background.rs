@@ -5,7 +5,7 @@ use super::frame::MotionFrame;
 use super::noise::{Background, background, covariance};
 use super::response::responses;
 use super::scorer::MotionScorer;
-use crate::estimate::columns::{Basis, PriorColumn, solved};
+use crate::estimate::columns::{Basis, PriorColumn, solve_with_priors};
 use rustfft::num_complex::Complex64;
 
 /// Largest number of forms in a generous model, added one after the other.
@@ -41,7 +41,7 @@ pub fn unexplained_background(scorer: &mut MotionScorer, null: &MotionFit) -> Ba
             rows: rows.clone(),
             prior: None,
         }));
-        left = solved(&columns, &target).residual;
+        left = solve_with_priors(&columns, &target).residual;
     }
     of_rows(scorer.frame, null, &left)
 }

@@ -58,7 +58,7 @@ pub fn model_bias(frame: &StrainFrame) -> Option<String> {
     let spread = whole * whole / squares;
     (share > SHARE && spread > GAUGES).then(|| {
         format!(
-            "the gap follows the loads at gauge after gauge ({:.0} % of it, squared, spread over {spread:.0} gauges): a bias of the model \
+            "the gap follows the loads at many gauges ({:.0} % of the squared gap, spread over {spread:.0} gauges): this is a model error \
              (stiffness, joints, mesh, sections), not noise",
             100.0 * share
         )

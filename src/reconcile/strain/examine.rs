@@ -6,9 +6,9 @@ use super::judge::{adequacy_of, at_floor, judge};
 use super::likelihood::{Fit, Likelihood};
 use super::own_covariance::best_by_own_covariance;
 use super::recorded::wrong_records;
-use super::sizes_found::named;
+use super::sizes_found::effects_with_sizes;
 use super::smooth::smooth_instead;
-use super::validation::{Proofs, validated};
+use super::validation::{Proofs, validate_set};
 use crate::finding::Finding;
 use crate::reconcile::effect::{Candidate, Discrepancy, library};
 use crate::reconcile::outcome::{Outcome, Verdict};
@@ -31,17 +31,17 @@ pub fn examine(frame: &StrainFrame, only: &[String]) -> Outcome {
     if wrong.is_empty() {
         return examine_with(frame, &library(frame, only));
     }
-    refused(frame, wrong)
+    outcome_of_wrong_inputs(frame, wrong)
 }
 
 /// Returns the outcome of a frame with wrong inputs, reported by the findings `wrong`. No effect is searched for.
-pub fn refused(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
+pub fn outcome_of_wrong_inputs(frame: &StrainFrame, wrong: Vec<Finding>) -> Outcome {
     let words: Vec<&str> = wrong.iter().map(|f| f.message.as_str()).collect();
     let remedies: Vec<&str> = wrong.iter().map(|f| f.remedy.as_str()).collect();
     Outcome {
         verdict: Verdict::Unknown,
-        remains: words.join("; "),
-        next_measurement: remedies.join("; "),
+        remains: words.join(" "),
+        next_measurement: remedies.join(" "),
         input_faults: wrong,
         ..examine_with(frame, &[])
     }
@@ -149,7 +149,7 @@ fn judged_beside_smooth(
     let Some(smooth) = smooth_instead(proofs.frame, candidates, &best) else {
         return judge(proofs, candidates, &all, &best);
     };
-    let replaced = named(proofs.frame, candidates, &best);
+    let replaced = effects_with_sizes(proofs.frame, candidates, &best);
     if all.iter().all(|s| s.set != best.set) {
         all.push(best);
     }
@@ -208,8 +208,7 @@ fn without_needless_noise(
         .unwrap_or(best)
 }
 
-/// The set without names that prove nothing: what is left reaches the floor without them, and runs that it was not fitted on are
-/// predicted no worse.
+/// The set without names that prove nothing: the other names reach the floor without them, and runs that it was not fitted on are predicted no worse.
 fn without_needless_names(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
@@ -227,8 +226,8 @@ fn without_needless_names(
         if left.is_empty() {
             break;
         }
-        let after = validated(proofs, candidates, &best).0.after;
-        let no_worse = |s: &&&Scored<Fit>| validated(proofs, candidates, s).0.after <= after;
+        let after = validate_set(proofs, candidates, &best).0.after;
+        let no_worse = |s: &&&Scored<Fit>| validate_set(proofs, candidates, s).0.after <= after;
         let Some(enough) = left.iter().find(no_worse) else {
             break;
         };

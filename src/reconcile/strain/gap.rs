@@ -409,18 +409,21 @@ impl ProofRun<'_> {
 /// innovation i is the residual less its mean given the fit runs. G is the covariance of i, and J V J' the part of G from the patterns. Given i_u, a
 /// right model leaves the mean square (m_j + (G_ju G_uu^-1 - K) i_u)^2 + G_jj - G_ju G_uu^-1 G_uj. The vector m contains the model errors that the
 /// fit runs show. The residual before has no effects. Its only patterns are the nuisance loads and, if `anew` includes them, the wheel loads.
-pub fn judged(
+pub fn proof_residuals(
     finer: &StrainFrame,
     members: &[Member<'_>],
     unknown: &[SizedAmplitudes],
     anew: FoundAnew,
 ) -> Option<Judged> {
-    let before = before(finer, &[anew])?.pop()?;
+    let before = proof_residuals_before(finer, &[anew])?.pop()?;
     judged_after(finer, members, unknown, &[(anew, before)])?.pop()
 }
 
 /// Returns the residuals of the proof runs by the analyst's model, for each of `anew`. They do not depend on the active effects.
-pub(super) fn before(finer: &StrainFrame, anew: &[FoundAnew]) -> Option<Vec<Vec<f64>>> {
+pub(super) fn proof_residuals_before(
+    finer: &StrainFrame,
+    anew: &[FoundAnew],
+) -> Option<Vec<Vec<f64>>> {
     let own = finer.as_modelled();
     let told = Told::of(finer, &[], &[])?;
     let of = |anew: &FoundAnew| {
@@ -432,7 +435,7 @@ pub(super) fn before(finer: &StrainFrame, anew: &[FoundAnew]) -> Option<Vec<Vec<
     Some(anew.iter().map(of).collect())
 }
 
-/// Returns the residuals of [`judged`] for each of `ways`: the unknowns to estimate, with the residuals of [`before`].
+/// Returns the residuals of [`proof_residuals`] for each of `ways`: the unknowns to estimate, with the residuals of [`proof_residuals_before`].
 pub(super) fn judged_after(
     finer: &StrainFrame,
     members: &[Member<'_>],

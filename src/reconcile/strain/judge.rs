@@ -12,15 +12,15 @@ use super::no_drift::no_drift;
 use super::outlier::but_for_one;
 use super::own_covariance::{own_evidence, under_own_covariance};
 use super::prediction::predict;
-use super::proven::proven;
+use super::proven::remove_unproven;
 use super::recovered::loads_before_after;
 use super::remains::{remains, sits};
 use super::resampled::DRAWINGS;
 use super::rivals::{RivalSet, WORTH_NAMING, rival_sets, rivals_told, without_own};
-use super::sizes_found::named;
+use super::sizes_found::effects_with_sizes;
 use super::smooth::{curve, is_smooth};
 use super::standing::Standing;
-use super::validation::{Proofs, validated};
+use super::validation::{Proofs, validate_set};
 use crate::reconcile::checks::{Check, ahead, reasons, verdict};
 use crate::reconcile::effect::{Candidate, Discrepancy};
 use crate::reconcile::outcome::{Gap, Misfit, NamedEffect, Outcome, Verdict};
@@ -135,7 +135,7 @@ pub(super) fn judge(
     };
     let standing = Standing::of(frame, candidates, all, &alike, &rivals);
     let stands = standing.fewer(frame, candidates, best);
-    let proven = proven(proofs, candidates, stands.as_ref().unwrap_or(best));
+    let proven = remove_unproven(proofs, candidates, stands.as_ref().unwrap_or(best));
     let few = standing.doubt.clone().filter(|_| stands.is_some());
     let (taken_out, fewer) = match proven {
         Some(p) => (Some(p.doubt), Some(p.set)),
@@ -154,8 +154,8 @@ pub(super) fn judge(
         .collect();
     without_own(candidates, best, &mut rivals);
     let names = named_part(candidates, &best.set);
-    let attempt = named(frame, candidates, best);
-    let (gap, channels) = validated(proofs, candidates, best);
+    let attempt = effects_with_sizes(frame, candidates, best);
+    let (gap, channels) = validate_set(proofs, candidates, best);
     let null_evidence = (all.iter().find(|s| s.set.is_empty())).map_or(0.0, |s| s.log_evidence);
     let hint = best_of_names(candidates, all);
     let hinted = hint.is_some_and(|s| s.log_evidence > null_evidence.max(best.log_evidence));
@@ -283,8 +283,7 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
         }),
         Check::of(gap.falls && gap.is_above_floor(), || {
             format!(
-                "the gap on runs that were not fitted does not fall from above its floor by more than its sampling error ({:.2} % before, {:.2} % after, \
-                 floor {:.2} %)",
+                "on runs that were not fitted, the gap does not fall significantly from above its floor ({:.2} % before, {:.2} % after, floor {:.2} %)",
                 100.0 * gap.before,
                 100.0 * gap.after,
                 100.0 * gap.floor
@@ -295,7 +294,7 @@ fn checks_of(set: &Judged<'_>) -> [Check; 10] {
         }),
         Check::of(
             is_unmodelled(set.candidates, &set.best.set).is_none(),
-            || "the form that closes the gap is no effect of the library".into(),
+            || "the pattern that closes the gap is not an effect of the library".into(),
         ),
         Check::of(set.reached, || {
             "gauges or runs are above their floor".into()
@@ -374,7 +373,7 @@ fn look_again(after: &Adequacy) -> String {
     };
     let run = names(&after.runs).into_iter().next();
     format!(
-        "shunt gauges {} before and after {}, made twice: readings that do not repeat are no effect of the loads",
+        "shunt gauges {} before and after {}, made twice: readings that do not repeat are not an effect of the loads",
         names(&after.gauges).join(", "),
         run.map_or("a run".into(), |r| format!("run {r}"))
     )

@@ -40,13 +40,13 @@ mod validation;
 
 pub use adequacy::{Adequacy, adequacy, deviate};
 pub use covariance::{Selection, covariance, read_patterns};
-pub use examine::{examine, examine_with, refused};
+pub use examine::{examine, examine_with, outcome_of_wrong_inputs};
 pub use extended::{corrected_readings, extended_state};
 pub use frame::{
     GaugeFacts, MassSignature, N_PAYLOAD_COLUMNS, NuisanceLoad, PayloadWeight, PlaneStrainRow,
     Scatter, StiffnessOf, StiffnessSignature, StrainFrame, WheelForces, Wiring,
 };
-pub use gap::{FoundAnew, Judged, judged};
+pub use gap::{FoundAnew, Judged, proof_residuals};
 pub use likelihood::{Fit, Likelihood};
 pub use nuisance::ground_patterns;
 pub use prediction::{predict, read_all};

@@ -24,8 +24,7 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
             .collect();
         if !besides.is_empty() {
             return Some(format!(
-                "the stiffness of a small region at {place} changed, by its sign and size; {} beside it may be what the region's shape, which is \
-                 not known, leaves",
+                "its sign and size indicate that the stiffness of a small region at {place} changed. The unknown shape of the region may explain {}",
                 besides.join(", ")
             ));
         }
@@ -51,8 +50,8 @@ pub fn neighbours_that_fail(frame: &StrainFrame, effects: &[NamedEffect]) -> Opt
         .collect();
     (together.len() > 1).then(|| {
         format!(
-            "gauges {} lie next to each other and are off together: stiffness of a small region between them (a crack, a loose joint, a missing \
-             patch) rather than as many bad gauges",
+            "gauges {} are next to each other and deviate together: this indicates the stiffness of a small region between them (a crack, \
+             a loose joint, a missing patch), not several faulty gauges",
             together.join(", ")
         )
     })

@@ -24,13 +24,13 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
     let loads = frame.loads[heaviest * n_l..(heaviest + 1) * n_l].to_vec();
     let payload = frame.payload.get(heaviest).copied().unwrap_or([0.0; 3]);
     out.push(Design {
-        words: "the empty truck again".into(),
+        words: "measure the empty truck again".into(),
         loads: vec![0.0; n_l],
         payload: [0.0, payload[1], payload[2]],
     });
     out.push(Design {
         words: format!(
-            "twice the payload of the heaviest run ({:.0} kg) at the same place",
+            "measure twice the payload of the heaviest run ({:.0} kg) at the same place",
             2.0 * payload[0]
         ),
         loads: loads.iter().map(|f| 2.0 * f).collect(),
@@ -43,7 +43,9 @@ fn designs(frame: &StrainFrame) -> Vec<Design> {
         let mut jacked = vec![0.0; n_l];
         jacked[l] = JACK_KN;
         out.push(Design {
-            words: format!("the empty truck with {name} raised by {JACK_KN:.0} kN on a jack"),
+            words: format!(
+                "measure the empty truck with {name} raised by {JACK_KN:.0} kN on a jack"
+            ),
             loads: jacked,
             payload: [0.0, payload[1], payload[2]],
         });

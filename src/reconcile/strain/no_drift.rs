@@ -52,12 +52,13 @@ pub(super) fn no_drift(
         let doubt = doubt.get(gauge).copied().unwrap_or(0.0);
         let words = if read.bends() {
             format!(
-                "what {id} takes bends with the load: an amplifier near its limit or a gauge that yields, not a zero that moved"
+                "the drift of {id} is a curved function of the load. This indicates an amplifier near its limit or a gauge that yields, \
+                 not a drifted zero"
             )
         } else if read.goes_with_load(DOUBTS * doubt) {
-            format!("what {id} takes goes with the load: a gauge that reads more or less than it strains, not a zero that moved")
+            format!("the drift of {id} is proportional to the load. This indicates a wrong gain, not a drifted zero")
         } else if read.has_not_moved() {
-            format!("what {id} takes scatters about nothing: noise of that gauge alone, not a zero that moved")
+            format!("the drift of {id} scatters about zero. This indicates noise of this gauge alone, not a drifted zero")
         } else {
             return None;
         };

@@ -39,7 +39,7 @@ pub(super) fn but_for_one(
     *rest.observations.values.get_mut(run * n_g + gauge)? = f64::NAN;
     at_floor(&rest).then(|| {
         format!(
-            "one reading stands alone, that of {} in {}, {:.1} standard deviations off: a spike, or one that was written down wrong",
+            "the reading of {} in {} is an isolated outlier, {:.1} standard deviations off: a spike or a wrong entry",
             frame.gauges[gauge].name,
             frame.observations.runs[run],
             off.abs()

@@ -19,7 +19,7 @@ pub(super) struct Proven {
 }
 
 /// Returns `best` without effects that do not reduce the gap ([`without_useless`]); `None` if no effect is removed or `best` has a general form.
-pub(super) fn proven(
+pub(super) fn remove_unproven(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
     best: &Scored<Fit>,
@@ -61,7 +61,7 @@ pub(super) fn proven(
     (!told.is_empty()).then(|| Proven {
         set,
         doubt: format!(
-            "the gap on the runs that judge does not fall by some of what explains the rest, and it is not named: {}",
+            "some of the effects that explain the fitted runs do not reduce the gap on the runs of the proof, and are not reported: {}",
             told.join(", ")
         ),
     })

@@ -33,7 +33,7 @@ pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
     const SHARE: f64 = 0.05;
     let total: f64 = channels.iter().map(|c| c.before * c.before).sum();
     if total <= 0.0 {
-        return "there is no gap at any gauge".into();
+        return "no gauge has a gap".into();
     }
     let share = |c: &ChannelGap| c.before * c.before / total;
     let mut sorted: Vec<&ChannelGap> = channels.iter().filter(|c| share(c) >= SHARE).collect();
@@ -46,13 +46,16 @@ pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
     let spread = if named.is_empty() {
         "the gap is spread over all gauges".to_owned()
     } else {
-        format!("of the gap (squared): {}", named.join(", "))
+        format!("share of the squared gap: {}", named.join(", "))
     };
     let beyond: Vec<&str> = off.iter().take(MOST).map(|m| m.name.as_str()).collect();
     if beyond.is_empty() {
-        format!("{spread}; no gauge lies beyond its own floor")
+        format!("{spread}; no gauge exceeds its own floor")
     } else {
-        format!("{spread}; beyond their own floor: {}", beyond.join(", "))
+        format!(
+            "{spread}; gauges above their own floor: {}",
+            beyond.join(", ")
+        )
     }
 }
 
@@ -60,13 +63,13 @@ pub fn sits(channels: &[ChannelGap], off: &[Misfit]) -> String {
 /// present nevertheless.
 fn none_alone(reduced_chi2: f64, withheld: Option<&[String]>) -> String {
     match withheld {
-        None => format!(
-            "nothing above the floor at any gauge or in any run (reduced chi-square {reduced_chi2:.2})"
-        ),
+        None => {
+            format!("no gauge and no run exceeds its floor (reduced chi-square {reduced_chi2:.2})")
+        }
         Some(reasons) => format!(
-            "no gauge and no run stands out by itself (reduced chi-square {reduced_chi2:.2} over all), and nothing is named: {}",
+            "no single gauge and no single run exceeds its floor (reduced chi-square {reduced_chi2:.2} over all), and no effect is identified: {}",
             match reasons {
-                [] => "all gauges and runs together are above their floor".to_owned(),
+                [] => "all gauges and runs together exceed their floor".to_owned(),
                 list => list.join(", "),
             }
         ),
@@ -94,7 +97,10 @@ fn beyond(
     if gauges.is_empty() && runs.is_empty() {
         return none_alone(after.fit, withheld);
     }
-    let mut out = format!("reduced chi-square {:.2} over all", after.fit);
+    let mut out = format!(
+        "reduced chi-square {:.2} over all gauges and runs",
+        after.fit
+    );
     if let Some(reasons) = withheld.filter(|r| !r.is_empty()) {
         out += &format!("; nothing is named: {}", reasons.join(", "));
     }
@@ -121,8 +127,8 @@ fn beyond(
         })
         .collect();
     match correlation(&points) {
-        Some(c) if c > 0.7 => out + "; it grows with the load",
-        Some(c) if c < 0.3 => out + "; it does not grow with the load",
+        Some(c) if c > 0.7 => out + "; the gap grows with the load",
+        Some(c) if c < 0.3 => out + "; the gap does not grow with the load",
         _ => out,
     }
 }
@@ -150,9 +156,12 @@ mod tests {
         let reasons = ["three neighbours".to_owned()];
         for (withheld, said) in [(&reasons[..], "three neighbours"), (&[], "together")] {
             let words = none_alone(1.0, Some(withheld));
-            assert!(!words.contains("nothing above the floor"), "{words}");
+            assert!(
+                !words.contains("no gauge and no run exceeds its floor"),
+                "{words}"
+            );
             assert!(words.contains(said), "{words}");
         }
-        assert!(none_alone(1.0, None).contains("nothing above the floor"));
+        assert!(none_alone(1.0, None).contains("no gauge and no run exceeds its floor"));
     }
 }

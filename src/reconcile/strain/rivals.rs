@@ -5,7 +5,7 @@ use super::frame::StrainFrame;
 use super::likelihood::Fit;
 use super::own_covariance::{under_own_covariance, with_members};
 use super::smooth::is_smooth;
-use super::validation::{Proofs, validated};
+use super::validation::{Proofs, validate_set};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::Rival;
 use crate::reconcile::search::Scored;
@@ -27,7 +27,7 @@ pub(super) fn rivals_told(
     let one = |(ids, s): &RivalSet| Rival {
         ids: ids.clone(),
         evidence_difference: level - s.log_evidence,
-        gap_after: validated(proofs, candidates, s).0.after,
+        gap_after: validate_set(proofs, candidates, s).0.after,
         indistinguishable: level - s.log_evidence < proofs.frame.rules.indistinguishable,
     };
     rivals.par_iter().map(one).collect()

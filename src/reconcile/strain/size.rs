@@ -259,7 +259,7 @@ impl Squares {
     }
 }
 
-/// Amplitudes of one run given its residual: by pattern the mean of what differs from run to run, and what is left of its variance.
+/// Amplitudes of one run given its residual: by pattern the mean of the part that differs from run to run, and its remaining variance.
 fn scattered(
     run: &RunPrecision<'_>,
     residual: &[f64],

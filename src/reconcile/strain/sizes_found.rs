@@ -12,7 +12,7 @@ use crate::reconcile::outcome::NamedEffect;
 use crate::reconcile::search::Scored;
 
 /// The effects of a set with their sizes, noise left out.
-pub(super) fn named(
+pub(super) fn effects_with_sizes(
     frame: &StrainFrame,
     candidates: &[Candidate],
     scored: &Scored<Fit>,

@@ -111,7 +111,7 @@ fn seldom_ahead(candidates: &[Candidate], contest: &[&Scored<Fit>], won: &[usize
     others.sort_by_key(|o| std::cmp::Reverse(o.0));
     let told: Vec<String> = others.iter().map(|(w, s)| format!("{s} in {w}")).collect();
     format!(
-        "{names} explains most, but stays ahead in {first} of {DRAWINGS} drawings of the runs; {}",
+        "{names} explains most of the gap, but is the best set in {first} of {DRAWINGS} resampled run sets only; {}",
         told.join(", ")
     )
 }

@@ -2,7 +2,7 @@
 
 use super::explanation::Explanation;
 use super::frame::StrainFrame;
-use super::gap::{FoundAnew, Judged, before, judged_after};
+use super::gap::{FoundAnew, Judged, judged_after, proof_residuals_before};
 use super::likelihood::{Fit, Likelihood};
 use crate::reconcile::effect::Candidate;
 use crate::reconcile::outcome::{ChannelGap, Gap, GapBasis};
@@ -25,7 +25,7 @@ struct Proven {
 impl Proven {
     fn of(frame: StrainFrame) -> Self {
         let ways = [FoundAnew::Amplitudes, FoundAnew::AmplitudesAndLoads];
-        let before = before(&frame, &ways).unwrap_or_default();
+        let before = proof_residuals_before(&frame, &ways).unwrap_or_default();
         Self {
             ways: ways.into_iter().zip(before).collect(),
             frame,
@@ -89,7 +89,7 @@ fn refitted(
 
 /// Returns the gap over all gauges and by gauge, on held-out runs or, without held-out runs, on every run in turn. Effects of single runs (two
 /// exchanged, a wrong record) change only those runs. These runs are therefore tested in addition, each half of the gauges with a fit without it.
-pub fn validated(
+pub fn validate_set(
     proofs: &Proofs<'_>,
     candidates: &[Candidate],
     scored: &Scored<Fit>,

@@ -35,7 +35,7 @@ pub struct Dynamics {
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Unfit {
     /// The sample rate of the record is too low for the band.
-    #[error("{rate_hz:.4} samples a second don't hold a band that ends at {end_hz:.4} Hz")]
+    #[error("{rate_hz:.4} samples per second do not cover a band up to {end_hz:.4} Hz")]
     Rate {
         /// Sample rate of the record, Hz.
         rate_hz: f64,
@@ -43,14 +43,15 @@ pub enum Unfit {
         end_hz: f64,
     },
     /// Loads that the gauges can't separate.
-    #[error("at {hz:.4} Hz the gauges don't tell the loads apart")]
+    #[error("at {hz:.4} Hz the gauges do not separate the loads")]
     Untold {
         /// Frequency at which they can't, Hz.
         hz: f64,
     },
     /// A band so narrow that its filter needs longer transforms than are supported.
     #[error(
-        "a band that ends at {end_hz} Hz is too narrow for {rate_hz:.4} samples a second: a sample at rest would hang on hundreds of thousands of others"
+        "a band that ends at {end_hz} Hz is too narrow for {rate_hz:.4} samples per second: a quasi-static sample would depend on hundreds \
+         of thousands of others"
     )]
     Narrow {
         /// Rate of the record.
@@ -71,7 +72,9 @@ pub enum Unfit {
         modes: usize,
     },
     /// The reach of a reading exceeds what is reckoned with.
-    #[error("a reading at rest would hang on those of more than {seconds:.4} s round it")]
+    #[error(
+        "a quasi-static sample would depend on readings over more than {seconds:.4} s around it"
+    )]
     Rings {
         /// Time.
         seconds: f64,

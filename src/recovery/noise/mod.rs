@@ -432,8 +432,8 @@ impl Residuals {
             NOISE_ASSUMED,
             "measured.noise_microstrain",
             format!(
-                "the residuals of {} runs or samples contradict independent noise of {} microstrain at every gauge. Loads are weighted by the noise \
-                 that the residuals show: {} to {} microstrain by gauge, mean correlation {:.2}",
+                "the residuals of {} runs or samples contradict independent noise of {} microstrain at every gauge. Loads are weighted by \
+                 the noise of the residuals: {} to {} microstrain by gauge, mean correlation {:.2}",
                 self.runs,
                 number(unit),
                 number(least * unit),
@@ -451,8 +451,8 @@ impl Residuals {
             NOISE_ASSUMED,
             "measured.noise_microstrain",
             format!(
-                "the residuals of {} runs or samples contradict independent noise of {} microstrain at every gauge. They do not determine the noise \
-                 that the gauges have, and intervals of some loads can be too narrow",
+                "the residuals of {} runs or samples contradict independent noise of {} microstrain at every gauge. They do not determine \
+                 the actual noise of the gauges, and intervals of some loads can be too narrow",
                 self.runs,
                 number(errors.noise / MICROSTRAIN)
             ),

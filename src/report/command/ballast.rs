@@ -86,7 +86,7 @@ impl Report for Outcome<Ballasted> {
             KeyNumber::new(self.masses.len().to_string(), "lumped masses"),
             KeyNumber::new(
                 format!("{} {}", number(off.fold(0.0, f64::max)), units.force.name),
-                "largest difference of a reaction that is left",
+                "largest remaining difference of a reaction",
             ),
             KeyNumber::new(
                 format!("{} of {}", self.numbers_fixed, self.numbers_asked),
@@ -184,7 +184,7 @@ fn page(found: &Outcome<Ballasted>) -> Page {
             &head.each_ref().map(String::as_str),
             &masses,
             &format!(
-                "Ranges: what the data leave one number when the others are adjusted. Height {} (no influence on a level floor).",
+                "Ranges: interval of one number when the others are adjusted. Height {} (no influence on a level floor).",
                 number(found.height)
             ),
         ),

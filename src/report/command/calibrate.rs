@@ -140,7 +140,7 @@ impl Report for Outcome<Calibrated> {
         let changed = c.gauges.iter().filter(|g| g.looks_like != "none").count();
         numbers.push(KeyNumber::new(
             format!("{changed} of {}", c.gauges.len()),
-            "gauges differ from the model",
+            "gauges deviate from the model",
         ));
         numbers
     }

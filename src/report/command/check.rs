@@ -80,5 +80,5 @@ fn page(found: &Outcome<Checked>) -> Page {
     sections.extend(results.map(|r| said("Results", r.text())));
     let records = found.records.iter();
     sections.extend(records.map(|r| said("Record", r.text())));
-    Page::new("Check", "What is in the files", &found.findings, sections)
+    Page::new("Check", "Contents of the files", &found.findings, sections)
 }

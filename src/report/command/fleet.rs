@@ -82,7 +82,7 @@ impl Report for Outcome<Fleet> {
             .max_by(|a, b| a.1.relative.total_cmp(&b.1.relative));
         numbers.extend(worst.map(|(v, l)| {
             let meaning = format!(
-                "damage an hour over that of all vehicles, the largest: {} {}",
+                "damage per hour, ratio to all vehicles, largest: {} {}",
                 v.name, l.load
             );
             KeyNumber::new(format!("{} times", number(l.relative)), meaning)
@@ -142,7 +142,7 @@ impl Report for Outcome<Fleet> {
         let title = format!("Loads and pseudo-damage, slope {}", self.slope);
         let table = ConsoleTable::new(title, head.get(..shown).unwrap_or(&head), rows);
         Console::new(table, Some("fleet.csv"))
-            .next("run the same command with further records: it reads only those that are new")
+            .next("run the same command with further records: it reads only the new records")
     }
 }
 

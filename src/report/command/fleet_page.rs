@@ -61,7 +61,7 @@ fn health(v: &VehicleAnswer) -> Section {
             let line = |name, y| Line { name, x: &x, y };
             let lines = [
                 line("mean", mean),
-                line("less what the others predict", offset),
+                line("minus the prediction of the others", offset),
             ];
             (name.clone(), Vec::from(lines))
         })
@@ -72,7 +72,7 @@ fn health(v: &VehicleAnswer) -> Section {
         "mean first, µε",
         "mean last, µε",
         "noise, µε",
-        "gain against the others, first",
+        "gain relative to the others, first",
         "last",
     ];
     let ends = |list: &[Option<f64>]| {
@@ -103,12 +103,12 @@ fn health(v: &VehicleAnswer) -> Section {
             "day",
             "mean reading, µε",
             Scale::Linear,
-            "Mean reading of each day, and less what the other gauges predict: level lines are better, a step or a drift is a fault of the gauge.",
+            "Mean reading of each day, and minus the prediction of the other gauges: level lines are better, a step or a drift is a fault of the gauge.",
         )));
         let of_gain: OfDays = |g| &g.gain;
         for (what, of, caption) in [
             (
-                "gain against the others",
+                "gain relative to the others",
                 of_gain,
                 "Gain of the gauge against the other gauges by day: nearer to 1, and level, is better.",
             ),
@@ -136,7 +136,7 @@ fn health(v: &VehicleAnswer) -> Section {
             )));
         }
     }
-    Section::new(format!("Gauges of {} over its days", v.name), blocks)
+    Section::new(format!("Gauges of {} by day", v.name), blocks)
 }
 
 /// Where the numbers of [`health`] come from: of each gauge the record of the first day on which it was dead, of the first and of the last day.
@@ -192,7 +192,7 @@ fn compared(o: &Outcome<Fleet>) -> Option<Section> {
     let head = [
         "vehicle",
         "load",
-        "damage an hour, reference 1",
+        "damage per hour, reference 1",
         "share of the target",
     ];
     let cells = |(v, l): (&VehicleAnswer, &VehicleLoadAnswer)| {
@@ -213,7 +213,8 @@ fn compared(o: &Outcome<Fleet>) -> Option<Section> {
         blocks.push(Block::table(&head, vec![row]).linked(links));
     }
     blocks.push(Block::Note(
-        "95 % intervals. The error of S is that of the reference too, and is left out as far as it is the same.".to_owned(),
+        "95 % intervals. The part of the error of S that is common to the reference is left out."
+            .to_owned(),
     ));
     Some(Section::new("Damage against reference and target", blocks))
 }
@@ -250,9 +251,9 @@ fn mission(m: &MissionAnswer) -> Section {
         std::iter::once(l.load.clone()).chain(numbers).collect()
     });
     let loads = Block::table(&head, loads.collect());
-    let note = "The interval (95 %) holds the errors of measurement: that of S, the same every day, and noise. How much days of one kind differ \
-                is sigma_days in result.json, and no part of it. Cycles that close between days are left out of the damage; what they may add to it at most \
-                stands beside it.";
+    let note = "The 95 % interval contains the error of S, which is equal on all days, and noise. It does not contain the scatter of days of one kind \
+     (sigma_days in result.json). Cycles that close between days are left out of the damage; `between days, at most` is an upper bound of \
+     their damage.";
     let statement = Block::Text(m.statement.clone());
     Section::new(
         "Mission",
@@ -304,7 +305,7 @@ fn vehicles(o: &Outcome<Fleet>) -> Section {
         "damage",
         "low",
         "high",
-        "damage an hour, mean 1",
+        "damage per hour, mean 1",
         "in doubt, %",
     ];
     let at = |at: &Option<SampleOf>| at.as_ref().map_or(String::new(), time_of);
@@ -329,11 +330,11 @@ fn vehicles(o: &Outcome<Fleet>) -> Section {
             },
         ]
     };
-    let note = "Damage is the sum of ranges to the power of the slope, in that power of the load's unit; it compares, it is no life. \
-                Cycles are counted by four points, days of a vehicle one after the other as if they were one record; what closes no cycle \
-                counts half, as ASTM E1049 has it. The interval (95 %) holds the error of S, which is the same every day, the scatter of noise, \
-                which averages out, and what is left of the bias of noise, which is taken off. What is in doubt was done on days whose strain the loads don't \
-                explain: it is in the sum, and the interval knows nothing of it.";
+    let note = "Damage is the sum of ranges to the power of the slope, in this power of the load's unit. It compares records and is not a life. \
+     Cycles are counted by the four-point method, with the days of a vehicle as one record; ranges without a closed cycle count half (ASTM \
+     E1049). The 95 % interval contains the error of S, equal on all days, and the scatter of noise. The mean damage of noise is \
+     subtracted, and the interval contains its uncertainty. The column in doubt is the share of days whose strain the loads do not \
+     explain. It is in the sum, and the interval does not include its error.";
     let all: Vec<Vec<String>> = o.rows().map(cells).collect();
     let links = o.rows().enumerate().flat_map(|(row, (_, l))| {
         let ends = [(6, &l.max_at), (8, &l.min_at)];
@@ -374,7 +375,7 @@ fn files(o: &Outcome<Fleet>) -> Section {
     let note = if o.files.len() > LISTED {
         "All files are in fleet_files.csv."
     } else {
-        "A file name leads to the record; pointed at, it shows the whole digest."
+        "A file name links to the record; point at it to see the whole digest."
     };
     let links = o.files.iter().take(LISTED).enumerate();
     let links = links.map(|(row, f)| link(row, 0, &f.path, &f.sha256));

@@ -129,7 +129,7 @@ impl Report for Outcome<Identified> {
 fn declare(out: &mut Output, units: &UnitNames) -> Result<(), Faults> {
     declare_written(out, "parameters.csv", |c| match c {
         "name" | "unit" | "identifiable" => String::new(),
-        _ => "that of column unit".to_owned(),
+        _ => "unit of column unit".to_owned(),
     })?;
     let by_time = |c: &str| match c {
         "time" => "s".to_owned(),

@@ -43,7 +43,7 @@ use std::path::Path;
 
 /// An outcome that has files and words.
 pub trait Report {
-    /// Files that every outcome of its kind has: whether they would stand in place of a user's own is asked before anything is computed.
+    /// Files that every outcome of its kind has. Before computation, the command checks whether they would overwrite files of the user.
     const FILES: &'static [&'static str] = &["result.json", "report.html"];
 
     /// Writes its tables and report, each table with the units of its columns.
@@ -83,7 +83,7 @@ where
     Output::check_free(folder, <Outcome<A> as Report>::FILES)
 }
 
-/// Writes an outcome into a folder, `result.json` last; nothing stands under its name before all is written. The text of `result.json`.
+/// Writes an outcome into a folder, `result.json` last; its name does not exist before all is written. The text of `result.json`.
 ///
 /// # Errors
 /// The first file that can't be written.
@@ -114,7 +114,7 @@ pub fn finish<A: Answer>(outcome: &Outcome<A>, mut out: Output) -> Result<String
 ///
 /// # Errors
 /// An answer without a JSON form, which is a mistake of the program.
-pub fn unsaved<A: Answer>(outcome: &Outcome<A>) -> Result<String, Faults> {
+pub fn result_text<A: Answer>(outcome: &Outcome<A>) -> Result<String, Faults> {
     let json = outcome.to_json(&Tables::new());
     Ok(json.map_err(|e| mistake("result.json", &e))?)
 }

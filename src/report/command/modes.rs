@@ -4,7 +4,7 @@ use super::{Report, write_page};
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::mode_blocks::rows_of_mode_block;
@@ -82,7 +82,7 @@ impl Report for Outcome<Modes> {
             KeyNumber::new(hz(self.modes.first()), "first elastic mode"),
             KeyNumber::new(
                 hz(self.modes.last()),
-                format!("last of {}", counted(self.modes.len(), "mode")),
+                format!("last of {}", count_of(self.modes.len(), "mode")),
             ),
             KeyNumber::new(self.rigid_motions.to_string(), "rigid motions left out"),
             KeyNumber::new(
@@ -103,7 +103,7 @@ impl Report for Outcome<Modes> {
         let table = ConsoleTable::new(
             match self.rigid_motions {
                 0 => "Elastic modes".to_owned(),
-                n => format!("Elastic modes, {} left out", counted(n, "rigid motion")),
+                n => format!("Elastic modes, {} left out", count_of(n, "rigid motion")),
             },
             &["mode", "Hz", "relative error"],
             self.modes.iter().map(row).collect(),
@@ -172,7 +172,7 @@ fn page(modes: &Outcome<Modes>) -> Page {
     let head = [
         "mode",
         "Hz",
-        "error at most, share",
+        "largest error, share",
         "gap",
         "mass along x, %",
         "y, %",

@@ -147,7 +147,7 @@ impl Report for Outcome<Weighed> {
             self.payload.iter().map(row).collect(),
         );
         Console::new(table, Some("payload.csv")).next(format!(
-            "if a payload was weighed too, name its mass in the runs file and run `strainbridge reconcile {}`",
+            "if a payload was weighed too, state its mass in the runs file and run `strainbridge reconcile {}`",
             self.job.file
         ))
     }
@@ -255,7 +255,7 @@ fn page(found: &Outcome<Weighed>) -> Page {
         "Payload",
         &head,
         &rows,
-        "The place is that of the job where it is known; half axes are of the region that holds it with 95 %.",
+        "The place is that of the job if it is known; half axes are those of the 95 % region of the place.",
     )];
     if !found.weighing.gauges.is_empty() {
         sections.extend(gauge_sections(&found.weighing, units.force.name));
@@ -321,7 +321,7 @@ fn gauge_sections(weighing: &Weighing, force: &str) -> [Section; 2] {
         .map(|r| (r.run.clone(), bars(r, weighing)))
         .collect();
     let together = figure_section(
-        "Gauges in use and all together",
+        "Single gauges and all together",
         intervals(
             &runs,
             force,

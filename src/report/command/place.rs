@@ -116,7 +116,7 @@ impl Report for Outcome<Placed> {
         numbers.push(KeyNumber::new(
             format!("{:.0} %", 100.0 * worst.efficiency_left),
             format!(
-                "of the information is left without {}, the most important gauge",
+                "of the information remains without {}, the most important gauge",
                 worst.gauge
             ),
         ));
@@ -133,7 +133,7 @@ impl Report for Outcome<Placed> {
         };
         let rows: Vec<Vec<String>> = self.load_sigma.iter().map(row).collect();
         let title = match is_glued {
-            true => "Loads with these gauges, tolerances of gluing included",
+            true => "Loads with these gauges, tolerances of installation included",
             false => "Loads with these gauges",
         };
         let short = |r: &Vec<String>| {
@@ -165,7 +165,7 @@ fn scene(placed: &Placed) -> Scene<'_> {
     scene_of(&placed.job, &placed.fields, marks)
 }
 
-/// Columns of gauges.csv; `L` stands for the job's length.
+/// Columns of gauges.csv; `L` is the job's length.
 const GAUGES: [(&str, &str); 16] = [
     ("name", ""),
     ("element", ""),
@@ -229,7 +229,7 @@ fn numbers(placed: &Placed) -> Vec<(String, String)> {
     let worst = &placed.worst_loss;
     out.push((
         format!(
-            "Efficiency left when {} is lost, the worst loss",
+            "Efficiency that remains without {}, the worst loss",
             worst.gauge
         ),
         format!("{:.3}", worst.efficiency_left),

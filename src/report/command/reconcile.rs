@@ -4,7 +4,7 @@ use super::reconcile_extended::write_extended;
 use super::reconcile_motion::{motion_page, write_motion};
 use super::reconcile_strain::{strain_page, write_strain};
 use super::{Report, write_page};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
@@ -108,7 +108,7 @@ fn fields(found: &Outcome<Reconciled>) -> Vec<(&'static str, String)> {
     let alike = found.rivals.iter().filter(|r| r.indistinguishable);
     let alike: Vec<&str> = alike.map(|r| r.id.as_str()).collect();
     if !alike.is_empty() {
-        out.push(("indistinguishable", few(&alike)));
+        out.push(("indistinguishable", list_few(&alike)));
     }
     if let Some(strain) = &found.strain {
         out.push(("place of the gap", strain.sits.clone()));

@@ -66,7 +66,7 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> 
     sections.extend(scatter_section(found));
     sections.extend(rival_section(&found.outcome));
     sections.push(Section::new(
-        "What remains",
+        "Remaining gap",
         vec![
             Block::Text(found.outcome.remains.clone()),
             Block::Stressed(
@@ -79,7 +79,7 @@ pub(super) fn motion_page(outcome: &Outcome<Reconciled>, found: &MotionPart) -> 
     sections.push(restoring_section(&curves, &units));
     Page::new(
         &outcome.job.title,
-        "Where vehicle model and record disagree, and what is missing",
+        "Differences between vehicle model and record, and missing effects",
         &outcome.findings,
         sections,
     )
@@ -141,13 +141,15 @@ fn gap_tables(outcome: &MotionOutcome) -> [(&'static str, String); 4] {
 fn verdict_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
     let words = match found.outcome.verdict {
         Verdict::Named => format!(
-            "An effect is missing in the model, and it is named: {}.",
+            "An effect is missing in the model and is identified: {}.",
             outcome.named.join(", ")
         ),
         Verdict::None => "Model and record agree within noise and declared tolerances.".into(),
-        Verdict::Unknown => "There is a gap, and nothing in the library closes it.".into(),
+        Verdict::Unknown => {
+            "Model and record differ, and no effect of the library explains the gap.".into()
+        }
         Verdict::BelowDetectability => {
-            "There is a hint of an effect, too small for this record to name.".into()
+            "The record indicates an effect that is too small to identify.".into()
         }
     };
     let verdict = format!("{}.", found.outcome.verdict.word());
@@ -175,7 +177,7 @@ fn where_section(found: &MotionPart) -> Section {
         "gap, %",
         "worst band, Hz: %",
         "worst stretch, s: %",
-        "worst size of the motion, times its rms: %",
+        "worst amplitude of the motion, times its rms: %",
     ];
     let mut blocks = vec![Block::Text(format!("{}.", found.sits))];
     if !found.sits_at.is_empty() {
@@ -183,18 +185,18 @@ fn where_section(found: &MotionPart) -> Section {
     }
     if !found.sits_after.is_empty() && !found.outcome.best_attempt.is_empty() {
         blocks.push(Block::Folded {
-            summary: "the same with the effects in".into(),
+            summary: "the same with the effects included".into(),
             blocks: vec![Block::table(&head, rows(&found.sits_after))],
         });
     }
-    Section::new("Where the gap sits", blocks)
+    Section::new("Largest gaps", blocks)
 }
 
-/// Effects with their sizes, how sure they are together, and where they stand in the extended job.
+/// Effects with their sizes, their joint probability, and their places in the extended job.
 fn added_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
     let attempt = &found.outcome.best_attempt;
     if attempt.is_empty() {
-        let nothing = Block::Text("Nothing: no effect is named.".into());
+        let nothing = Block::Text("No effect is identified.".into());
         return Section::new(ADDED, vec![nothing]);
     }
     let row = |e: &MotionEffect| {
@@ -214,9 +216,9 @@ fn added_section(outcome: &Outcome<Reconciled>, found: &MotionPart) -> Section {
             Block::table(&["effect", "path", "old value", "new value"], added)
         }
         (Verdict::Named, true) => {
-            Block::Text("No extended model is written: the findings say why.".into())
+            Block::Text("No extended model is written: the findings state the reason.".into())
         }
-        _ => Block::Text("The best attempt; it is not named, and nothing was added.".into()),
+        _ => Block::Text("The best attempt. It is not identified, and nothing was added.".into()),
     });
     let names = attempt.iter().flat_map(|e| {
         let name = |k: usize| match e.size.len() {
@@ -285,7 +287,7 @@ fn scatter_section(found: &MotionPart) -> Option<Section> {
         ];
         blocks.push(Block::table(&head, cells.collect()));
         blocks.push(Block::Note(format!(
-            "{}; parameters are those that simulate the fitted record best.",
+            "{}; the parameters are those with the best simulation of the fitted record.",
             s.metric
         )));
     }

@@ -24,7 +24,7 @@ pub(super) fn write_strain(found: &StrainPart, out: &mut Output) -> Result<(), F
     })?;
     out.write_bytes("loads_before_after.csv", loads_csv(found).as_bytes())?;
     declare_written(out, "loads_before_after.csv", |c| match c {
-        "stated" | "before" | "after" | "sigma" => "that of column unit".to_owned(),
+        "stated" | "before" | "after" | "sigma" => "unit of column unit".to_owned(),
         _ => String::new(),
     })?;
     Ok(())
@@ -111,7 +111,7 @@ fn field_of_place(m: &MarkedStiffness, n_shells: usize) -> Field<'static> {
     }
     let (way, id) = (if m.factor < 1.0 { "less" } else { "more" }, &m.id);
     Field {
-        name: format!("stiffness {way} than the model's: {id}"),
+        name: format!("stiffness {way} than in the model: {id}"),
         unit: "%".into(),
         values: FieldValues::Magnitudes(values),
         scale: 100.0,

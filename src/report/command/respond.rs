@@ -112,7 +112,7 @@ impl Report for Outcome<Responded> {
         }
         numbers.push(KeyNumber::new(
             self.hot_spots.len().to_string(),
-            "hot spots: hotter than all neighbours",
+            "hot spots: stress higher than at all neighbours",
         ));
         numbers.push(KeyNumber::new(self.states.to_string(), "load states"));
         let worst = self
@@ -197,7 +197,7 @@ fn fatigue_section(list: &[ElementFatigue]) -> Section {
         "Fatigue",
         &head,
         &rows,
-        "Pseudo-damage of the normal stress on the plane where it is largest; plane: its normal from the x axis of the element.",
+        "Pseudo-damage of the normal stress on the plane of largest damage; plane: its normal from the x axis of the element.",
     )
 }
 
@@ -239,13 +239,13 @@ fn sections(r: &Responded) -> Vec<Section> {
             "Largest von Mises stress",
             &header,
             &shown(&r.elements),
-            "From the loads by superposition; the interval is that of the loads.",
+            "From the loads by superposition; the interval is the interval of the loads.",
         ),
         table_section(
             "Hot spots",
             &header,
             &shown(&r.hot_spots),
-            "Elements hotter than all that share a grid with them.",
+            "Elements with a higher stress than all elements that share a grid with them.",
         ),
     ];
     if let Some(fields) = &r.prepared.fields {

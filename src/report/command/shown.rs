@@ -17,7 +17,7 @@ where
         .find(|f| f.severity == Severity::Error);
     match error {
         Some(f) => console.next(format!(
-            "correct what the errors name; `strainbridge explain {}` states cause, limit and remedy",
+            "correct the causes of the errors; `strainbridge explain {}` states cause, limit and remedy",
             f.code
         )),
         None => console,

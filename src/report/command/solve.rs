@@ -2,7 +2,7 @@
 
 use super::{Report, write_page};
 use crate::fe::Solution;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
@@ -90,7 +90,7 @@ impl Report for Outcome<SolvedCases> {
         }
         let modes: Vec<String> = self.elastic_modes_hz.iter().map(|hz| number(*hz)).collect();
         if !modes.is_empty() {
-            fields.push(("elastic modes, Hz", few(&modes)));
+            fields.push(("elastic modes, Hz", list_few(&modes)));
         }
         Console::new(ConsoleTable::of_fields("", &fields), Some("results.op2"))
             .next("name results.op2 as [model] results of a job (`strainbridge init` writes one)")

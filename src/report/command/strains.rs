@@ -3,7 +3,7 @@
 use super::{Report, write_page};
 use crate::fe::CaseResult;
 use crate::fe::strain_rows::{StrainRow, hottest, largest_strain};
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
@@ -61,7 +61,7 @@ impl Report for Outcome<Strains> {
 
     fn console(&self) -> Console {
         let fields = [
-            ("subcases", few(&self.subcase_ids)),
+            ("subcases", list_few(&self.subcase_ids)),
             ("rows of strains.csv", self.rows.to_string()),
         ];
         Console::new(ConsoleTable::of_fields("", &fields), Some("strains.csv"))

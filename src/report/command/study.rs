@@ -5,7 +5,7 @@ use crate::estimate::NORMAL_95;
 use crate::host::fault::Faults;
 use crate::host::outcome::Outcome;
 use crate::host::output::Output;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::report::console::{Console, ConsoleTable};
 use crate::report::csv_cell;
 use crate::report::figure::{Ends, IntervalRow, intervals};
@@ -117,7 +117,7 @@ impl Report for Outcome<Studied> {
             vec![load.name.clone(), format!("{range} {}", load.unit)]
         };
         let rows = loads.iter().filter(|l| l.wanted).map(of_load).collect();
-        let layouts = counted(self.study.len(), "layout");
+        let layouts = count_of(self.study.len(), "layout");
         let title = format!("Error of each load in {layouts}: half width of the 95 % interval");
         let by_load = ConsoleTable::new(title, &["load", "± 95 %"], rows);
         let next = format!(
@@ -235,12 +235,12 @@ fn page(found: &Outcome<Studied>) -> Page {
         &format!("{trials} trials each, seed {seed}: bias ± half width of the 95 % interval"),
         &header,
         &rows,
-        "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are dealt over 50 of them.",
+        "The same seed gives the same numbers on any machine and any number of threads. Layout `random`: the trials are distributed over 50 layouts.",
     );
     let title = &found.job.title;
     Page::new(
         title,
-        "What errors do to recovered loads",
+        "Effect of errors on recovered loads",
         &found.findings,
         vec![errors_by_layout(found), section, gauges_by_layout(found)],
     )

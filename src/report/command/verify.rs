@@ -45,7 +45,7 @@ impl Report for Outcome<Verified> {
 
     fn key_numbers(&self) -> Vec<KeyNumber> {
         vec![
-            KeyNumber::new(self.same.len().to_string(), "files that are the same"),
+            KeyNumber::new(self.same.len().to_string(), "files that are equal"),
             KeyNumber::new(self.differs.len().to_string(), "differences"),
         ]
     }
@@ -75,7 +75,7 @@ impl Report for Outcome<Verified> {
             self.differs.iter().map(row).collect(),
         );
         Console::new(table, None).next(match self.differs.is_empty() {
-            true => "keep the folder with its inputs: both belong together",
+            true => "keep the folder together with its inputs",
             false => "restore the inputs that differ, or run the command of the folder again",
         })
     }

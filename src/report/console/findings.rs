@@ -1,9 +1,9 @@
 //! Findings of a terminal: of those with one code the first, the worst last, in the lines that are left for them.
 
 use super::content::Texts;
-use super::wrap::{cut, wrapped};
+use super::wrap::{cut_to_width, wrap_lines};
 use crate::finding::{Finding, Severity};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::words::finding_text;
 
 /// Lines of one finding.
@@ -45,7 +45,7 @@ pub(super) fn lines(
         .iter()
         .map(|note| FindingLines {
             severity: None,
-            lines: wrapped(&plain(&format!("note: {note}")), width, INDENT),
+            lines: wrap_lines(&plain(&format!("note: {note}")), width, INDENT),
         })
         .collect();
     let mut sorted: Vec<&Finding> = texts.findings.iter().collect();
@@ -60,7 +60,7 @@ pub(super) fn lines(
         }
         (is_first || !fold).then(|| FindingLines {
             severity: Some(f.severity),
-            lines: wrapped(&plain(&text), width, INDENT),
+            lines: wrap_lines(&plain(&text), width, INDENT),
         })
     }));
     match limit {
@@ -95,7 +95,7 @@ fn within(all: Vec<FindingLines>, limit: usize, width: usize) -> Vec<FindingLine
         if f.lines.len() > most {
             f.lines.truncate(most);
             if let Some(last) = f.lines.last_mut() {
-                *last = cut(&format!("{last} ..."), width);
+                *last = cut_to_width(&format!("{last} ..."), width);
             }
         }
     }
@@ -105,7 +105,7 @@ fn within(all: Vec<FindingLines>, limit: usize, width: usize) -> Vec<FindingLine
     shown
 }
 
-/// The line that counts what is left out.
+/// The line that counts the omitted findings.
 fn left_out_line(left_out: &[FindingLines], width: usize) -> FindingLines {
     let kinds = [
         (Severity::Info, "note"),
@@ -114,12 +114,12 @@ fn left_out_line(left_out: &[FindingLines], width: usize) -> FindingLines {
     ];
     let count = |(of, word): (Severity, &str)| {
         let n = left_out.iter().filter(|f| severity(f) == of).count();
-        (n > 0).then(|| counted(n, word))
+        (n > 0).then(|| count_of(n, word))
     };
     let counts: Vec<String> = kinds.into_iter().filter_map(count).collect();
     let text = format!("{} more: -v prints them", counts.join(", "));
     FindingLines {
         severity: None,
-        lines: vec![cut(&text, width)],
+        lines: vec![cut_to_width(&text, width)],
     }
 }

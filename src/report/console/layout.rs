@@ -3,7 +3,7 @@
 use super::content::{Console, Texts};
 use super::findings::{self, FindingLines};
 use super::table;
-use super::wrap::wrapped;
+use super::wrap::wrap_lines;
 
 /// Room for the lines of a command.
 #[derive(Clone, Copy, Debug)]
@@ -37,9 +37,9 @@ pub fn lay_out(console: &Console, texts: &Texts, room: &Room) -> Layout {
     };
     let console = console.map(plain);
     let width = room.width;
-    let summary = wrapped(&plain(texts.summary), width, 0);
+    let summary = wrap_lines(&plain(texts.summary), width, 0);
     let next = console.next.as_ref();
-    let next = next.map_or_else(Vec::new, |n| wrapped(&format!("Next: {n}"), width, 6));
+    let next = next.map_or_else(Vec::new, |n| wrap_lines(&format!("Next: {n}"), width, 6));
     let paths = path_lines(texts.paths, width);
     // The blank line between table and summary counts.
     let fixed = summary.len() + next.len() + paths.len() + 1;
@@ -63,7 +63,7 @@ pub fn lay_out(console: &Console, texts: &Texts, room: &Room) -> Layout {
 
 /// Returns a text in ASCII as far as signs of numbers and units go.
 pub fn ascii(text: &str) -> String {
-    /// Signs and what stands for them.
+    /// Signs and their ASCII replacements.
     const SIGNS: [(&str, &str); 13] = [
         ("±", "+-"),
         ("µ", "u"),
@@ -89,6 +89,6 @@ fn path_lines(paths: &[String], width: usize) -> Vec<String> {
     match together.chars().count() <= width {
         true if paths.is_empty() => Vec::new(),
         true => vec![together],
-        false => paths.iter().flat_map(|p| wrapped(p, width, 2)).collect(),
+        false => paths.iter().flat_map(|p| wrap_lines(p, width, 2)).collect(),
     }
 }

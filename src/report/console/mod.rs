@@ -11,7 +11,7 @@ mod wrap;
 pub use content::{Console, ConsoleTable, Texts};
 pub use findings::FindingLines;
 pub use layout::{Layout, Room, ascii, lay_out};
-pub use wrap::wrapped;
+pub use wrap::wrap_lines;
 
 /// Lines of a command, the table and the findings included: a terminal shows them without scrolling.
 pub const LINES: usize = 25;

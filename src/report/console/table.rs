@@ -1,7 +1,7 @@
-//! A table in aligned columns. Short rows stand side by side in blocks, so that many of them fit.
+//! A table in aligned columns. Short rows are next to each other in blocks, so that many of them fit.
 
 use super::content::{Console, ConsoleTable};
-use super::wrap::{cut, wrapped};
+use super::wrap::{cut_to_width, wrap_lines};
 
 /// Spaces between columns.
 const GAP: &str = "  ";
@@ -74,7 +74,7 @@ impl Columns {
     fn row(&self, cells: &[String]) -> String {
         let cell = |(c, width): (usize, &usize)| {
             let text = cells.get(c).map_or("", |t| t.as_str());
-            let text = cut(text, *width);
+            let text = cut_to_width(text, *width);
             match self.is_number.get(c) {
                 Some(true) => format!("{text:>width$}"),
                 _ => format!("{text:<width$}"),
@@ -114,7 +114,7 @@ fn laid(table: &ConsoleTable, width: usize, limit: Option<usize>) -> Option<Vec<
 }
 
 fn headline(table: &ConsoleTable, width: usize) -> Vec<String> {
-    wrapped(&table.title, width, 2)
+    wrap_lines(&table.title, width, 2)
 }
 
 /// Returns the rows in blocks next to each other, under their heads.
@@ -161,7 +161,7 @@ fn wrapped_last(table: &ConsoleTable, columns: &Columns, width: usize) -> Option
         .filter(|h| !h.is_empty())
         .chain(&table.rows)
     {
-        let text = row.get(last).map_or(Vec::new(), |t| wrapped(t, room, 0));
+        let text = row.get(last).map_or(Vec::new(), |t| wrap_lines(t, room, 0));
         for i in 0..text.len().max(1) {
             let first = |c: &String| if i == 0 { c.clone() } else { String::new() };
             let mut cells: Vec<String> = row.iter().take(last).map(first).collect();

@@ -1,7 +1,7 @@
 //! Text in lines of a given width.
 
 /// Returns a text in lines of at most `width` characters. Lines after the first begin with `indent` spaces; a word wider than a line is cut.
-pub fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
+pub fn wrap_lines(text: &str, width: usize, indent: usize) -> Vec<String> {
     let indent = indent.min(width / 2);
     let mut lines: Vec<String> = Vec::new();
     let mut line = String::new();
@@ -39,8 +39,8 @@ pub fn wrapped(text: &str, width: usize, indent: usize) -> Vec<String> {
     lines
 }
 
-/// Returns a text of at most `width` characters; three dots stand for what is left out.
-pub(super) fn cut(text: &str, width: usize) -> String {
+/// Returns a text of at most `width` characters; three dots mark an omitted end.
+pub(super) fn cut_to_width(text: &str, width: usize) -> String {
     match text.chars().count() <= width {
         true => text.to_owned(),
         false => {

@@ -66,7 +66,7 @@ pub(in crate::report) struct Word {
     pub(in crate::report) upwards: bool,
 }
 
-/// Grey of what stands back.
+/// Grey of the background.
 pub(in crate::report) const FAINT: &str = "#9aa7b5";
 /// Nearly black.
 pub(in crate::report) const INK: &str = "#1c2530";
@@ -113,7 +113,7 @@ impl Picture {
         self.shapes.push(Shape::Word(Word {
             at,
             anchor,
-            text: shortened(text, LONGEST),
+            text: shorten_to(text, LONGEST),
             size: 7.0,
             upwards: false,
         }));
@@ -129,7 +129,7 @@ impl Picture {
 }
 
 /// At most `most` characters on one line, marked where some are left out.
-pub(in crate::report) fn shortened(text: &str, most: usize) -> String {
+pub(in crate::report) fn shorten_to(text: &str, most: usize) -> String {
     if text.chars().count() <= most {
         return text.to_owned();
     }

@@ -5,13 +5,13 @@
 pub(in crate::report) struct Scale {
     /// Ends of the values; of their logarithms where `by_powers`.
     ends: [f64; 2],
-    /// Where these stand, mm.
+    /// Positions of the values, mm.
     place: [f64; 2],
     by_powers: bool,
 }
 
 impl Scale {
-    /// A scale on which all `values` stand between the places; with a little room at both ends where they are `roomy`.
+    /// A scale on which all `values` are between the places; with a little room at both ends where they are `roomy`.
     pub(in crate::report) fn over(
         values: impl Iterator<Item = f64>,
         place: [f64; 2],
@@ -40,7 +40,7 @@ impl Scale {
         }
     }
 
-    /// Where a value stands; `None` where it has no place.
+    /// Position of a value; `None` if it has no place.
     pub(in crate::report) fn at(&self, value: f64) -> Option<f64> {
         let v = if self.by_powers { value.log10() } else { value };
         let share = (v - self.ends[0]) / (self.ends[1] - self.ends[0]);

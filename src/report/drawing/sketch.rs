@@ -1,6 +1,6 @@
 //! The model with its gauges as line pictures along the axes of the basic frame.
 
-use super::picture::{INK, Picture, Shape, UPRIGHT, Word, shortened};
+use super::picture::{INK, Picture, Shape, UPRIGHT, Word, shorten_to};
 use super::scale::round_step;
 use crate::fe::strain_tensor::Surface;
 use crate::model::Vec3;
@@ -20,7 +20,7 @@ const STROKE: f64 = 2.2;
 const LARGEST: f64 = 5.0;
 
 /// Caption of a drawing of gauges.
-pub(in crate::report) const STROKES: &str = "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
+pub(in crate::report) const STROKES: &str = "Strokes are along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. The model in three dimensions is in report.html.";
 
 /// A direction to look along: which axes run right and up, by sign, and its name.
 struct View {
@@ -231,7 +231,7 @@ pub(in crate::report) fn marks(picture: &mut Picture, marks: &[Mark], look: &Loo
 /// The name where it covers nothing, with a line to its gauge where it is far; left out where there is no such place.
 fn name(picture: &mut Picture, name: &str, at: [f64; 2], taken: &mut Taken) {
     const SIZE: f64 = 6.0;
-    let text = shortened(name, 16);
+    let text = shorten_to(name, 16);
     let (wide, tall) = (1.35 * text.chars().count() as f64, 2.8);
     for far in [1.6, 3.0, 5.0, 8.0, 11.0] {
         for turn in 0..12 {

@@ -1,4 +1,4 @@
-//! A drawing as SVG that stands inside a page, in whole tenths of a millimetre.
+//! A drawing as SVG for a page, in whole tenths of a millimetre.
 
 use super::picture::{Picture, Shape, Word};
 use super::trails::trails;

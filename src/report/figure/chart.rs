@@ -32,15 +32,15 @@ impl Render for Figure {
                     } } }
                 }
                 div.canvas style=(format!("height:{}px", self.height)) {}
-                (embedded(&data))
+                (embed_data(&data))
                 figcaption.muted { (self.caption) }
             }
         }
     }
 }
 
-/// Data of a figure inside the page. `<` can only stand inside a string there and is written as its code, so that nothing ends early.
-pub(in crate::report) fn embedded(data: &Value) -> Markup {
+/// Data of a figure inside the page. `<` can only be inside a string there and is written as its code, so that nothing ends early.
+pub(in crate::report) fn embed_data(data: &Value) -> Markup {
     let text = data.to_string().replace('<', "\\u003c");
     html! { script type="application/json" { (PreEscaped(text)) } }
 }

@@ -60,7 +60,7 @@ pub fn curve(points: &[CountPoint], loads: &[(String, String)]) -> Figure {
                 EFFICIENCY,
             ),
             line(
-                "left after the worst loss of a gauge",
+                "remaining after the worst loss of a gauge",
                 percent(&|p| p.after_loss),
                 "%{y:.4} %",
                 EFFICIENCY,

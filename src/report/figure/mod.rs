@@ -1,4 +1,4 @@
-//! Figures of a page: plain numbers in, what the script of the page draws as SVG out. The script and its data stand in the page: no network.
+//! Figures of a page: plain numbers in, what the script of the page draws as SVG out. The script and its data are in the page: no network.
 
 mod agreement;
 mod chart;
@@ -14,7 +14,7 @@ mod script;
 
 pub use agreement::{GaugePoints, agreement};
 pub use chart::Figure;
-pub(in crate::report) use chart::embedded;
+pub(in crate::report) use chart::embed_data;
 pub use cross::{CrossPlot, cross};
 pub use curve::{CountPoint, curve};
 pub use gap::gap_by_channel;

@@ -6,7 +6,7 @@ use super::command::{Report, words};
 use super::drawing::picture::Picture;
 use super::drawing::{STROKES, pictures, to_svg, views};
 use super::figure::Figure;
-use super::page::{Block, Page, Section, Table, block_html, judged};
+use super::page::{Block, Page, Section, Table, block_html, reliability};
 use super::scene::SceneView;
 use crate::host::outcome::{Answer, Outcome};
 use maud::{Markup, PreEscaped, html};
@@ -45,7 +45,7 @@ fn piece_of(page: &Page) -> String {
             h3 { (page.title) }
             @if !page.summary.is_empty() { p { b { (page.summary) } } }
             @if !page.lead.is_empty() { p.muted { (page.lead) } }
-            (judged(&page.worst_first()))
+            (reliability(&page.worst_first()))
             @for (title, blocks) in &sections {
                 h4 { (title) }
                 @for b in blocks { (b) }
@@ -115,7 +115,7 @@ impl Room {
         }
     }
 
-    /// A picture with its title and caption; `None` where it is too large for what is left.
+    /// A picture with its title and caption; `None` if it is too large for the remaining space.
     fn picture(&mut self, p: &Picture, label: &str) -> Option<Markup> {
         let svg = to_svg(p, label);
         self.bytes = self.bytes.checked_sub(svg.0.len())?;

@@ -48,7 +48,7 @@ fn a_piece_has_verdict_findings_and_pictures_and_runs_nothing() {
     ]));
     for word in [
         "<b>error</b>",
-        "it &lt;b&gt;fails",
+        "It &lt;b&gt;fails",
         "mend it",
         "<svg",
         "a note",

@@ -28,7 +28,7 @@ impl<'a> Sorted<'a> {
 }
 
 /// Whether the answer can be relied on, and why: for a notebook.
-pub(in crate::report) fn judged(findings: &[&Finding]) -> Markup {
+pub(in crate::report) fn reliability(findings: &[&Finding]) -> Markup {
     let is_note = |g: &Vec<&Finding>| g.iter().all(|f| f.severity == Severity::Info);
     let (notes, serious): (Vec<_>, Vec<_>) = groups_of(findings).into_iter().partition(is_note);
     html! {
@@ -75,9 +75,9 @@ fn finding(f: &Finding) -> Markup {
     };
     html! {
         div class=(class) {
-            b { (f.severity.word()) } " · " (subjects(&f.subject)) ": " (f.message.trim_end_matches('.')) "."
+            b { (f.severity.word()) } " · " (subjects(&f.subject)) ": " (f.message)
             @if let Some(words) = numbers_in_words(f) { small { " " (capital(&words)) "." } }
-            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy.trim_end_matches('.')) "." } } }
+            @if !f.remedy.is_empty() { div { small { "What to do: " (f.remedy) } } }
         }
     }
 }
@@ -93,7 +93,7 @@ fn subjects(subject: &str) -> Markup {
 }
 
 /// The conditions that a command tests and that are not among the findings.
-pub(super) fn passed(command: &str, findings: &[Finding]) -> Vec<&'static Code> {
+pub(super) fn passed_conditions(command: &str, findings: &[Finding]) -> Vec<&'static Code> {
     let tests = |c: &&Code| {
         let serious = c.severity.iter().any(|s| *s != Severity::Info);
         serious && c.said_by.split(", ").any(|by| by == command)

@@ -1,10 +1,10 @@
 //! The first screen of a page: the sentence, key numbers, the picture and the table of the result.
 
 use super::block::{Block, Page, Table};
-use super::findings::{Sorted, group, groups_of, passed};
+use super::findings::{Sorted, group, groups_of, passed_conditions};
 use super::table::{list_of_links, table};
 use crate::finding::Finding;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::report::drawing::picture::Picture;
 use crate::report::drawing::{card_picture, pictures, to_svg};
 use crate::report::figure::Figure;
@@ -70,7 +70,7 @@ fn folded(what: &str, findings: &[&Finding]) -> Markup {
     let groups = groups_of(findings);
     html! {
         details.folded {
-            summary { (counted(findings.len(), what)) ": " (codes_in_words(&groups)) }
+            summary { (count_of(findings.len(), what)) ": " (codes_in_words(&groups)) }
             @for g in &groups { (group(g)) }
         }
     }
@@ -84,7 +84,7 @@ fn codes_in_words(groups: &[Vec<&Finding>]) -> String {
 
 /// Notes, and the conditions that the command tested and did not find.
 pub(super) fn notes_and_tests(page: &Page, findings: &Sorted) -> Markup {
-    let passed = passed(page.first.command, &page.findings);
+    let passed = passed_conditions(page.first.command, &page.findings);
     let notes = groups_of(&findings.notes);
     html! {
         @if !(notes.is_empty() && passed.is_empty()) {
@@ -93,8 +93,8 @@ pub(super) fn notes_and_tests(page: &Page, findings: &Sorted) -> Markup {
                 @if !notes.is_empty() { (folded("note", &findings.notes)) }
                 @if !passed.is_empty() {
                     details.folded {
-                        summary { (counted(passed.len(), "condition")) " tested and not found" }
-                        p.muted { "`" (page.first.command) "` reports each of these where it applies to the job. None is in this result." }
+                        summary { (count_of(passed.len(), "condition")) " tested and not found" }
+                        p.muted { "`" (page.first.command) "` reports each of these if it applies to the job. This result contains none of them." }
                         ul.passed { @for c in &passed { li { b { (c.code.replace('-', " ")) } " (limit: " (c.limit.trim_end_matches('.')) ")" } } }
                     }
                 }

@@ -1,7 +1,7 @@
 //! A page as one HTML file: no script from elsewhere, the first screen with summary, errors, picture and table first.
 
 use super::block::{Block, Card, Page};
-use super::findings::{Sorted, judged};
+use super::findings::{Sorted, reliability};
 use super::first::{first_screen, notes_and_tests};
 use super::table::{list_of_links, table};
 use crate::report::drawing::picture::Picture;
@@ -37,7 +37,7 @@ impl Page {
                             h1 { (self.title) }
                             p.summary { b { (self.summary) } }
                             p.muted { (self.lead) }
-                            @if !self.findings.is_empty() { (judged(&self.worst_first())) }
+                            @if !self.findings.is_empty() { (reliability(&self.worst_first())) }
                         } @else {
                             (first_screen(self, &findings))
                         }
@@ -98,7 +98,7 @@ fn card(c: &Card) -> Markup {
     html! {
         article.card.bad[c.is_bad] {
             h3 { (c.title) }
-            @if c.is_bad { p { b { "This result cannot be relied on." } } }
+            @if c.is_bad { p { b { "This result is not reliable." } } }
             @if let Some(p) = &c.picture {
                 div.model[p.is_model()] { (to_svg(p, &format!("Picture: {}", c.title))) }
                 @if !p.caption.is_empty() { p.muted { (p.caption) } }

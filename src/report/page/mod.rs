@@ -11,6 +11,6 @@ pub use crate::units::number;
 pub use block::{
     Block, Card, CellLink, FirstScreen, Page, Paper, Section, Table, figure_section, table_section,
 };
-pub(in crate::report) use findings::judged;
+pub(in crate::report) use findings::reliability;
 pub(in crate::report) use html::block as block_html;
 pub use key_number::KeyNumber;

@@ -34,7 +34,7 @@ pub(super) struct Fitted {
 }
 
 /// Returns the table in one piece if a size of type allows it, or else in pieces that repeat the first column. A table without columns has no piece.
-pub(super) fn fitted(table: &Table) -> Vec<Fitted> {
+pub(super) fn fit_table(table: &Table) -> Vec<Fitted> {
     let n = table.rows.iter().map(Vec::len).max().unwrap_or(0);
     let n = n.max(table.head.len());
     if n == 0 {
@@ -100,7 +100,7 @@ fn width(characters: usize, size: f64) -> f64 {
     characters as f64 * size * PER_CHARACTER + BESIDE
 }
 
-/// Whether a column holds numbers, which stand to the right.
+/// Whether a column contains numbers, which are right-aligned.
 pub(super) fn is_numeric(table: &Table, column: usize) -> bool {
     let mut cells = table.rows.iter().filter_map(|row| row.get(column));
     let numeric = |cell: &String| {

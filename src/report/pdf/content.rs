@@ -1,6 +1,6 @@
 //! Input of the PDF template: the page as JSON, with printable text only.
 
-use super::columns::{Fitted, LONGEST_WORD, fitted, is_numeric};
+use super::columns::{Fitted, LONGEST_WORD, fit_table, is_numeric};
 use super::glyphs::{breakable, printable, short_printable};
 use super::shapes::picture_json;
 use crate::finding::{Finding, Severity};
@@ -155,11 +155,11 @@ fn drawn(pictures: Vec<Picture>) -> Vec<Value> {
 }
 
 fn table(t: &Table) -> Vec<Value> {
-    let mut out: Vec<Value> = fitted(t).iter().map(|f| piece(t, f)).collect();
+    let mut out: Vec<Value> = fit_table(t).iter().map(|f| piece(t, f)).collect();
     if t.rows.len() > MOST_ROWS {
         let n = t.rows.len();
         let text =
-            format!("The first {MOST_ROWS} of {n} rows; all are in the tables beside this file.");
+            format!("The first {MOST_ROWS} of {n} rows; all are in the tables in this folder.");
         out.push(json!({ "kind": "note", "text": text }));
     }
     out

@@ -1,6 +1,6 @@
 //! The fonts of the pages, and text that they can show.
 
-use crate::report::drawing::picture::shortened;
+use crate::report::drawing::picture::shorten_to;
 use std::sync::OnceLock;
 use typst::foundations::Bytes;
 use typst::text::Font;
@@ -19,8 +19,8 @@ pub(super) fn fonts() -> &'static [Font] {
     })
 }
 
-/// The text as it can stand on paper: a character that no font here has is written as its number, `[U+4E2D]`, and so is one that
-/// would be invisible or turn the direction of reading. Nobody signs for an empty box.
+/// The text as it can be printed: a character without a font is written as its number, `[U+4E2D]`, and so is one that would be invisible or turn the
+/// direction of reading. Nobody signs for an empty box.
 pub(super) fn printable(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {
@@ -58,5 +58,5 @@ pub(super) fn breakable(text: &str, longest: usize) -> String {
 
 /// At most `most` characters of printable text, marked where some are left out.
 pub(super) fn short_printable(text: &str, most: usize) -> String {
-    shortened(&printable(text), most)
+    shorten_to(&printable(text), most)
 }

@@ -132,11 +132,11 @@ fn a_table_turns_the_sheet_before_it_is_cut_and_repeats_its_first_column_then() 
             links: Vec::new(),
         }
     };
-    let narrow = columns::fitted(&table(4, "1"));
+    let narrow = columns::fit_table(&table(4, "1"));
     assert_eq!((narrow.len(), narrow[0].across), (1, false));
-    let wide = columns::fitted(&table(12, "a name of some length "));
+    let wide = columns::fit_table(&table(12, "a name of some length "));
     assert!(wide.iter().all(|f| f.across));
-    let many = columns::fitted(&table(90, "12345"));
+    let many = columns::fit_table(&table(90, "12345"));
     assert!(many.len() > 1);
     assert!(many.iter().all(|f| f.across && f.columns[0] == 0));
     // Every column once, but for the first.

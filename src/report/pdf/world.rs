@@ -18,13 +18,13 @@ const TEMPLATE: &str = include_str!("page.typ");
 #[derive(Debug, thiserror::Error)]
 pub enum PdfError {
     /// The name of a file of the template.
-    #[error("the template can't name `{0}`")]
+    #[error("the template cannot name `{0}`")]
     Name(&'static str),
     /// Typst refuses the template or the data.
-    #[error("the page can't be laid out: {0}")]
+    #[error("the layout of the page failed: {0}")]
     Layout(String),
     /// The PDF can't be written.
-    #[error("the pages can't be written as PDF: {0}")]
+    #[error("the pages cannot be written as PDF: {0}")]
     Write(String),
 }
 

@@ -54,8 +54,8 @@ fn or_blank(word: &str) -> &str {
 
 fn key_page() -> String {
     let mut out = format!("# Keys of a job\n\n{MADE}");
-    out.push_str("Names of lists of sections, such as `load`, stand in the job in double brackets: `[[load]]`. \
-         Lengths, forces and masses are in the job's `units` unless a unit says otherwise; every key has been there since version 0.1.\n");
+    out.push_str("Names of lists of sections, such as `load`, are in double brackets in the job: `[[load]]`. Lengths, forces and masses are in the \
+     job's `units` unless a unit is stated. Every key exists since version 0.1.\n");
     let mut section = "";
     for k in keys() {
         let first = k.path.split('.').next().unwrap_or_default();
@@ -80,9 +80,9 @@ fn key_page() -> String {
 
 fn result_page() -> String {
     let mut out = format!("# Fields of `result.json` and columns of tables\n\n{MADE}");
-    out.push_str("A dot leads into an object or into each object of a list; `*` stands for any name. `report force` and the like: `units` of the \
-         same file says which; `job force` and the like are units of the job's own system. Columns `<load>` and `<gauge>` are named as in the job. Strain is microstrain everywhere. A number that does not exist is null, and an empty \
-         cell of a table.\n");
+    out.push_str("A dot leads into an object or into each object of a list; `*` represents any name. For `report force` and the like, `units` of the \
+     same file states the unit; `job force` and the like are units of the job's system. Columns `<load>` and `<gauge>` have the names of \
+     the job. Strain is always in microstrain. A number that does not exist is null, and an empty cell of a table.\n");
     let (fields, columns) = (fields(), columns());
     let mut commands: Vec<&str> = fields.iter().map(|f| f[0]).collect();
     commands.sort_unstable();
@@ -116,9 +116,9 @@ fn result_page() -> String {
 
 fn finding_page() -> String {
     let mut out = format!("# Findings\n\n{MADE}");
-    out.push_str("A finding judges an answer. `error`: the answer can't be relied on, exit code 1; `warning`: look before you trust; `info`: worth knowing. \
-         `strainbridge explain CODE` prints an entry, `strainbridge explain --list --json` all of them.\n\n\
-         ## Exit codes\n\n");
+    out.push_str("A finding assesses a result. `error`: the result is not reliable, exit code 1; `warning`: the result is usable with the stated \
+     limits; `info`: for information. `strainbridge explain CODE` prints an entry, `strainbridge explain --list --json` all of them.\n\n## \
+     Exit codes\n\n");
     out.push_str(&head(&["code", "meaning"]));
     for (code, meaning) in EXIT_CODES {
         out.push_str(&row(&[code, meaning]));
@@ -144,11 +144,11 @@ pub const EXIT_CODES: [(&str, &str); 4] = [
     ("0", "done"),
     (
         "1",
-        "done, but a finding of severity `error` says that the answer can't be relied on",
+        "done, but a finding of severity `error` states that the result is not reliable",
     ),
     (
         "2",
         "bad input, nothing written: every fault listed as `file:line: field: what is wrong: what to do`; with `--json` also `{\"faults\": [{\"file\", \"line\", \"field\", \"wrong\", \"remedy\"}]}` on standard output",
     ),
-    ("130", "stopped by Ctrl-C: no half-written file is left"),
+    ("130", "stopped by Ctrl-C: no incomplete file remains"),
 ];

@@ -10,7 +10,7 @@ const STEPS: usize = 9;
 const TURN: f64 = 0.5;
 
 /// The part with `most` triangles or fewer (never none): whole where it can be, else with its grids gathered in cubes as small as will do.
-pub(super) fn coarsened(model: &Model, part: &Part, most: usize) -> Drawn {
+pub(super) fn coarsen(model: &Model, part: &Part, most: usize) -> Drawn {
     let whole = Drawn {
         vertex_of: (0..part.grids.len() as u32).collect(),
         vertices: (0..part.grids.len() as u32).collect(),
@@ -81,8 +81,8 @@ fn ranks(part: &Part, at: &[Vec3]) -> Vec<u8> {
     along.iter().map(rank).collect()
 }
 
-/// Grids in cubes of width `h`. The one nearest to the middle of its cube's grids of the highest rank stands for all: borders stay where they are,
-/// so that parts that meet are not torn apart.
+/// Grids in cubes of width `h`. The one nearest to the middle of its cube's grids of the highest rank represents all: borders keep their places, so
+/// that parts that meet are not torn apart.
 fn gathered(part: &Part, at: &[Vec3], rank: &[u8], lo: Vec3, h: f64) -> Drawn {
     let cube = |x: &Vec3| ((x - lo) / h).map(|v| v.floor() as i64);
     let mut cubes: BTreeMap<[i64; 3], (Vec3, usize, u8)> = BTreeMap::new();

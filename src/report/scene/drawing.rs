@@ -5,10 +5,10 @@ use super::pack::packed_scene;
 use super::part::Part;
 use super::pointing::{result, tools};
 use super::skin::{Finest, skin};
-use super::still::still;
+use super::still::draw_still;
 use super::types::{FieldValues, Pointing, Scene};
 use super::view::SceneView;
-use crate::report::figure::embedded;
+use crate::report::figure::embed_data;
 use crate::report::page::{Block, Section};
 use maud::{Markup, html};
 
@@ -24,14 +24,15 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
         .flat_map(|p| p.faces.iter().map(|f| f.1.map(|c| p.grids[c as usize])));
     let mut lines = outline(scene.model, faces);
     let rods = bars(scene.model);
-    let data = embedded(&packed_scene(scene, &parts, &lines, &rods));
+    let data = embed_data(&packed_scene(scene, &parts, &lines, &rods));
     let markup = html! {
         figure.plot.scene aria-label="the model in three dimensions" data-figure="scene" {
             (switches(scene, &parts))
             (tools(&scene.pointing, scene.marks.len()))
             div.canvas tabindex="0" role="application" aria-label="drag to turn, arrow keys too" {}
             div.bar {}
-            p.pick aria-live="polite" { "Turn: drag. Zoom: two fingers, + and -, or the wheel once the picture was clicked. Point at a gauge, an arrow or the surface, or tap it." }
+            p.pick aria-live="polite" { "Turn: drag. Zoom: two fingers, + and -, or the wheel after a click on the picture. Point at a gauge, an arrow or the surface, \
+             or tap it." }
             (result(&scene.pointing))
             (data)
             figcaption.muted { (scene.caption) }
@@ -42,7 +43,7 @@ pub fn scene_section(title: &str, scene: &Scene) -> Section {
     let view = SceneView {
         markup,
         caption: scene.caption.clone(),
-        still: still(scene),
+        still: draw_still(scene),
         lines,
         marks: scene.marks.clone(),
     };
@@ -130,13 +131,13 @@ fn note(scene: &Scene, parts: &[Part], bytes: usize) -> Markup {
     let whole = parts.iter().all(|p| p.drawn.whole);
     html! {
         p.muted {
-            @if scene.marks.iter().any(|m| m.axes.is_some()) { "Strokes lie along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. " }
+            @if scene.marks.iter().any(|m| m.axes.is_some()) { "Strokes are along the axes of the gauges: red on the top (Z2), blue on the bottom (Z1) of the element. " }
             @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Strain(_))) { "Colour: the largest principal strain by magnitude, from the centres of the elements. " }
             @if scene.fields.iter().any(|f| matches!(f.values, FieldValues::Magnitudes(_))) { "Colour: " (scene.fields.first().map_or("", |f| f.name.as_str())) ", from the centres of the elements. " }
-            @if !scene.arrows.is_empty() { "Arrows end where the load acts: green forces, violet moments (right-hand rule); a length compares within a kind. " }
-            @if !whole { "The picture is coarser than the model, of the strains drawn together the largest. Nothing was computed on it. "
-                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box take its elements all the same, by their middles. " }
-                @if scene.pointing != Pointing::Nothing && !scene.marks.is_empty() { "A gauge that is dragged is laid onto the elements, by their middles, not onto what is drawn. " }
+            @if !scene.arrows.is_empty() { "Arrows end at the point of the load: green forces, violet moments (right-hand rule); lengths compare within a kind. " }
+            @if !whole { "The picture is coarser than the model and shows the largest of the combined strains. No result depends on it. "
+                @if matches!(scene.pointing, Pointing::Places(_)) { "Brush and box select elements of the model by their centres. " }
+                @if scene.pointing != Pointing::Nothing && !scene.marks.is_empty() { "A dragged gauge is placed on the elements of the model by their centres, not on the picture. " }
             }
             span data-role="size" { (drawn) " triangles for " (all) " faces, " (bytes.div_ceil(1000)) " kB of this page." }
         }

@@ -19,7 +19,7 @@ pub use of_job::{
     Shown, fields_of, mark_of_gap, placed_mark, run_arrows, scene_of, scene_of_job, scene_of_loads,
     scene_of_model, scene_of_solution,
 };
-pub(in crate::report) use still::still as still_of;
+pub(in crate::report) use still::draw_still as still_of;
 pub use types::{Arrow, ArrowSet, Field, FieldValues, Mark, Places, Pointing, Scene, Twist};
 pub use view::SceneView;
 

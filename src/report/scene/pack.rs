@@ -2,7 +2,7 @@
 
 use super::paint::Values;
 use super::part::{Owner, Part};
-use super::pointing::said;
+use super::pointing::script_data;
 use super::types::{Arrow, Field, Mark, Pointing, Scene, Twist};
 use crate::fe::strain_tensor::Surface;
 use crate::model::{Model, Vec3};
@@ -69,7 +69,7 @@ pub(super) fn packed_scene(
         "arrows": scene.arrows.iter().map(|set| {
             json!({ "name": set.name, "list": set.arrows.iter().map(|a| arrow(a, scene)).collect::<Vec<_>>() })
         }).collect::<Vec<_>>(),
-        "pointing": said(&scene.pointing),
+        "pointing": script_data(&scene.pointing),
     })
 }
 

@@ -51,8 +51,8 @@ impl Values {
         }
     }
 
-    /// At the vertices of a part, bottom and top: the mean of the elements around each grid, and of the grids that a vertex stands for
-    /// the one with the largest magnitude.
+    /// At the vertices of a part, bottom and top: the mean of the elements around each grid, and of the grids that a vertex represents the one with
+    /// the largest magnitude.
     pub(super) fn on(&self, part: &Part) -> [Vec<f64>; 2] {
         [0, 1].map(|side| {
             let mut sums = vec![(0.0, 0_u32); part.grids.len()];

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use serde_json::{Map, Value, json};
 
 /// Returns the data for the page's script: null without pointing, else the lists and the file of picked places.
-pub(super) fn said(pointing: &Pointing) -> Value {
+pub(super) fn script_data(pointing: &Pointing) -> Value {
     match pointing {
         Pointing::Nothing => Value::Null,
         Pointing::Gauges => json!({}),
@@ -37,16 +37,16 @@ pub(super) fn tools(pointing: &Pointing, gauges: usize) -> Markup {
                     (tool("brush", "brush", "drag over elements"))
                     (tool("box", "box", "drag a rectangle"))
                 }
-                @if gauges > 0 { (tool("gauge", "move gauges", "drag a gauge to where it really is")) }
+                @if gauges > 0 { (tool("gauge", "move gauges", "drag a gauge to its installed position")) }
             }
             @if faces {
-                span.group role="group" aria-label="what is picked becomes" {
+                span.group role="group" aria-label="state of the selected elements" {
                     @for (state, word) in ["nothing", "allowed", "forbidden", "wanted"].iter().enumerate().skip(1).chain([(0, &"nothing")]) {
                         button type="button" class=(format!("s{state}")) data-state=(state) aria-pressed=(state == 1) { (word) }
                     }
                 }
                 label { "brush " input type="range" min="2" max="60" value="14" data-role="brush" aria-label="radius of the brush"; }
-                label { input type="checkbox" data-role="through"; " box takes what is hidden, too" }
+                label { input type="checkbox" data-role="through"; " box also selects hidden elements" }
             }
             button type="button" data-role="undo" disabled { "undo" }
             @if faces { button type="button" data-role="clear" { "clear" } }
@@ -67,7 +67,7 @@ pub(super) fn result(pointing: &Pointing) -> Markup {
         }
     };
     let gauges = html! {
-        "Gauges that were moved, for the job's table of gauges: these columns take the place of those of the same name, "
+        "Moved gauges, for the job's table of gauges: these columns replace the columns of the same name, "
         code { "element" } " stays empty."
     };
     match pointing {
@@ -77,7 +77,7 @@ pub(super) fn result(pointing: &Pointing) -> Markup {
             details.properties { summary { "Pick by property" } div.parts data-role="properties" {} }
             p.muted data-role="count" {}
             (written("places", html! {
-                "Into the job in place of its lists of properties and elements; or saved beside the job and named there as "
+                "Copy these lines into the job instead of its lists of properties and elements. Or save them in the folder of the job and state "
                 code { "file = \"" (places.file) "\"" } " in " code { "[candidates]" } "."
             }))
             (written("gauges", gauges))

@@ -1,6 +1,6 @@
 //! The surface that is drawn: shells and the outside of solids, by property.
 
-use super::coarse::coarsened;
+use super::coarse::coarsen;
 use super::part::{Owner, Part};
 use super::solids::outside;
 use crate::model::{GridIx, Model};
@@ -24,7 +24,7 @@ pub(super) enum Finest {
     FewFields,
 }
 
-/// Faces by property, coarsened so that all together stay below a limit: small parts whole, large ones with what is left.
+/// Faces by property, coarsened so that all together stay below a limit: small parts unchanged, large ones with the remaining triangles.
 pub(super) fn skin(model: &Model, fields: usize, finest: Finest) -> Vec<Part> {
     let limit = match finest {
         Finest::Always => MOST_TRIANGLES,
@@ -41,7 +41,7 @@ pub(super) fn skin_within(model: &Model, most: usize) -> Vec<Part> {
     let (mut left, mut n) = (most, parts.len());
     for i in order {
         let most = left / n.max(1);
-        parts[i].drawn = coarsened(model, &parts[i], most);
+        parts[i].drawn = coarsen(model, &parts[i], most);
         left = left.saturating_sub(parts[i].drawn.triangles.len());
         n -= 1;
     }

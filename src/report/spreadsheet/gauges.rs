@@ -34,7 +34,7 @@ fn loads(load_sigma: &[LoadSigma], worst: &WorstLoss) -> Sheet {
         ]);
     }
     sheet.rows.push(vec![
-        format!("efficiency left when gauge {} is lost", worst.gauge).into(),
+        format!("efficiency without gauge {}", worst.gauge).into(),
         worst.efficiency_left.into(),
     ]);
     sheet

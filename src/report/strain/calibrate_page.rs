@@ -39,7 +39,7 @@ fn summary(answer: &Calibrated) -> Section {
         ),
         ("Noise over strain".to_owned(), percent(c.noise_rel)),
         (
-            "Left-out runs that held".to_owned(),
+            "Left-out runs within their intervals".to_owned(),
             format!("{} of {}", c.coverage.held, c.coverage.of),
         ),
         (
@@ -49,14 +49,17 @@ fn summary(answer: &Calibrated) -> Section {
     ];
     if let Some(e) = c.model_error {
         pairs.push((
-            "Model off, common to a gauge".to_owned(),
+            "Model error, common to a gauge".to_owned(),
             percent(e.common_rel),
         ));
-        pairs.push(("Model off, entry by entry".to_owned(), percent(e.entry_rel)));
+        pairs.push((
+            "Model error, entry by entry".to_owned(),
+            percent(e.entry_rel),
+        ));
     }
     if let Some(n) = &c.next_run {
         let gain = next_words(n);
-        pairs.push(("Next run worth making".to_owned(), gain));
+        pairs.push(("Best next run".to_owned(), gain));
     }
     Section::new("What was learnt", vec![Block::pairs(&pairs)])
 }
@@ -84,7 +87,7 @@ fn errors_of_left_out(answer: &Calibrated) -> Option<Section> {
         "Errors of left-out runs",
         intervals(
             &groups,
-            "recovered less known load",
+            "recovered minus known load",
             Ends::Interval,
             "Error of the load in each left-out run with its 95 % interval: an interval that contains 0 is right, and a shorter one is better.",
         ),
@@ -111,14 +114,17 @@ fn checks(answer: &Calibrated) -> Option<Section> {
     };
     let rows: Vec<Vec<String>> = c.checks.iter().map(row).collect();
     let next = c.next_run.as_ref().map_or(String::new(), |n| {
-        format!(" Calibration load worth applying next: {}.", next_words(n))
+        format!(
+            " Best load for a further calibration run: {}.",
+            next_words(n)
+        )
     });
     (!rows.is_empty()).then(|| {
         table_section(
             "Check loads",
             &["run", "load", "applied", "recovered", "unit", "95 % interval"],
             &rows,
-            &format!("Known loads that S was not calibrated with. The interval includes the stated error of the applied load.{next}"),
+            &format!("Known loads that were not used in the calibration. The interval includes the stated error of the applied load.{next}"),
         )
     })
 }
@@ -154,7 +160,7 @@ fn residuals(answer: &Calibrated) -> Section {
             "in run",
         ],
         &rows,
-        "Recovered less known load in percent of full scale, the largest known load. Left out: each run recovered with the other runs.",
+        "Recovered minus known load in percent of full scale, the largest known load. Left out: each run is recovered with the other runs.",
     )
 }
 
@@ -175,10 +181,10 @@ fn lack_of_fit(answer: &Calibrated) -> Section {
     };
     table_section(
         "Terms beyond the straight line",
-        &["terms", "chance without such a term"],
+        &["terms", "chance without this term"],
         &rows,
         &format!(
-            "The clearest term over all gauges; its chance is corrected for their number. A term is taken for one below 0.001.{held_out}"
+            "The clearest term over all gauges; its probability is corrected for their number. A term counts below 0.001.{held_out}"
         ),
     )
 }
@@ -216,7 +222,7 @@ fn left_out(answer: &Calibrated) -> Section {
             })
         })
         .collect();
-    let note = "Each run recovered by what the other runs taught. Distance of the run in sigmas before the factor.";
+    let note = "Each run is recovered with S from the other runs. Distance of the run in sigmas before the factor.";
     table_section(
         "Runs left out",
         &[
@@ -263,8 +269,9 @@ fn as_glued(answer: &Calibrated) -> Option<Section> {
             "gain",
         ],
         &rows,
-        "Off the drawing, with 95 % half widths; across is left of the axis and angles are right-handed, both seen against the element's normal. \
-         In brackets: the runs leave more than half of the stated variance open. gauges_as_glued.csv holds them as a table for a job.",
+        "Deviation from the drawing, with 95 % half widths. Across is left of the axis and angles are right-handed, both seen against the \
+         element's normal. In brackets: the runs reduce the stated variance by less than half. gauges_as_glued.csv is a table of them for \
+         a job.",
     ))
 }
 

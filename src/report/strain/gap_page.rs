@@ -47,7 +47,7 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     let mut sections = vec![
         Section::new("Verdict", verdict(outcome)),
         Section::new(
-            "Where the gap sits",
+            "Largest gaps",
             vec![Block::Text(format!("{}.", outcome.sits))],
         ),
         added_section(outcome, &report.added),
@@ -57,7 +57,7 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     if let Some(scene) = report.scene {
         let mut section = scene_section("The gap on the model", scene);
         section.blocks.push(Block::Note(format!(
-            "Area of a circle: what the model misses at that gauge in the {} runs, orange before, blue after.",
+            "Area of a circle: residual at that gauge in the {} runs, orange before, blue after.",
             outcome.gap.basis.words()
         )));
         sections.push(section);
@@ -90,16 +90,16 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
             "unit",
         ];
         sections.push(table_section(
-            "Loads that moved by more than two sigma",
+            "Loads that change by more than two sigma",
             &head,
             &moved,
             "",
         ));
     }
     sections.push(Section::new(
-        "What remains",
+        "Remaining gap",
         vec![
-            Block::Text(format!("{}.", outcome.remains)),
+            Block::Text(format!("{}.", outcome.remains.trim_end_matches('.'))),
             Block::Stressed(
                 "Next measurement:".into(),
                 format!("{}.", outcome.next_measurement),
@@ -120,16 +120,16 @@ pub fn reconcile_page(report: &GapReport<'_>) -> Page {
     ));
     Page::new(
         report.title,
-        "Where simulation and measurement disagree, and what is missing",
+        "Differences between model and measurement, and missing effects",
         report.findings,
         sections,
     )
 }
 
-/// The named effects (or best attempt) with their sizes, how sure they are together, and where they stand in the extended model.
+/// The named effects (or best attempt) with their sizes, their joint probability, and their places in the extended model.
 fn added_section(outcome: &Outcome, added: &[Vec<String>]) -> Section {
     if outcome.best_attempt.is_empty() {
-        let nothing = Block::Text("Nothing: no effect is named.".into());
+        let nothing = Block::Text("No effect is identified.".into());
         return Section::new(ADDED, vec![nothing]);
     }
     let rows = outcome.best_attempt.iter().map(effect).collect();
@@ -147,9 +147,9 @@ fn added_section(outcome: &Outcome, added: &[Vec<String>]) -> Section {
             added.to_vec(),
         ),
         (Verdict::Named, true) => {
-            Block::Text("No extended model is written: the findings say why.".into())
+            Block::Text("No extended model is written: the findings state the reason.".into())
         }
-        _ => Block::Text("The best attempt; it is not named, and nothing was added.".into()),
+        _ => Block::Text("The best attempt. It is not identified, and nothing was added.".into()),
     });
     blocks.extend(covariance_block(&sizes(outcome), &outcome.covariance));
     Section::new(ADDED, blocks)
@@ -190,7 +190,7 @@ fn gap_section(outcome: &Outcome) -> Section {
             Block::Text(gap_words(outcome)),
             Block::Figure(gap_by_channel(&by_channel, "µε rms")),
             Block::Note(format!(
-                "Root mean square over the {} runs: before and after the named effects; stroke: the floor, what noise and stated uncertainty leave.",
+                "Root mean square over the {} runs: before and after the identified effects; stroke: the floor, from noise and stated uncertainty.",
                 outcome.gap.basis.words()
             )),
             Block::Folded {
@@ -221,12 +221,13 @@ fn scatter_section(strain: &RunStrain, outcome: &Outcome) -> Option<Section> {
     let mut blocks = vec![
         Block::table(&["", "before, µε rms", "after, µε rms"], rows),
         Block::Figure(agreement(&strain.before, kinds, runs)),
-        Block::Note("Measured against predicted strain: the model as it was given.".into()),
+        Block::Note("Measured against predicted strain: the model as given.".into()),
     ];
     if !outcome.best_attempt.is_empty() {
         blocks.push(Block::Figure(agreement(&strain.after, kinds, runs)));
         blocks.push(Block::Note(
-            "The same with the effects in, but for what differs from run to run.".into(),
+            "The same with the effects included, except for the parts that differ from run to run."
+                .into(),
         ));
     }
     Some(Section::new("Scatter before and after", blocks))
@@ -271,7 +272,7 @@ fn smooth_section(outcome: &Outcome) -> Option<Section> {
             vec![
                 Block::Figure(intervals(
                     &groups,
-                    "strain over what the model predicts",
+                    "strain divided by predicted strain",
                     Ends::Interval,
                     "Measured over predicted strain of each gauge with its 95 % interval: nearer to 1 is better.",
                 )),
@@ -285,13 +286,13 @@ fn smooth_section(outcome: &Outcome) -> Option<Section> {
 
 fn verdict(outcome: &Outcome) -> Vec<Block> {
     let words = match outcome.verdict {
-        Verdict::Named => "An effect is missing in the model, and it is named:",
+        Verdict::Named => "An effect is missing in the model and is identified:",
         Verdict::None => "Model and readings agree within noise and stated uncertainty.",
         Verdict::Unknown => {
-            "There is a gap, and nothing in the library closes it. The best attempt:"
+            "Model and readings differ, and no effect of the library explains the gap. The best attempt:"
         }
         Verdict::BelowDetectability => {
-            "There is a hint of an effect, too small for these runs to name. The best attempt:"
+            "The readings indicate an effect that is too small to identify. The best attempt:"
         }
     };
     let mut out = vec![Block::Stressed(
@@ -314,7 +315,7 @@ fn gap_words(outcome: &Outcome) -> String {
     let g = &outcome.gap;
     let percent = |v: f64| format!("{:.2} %", 100.0 * v);
     let mut gap = format!(
-        "Gap on {} runs, RMS(reading − model) / RMS(reading): {} before, {} after, floor {}; {:.0} % of what can be closed is closed.",
+        "Gap on {} runs, RMS(reading − model) / RMS(reading): {} before, {} after, floor {}; {:.0} % of the possible reduction is reached.",
         g.basis.words(),
         percent(g.before),
         percent(g.after),
@@ -323,7 +324,7 @@ fn gap_words(outcome: &Outcome) -> String {
     );
     if let Some(found) = g.loads_found {
         gap.push_str(&format!(
-            " With the errors of the noted wheel loads found anew in every run, before and after alike: {} before, {} after, floor {}.",
+            " With the errors of the recorded wheel loads estimated in every run: {} before, {} after, floor {}.",
             percent(found.before),
             percent(found.after),
             percent(found.floor)
@@ -331,7 +332,7 @@ fn gap_words(outcome: &Outcome) -> String {
     }
     if let Some(mesh) = g.mesh {
         gap.push_str(&format!(
-            " The mesh alone makes {}: the difference from a mesh half as wide.",
+            " The mesh alone causes {}: the difference from a mesh half as wide.",
             percent(mesh)
         ));
     }
@@ -365,7 +366,7 @@ fn rivals(outcome: &Outcome) -> Section {
         "instead",
         "log evidence behind",
         "gap after",
-        "can be told apart",
+        "can be distinguished",
     ];
     let rows: Vec<Vec<String>> = outcome.rivals.iter().map(row).collect();
     table_section("Other explanations", &head, &rows, "")

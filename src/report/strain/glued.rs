@@ -5,7 +5,7 @@ use crate::report::csv_cell;
 use crate::workflow::calibrate::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use std::io::{self, Write};
 
-/// Columns with their units; `L` stands for the job's length.
+/// Columns with their units; `L` is the job's length.
 pub const COLUMNS: [(&str, &str); 26] = [
     ("name", ""),
     ("element", ""),

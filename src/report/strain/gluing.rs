@@ -7,12 +7,11 @@ use crate::placement::Role;
 use crate::report::page::{Block, Section};
 use crate::workflow::place::PlacedGauge;
 
-const FRAME: &str =
-    "Positions and directions in the basic frame; the side is the one the arrow `outward` leaves.";
+const FRAME: &str = "Positions and directions are in the basic frame. The arrow `outward` points away from the side of the gauge.";
 const STRAIN: &str =
-    "Strain is what the expected loads add up to: choose the amplifier's range above it.";
+    "Strain is the sum under the expected loads: choose the range of the amplifier above it.";
 const BUDGETS: &str =
-    "Budgets are the errors of angle and place that move some load by 5 % of its expected size.";
+    "Budgets are the errors of angle and place that change some load by 5 % of its expected size.";
 const CORNERS: &str = "Distance of each gauge from the corners of its element (grid: distance):";
 
 /// Returns the heading of a column with the unit of length; without a unit if the deck states none.

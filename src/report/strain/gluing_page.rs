@@ -30,8 +30,8 @@ pub fn gluing_page(title: &str, placed: &[PlacedGauge], scene: &Scene) -> Page {
         Section::new("Gauges", vec![Block::Cards(cards.collect())]),
     ];
     let lead = format!(
-        "Positions are in the basic frame of the deck, lengths in {}. Each sketch looks at the gauge from outside. \
-         Budgets are the errors of angle and place that move some load by 5 % of its expected size.",
+        "Positions are in the basic frame of the deck, lengths in {}. Each sketch shows the gauge from outside. Budgets are the errors of \
+         angle and place that change some load by 5 % of its expected size.",
         match scene.length {
             "" => "the unit of the deck",
             unit => unit,

@@ -80,14 +80,15 @@ pub fn place_page(
         "Standard deviation of the loads",
         &["load", "sigma", "as glued", "unit"],
         load_sigma,
-        "What `recover` will state for loads of their expected size, from noise and model uncertainty; as glued: with the tolerances of angle, place and gauge factor.",
+        "Standard deviation that `recover` will state for loads of their expected size, from noise and model uncertainty. As glued: with \
+         the tolerances of angle, place and gauge factor.",
     ));
     sections.extend(model_section(Some(scene)));
     if !counts.points.is_empty() {
         sections.push(figure_section(
             "How many gauges",
             curve(&counts.points, &counts.loads),
-            "One standard deviation of each load, as the stated noise makes it; efficiency is certified against the best possible layout of that many gauges.",
+            "Standard deviation of each load from the stated noise; efficiency is certified against the best possible layout of that many gauges.",
         ));
     }
     let [x, y, z] = ["x", "y", "z"].map(|axis| in_length(axis, scene.length));

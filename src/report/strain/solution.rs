@@ -40,7 +40,8 @@ pub fn solution_page(
         sections.push(Section::new(
             "Balance",
             vec![
-                Block::Text("Resultants about the centre of gravity, basic frame. Inertia loads are mass times the rigid acceleration that the applied loads give; both sum to nothing.".into()),
+                Block::Text("Resultants about the centre of gravity, basic frame. Inertia loads are mass times the rigid acceleration from the applied \
+                 loads; both add up to zero.".into()),
                 Block::table(&head, rows),
             ],
         ));
@@ -56,7 +57,7 @@ pub fn solution_page(
         sections.push(Section::new(
             "Elastic modes",
             vec![
-                Block::Text("Of the structure as it is held. Loads recovered by these strains must stay below a third of the first.".into()),
+                Block::Text("For the structure as supported. Loads recovered by these strains must be below a third of the first frequency.".into()),
                 Block::table(&["mode", "Hz"], rows),
             ],
         ));
@@ -64,7 +65,7 @@ pub fn solution_page(
     Page::new(title, "Solution of the built-in solver", findings, sections)
 }
 
-/// Grids shown of a support: the rest stands in `result.json`.
+/// Grids shown of a support: `result.json` contains the others.
 const GRIDS_SHOWN: usize = 12;
 
 /// Resultants of what acts and of the reactions, and the grids that carry most.
@@ -94,7 +95,7 @@ fn reactions_section(all: &[Reactions], units: &Units) -> Section {
     Section::new(
         "Reactions",
         vec![
-            Block::Text("Of the supports, basic frame; resultants about its origin, then the grids that carry most.".into()),
+            Block::Text("Of the supports, basic frame; resultants about its origin, then the grids with the largest reactions.".into()),
             Block::table(&head, rows),
         ],
     )

@@ -38,7 +38,7 @@ pub fn identify_page(
     if !found.unidentifiable.is_empty() {
         let blocks = found.unidentifiable.iter().cloned().map(Block::Text);
         sections.push(Section::new(
-            "What this record can't tell",
+            "Quantities that this record does not determine",
             blocks.collect(),
         ));
     }
@@ -69,7 +69,7 @@ pub fn identify_page(
             &format!("difference, {force}"),
         ],
         &rows.collect::<Vec<Vec<String>>>(),
-        "By mass: inertia times acceleration. By springs: what springs and dampers pass on. Either may be wrong by their difference.",
+        "By mass: inertia times acceleration. By springs: force of springs and dampers. Either may be wrong by their difference.",
     ));
     sections.push(Section::new(
         "Spectra",
@@ -120,7 +120,7 @@ fn fit(found: &Identification) -> Vec<Block> {
         "channel",
         "left over, %",
         "judged on",
-        "left over where fitted, %",
+        "residual on the fitted record, %",
     ];
     let mut out = vec![Block::table(&head, rows.collect())];
     if let Some(m) = found.mass_closure {

@@ -74,7 +74,7 @@ pub fn restoring_section(curves: &[Curve], units: &UnitNames) -> Section {
     let stretch = format!("stretch, {}", units.length);
     let force = format!("force, {}", units.force);
     Section::new(
-        "Restoring force over stretch (measured: what the motion asks for)",
+        "Restoring force over stretch (measured: required by the motion)",
         vec![plots(
             curves,
             [&stretch, &force],

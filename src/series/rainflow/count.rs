@@ -192,7 +192,7 @@ impl<T> Rainflow<T> {
         self.open
     }
 
-    /// The latest sample, where it stands for no reversal yet.
+    /// The latest sample, if it is not a reversal yet.
     pub fn latest(&self) -> Option<Point> {
         self.latest
     }
@@ -251,7 +251,7 @@ impl Rainflow {
         self.push_tagged(point, &mut Both(|_| (), closed));
     }
 
-    /// Counts what is left as ASTM E1049 does: the last sample is a reversal, and every open range half a cycle.
+    /// Counts the residue by ASTM E1049: the last sample is a reversal, and every open range half a cycle.
     pub fn finish(self, counted: &mut impl FnMut(Cycle)) {
         for cycle in half_cycles(&self.residue(&mut |_| ())) {
             counted(cycle);

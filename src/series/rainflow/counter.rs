@@ -3,7 +3,7 @@
 use super::count::{Listener, Point, Rainflow, Reversal};
 use super::counts::Counts;
 use super::law::Law;
-use super::tally::{Extreme, Left, NOISE, Sums, Tally, class, extremes, risen};
+use super::tally::{Extreme, Left, NOISE, Sums, Tally, class, extremes, risen_borders};
 
 /// Samples handled together: their numbers stay in the processor's first cache.
 const BLOCK: usize = 512;
@@ -95,7 +95,7 @@ impl Counter {
     pub fn new(load: usize, n_loads: usize, noise: f64, width: f64, law: Law) -> Self {
         Self {
             load,
-            seed: mixed(load as u64 + 1),
+            seed: mix_bits(load as u64 + 1),
             noise: if noise.is_finite() { noise } else { 0.0 },
             plain: Rainflow::default(),
             noisy: [Rainflow::default(), Rainflow::default()],
@@ -353,7 +353,7 @@ fn rises(
     let mut began = latest.map(|p| class(p.value, width));
     let mut rise = |from: Option<i32>, to: i32| {
         if let Some(from) = from.filter(|from| to > *from) {
-            risen(from, to).for_each(|border| levels.add(border));
+            risen_borders(from, to).for_each(|border| levels.add(border));
         }
     };
     if !values.iter().all(|v| v.is_finite()) {
@@ -385,10 +385,10 @@ fn rises(
 }
 
 /// A number of mean 0 and variance 1 that belongs to a sample by its loads: the sum of four even ones, much like a normal one up to three standard
-/// deviations. The same wherever a record is cut, and whatever stands before it.
+/// deviations. The result does not depend on the cuts of a record or on the samples before it.
 #[inline(always)]
 fn white(mark: u64) -> f64 {
-    let bits = mixed(mark);
+    let bits = mix_bits(mark);
     let sum: u32 = (0..4).map(|i| (bits >> (16 * i)) as u32 & 0xffff).sum();
     // Four whole numbers of 0 to 65535: mean 2 x 65535, variance (65536^2 - 1) / 3.
     (f64::from(sum) - 131_070.0) / 37_837.227_237
@@ -396,7 +396,7 @@ fn white(mark: u64) -> f64 {
 
 /// A number without likeness to its neighbours (splitmix64).
 #[inline(always)]
-pub(super) fn mixed(x: u64) -> u64 {
+pub(super) fn mix_bits(x: u64) -> u64 {
     let mut z = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);

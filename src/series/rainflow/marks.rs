@@ -1,6 +1,6 @@
 //! Marks that identify a sample by its loads, wherever a record is cut.
 
-use super::counter::mixed;
+use super::counter::mix_bits;
 
 /// Parts of a load's noise that distinguish samples. Rounding of loads moves no sample into another part. Samples whose loads differ by
 /// noise are in different parts.
@@ -26,7 +26,7 @@ impl Marks {
         let per_noise = noise.iter().map(|n| if *n > 0.0 { FINE / n } else { 0.0 });
         Self {
             per_noise: per_noise.collect(),
-            keys: (0..noise.len() as u64).map(|l| mixed(!l) | 1).collect(),
+            keys: (0..noise.len() as u64).map(|l| mix_bits(!l) | 1).collect(),
         }
     }
 

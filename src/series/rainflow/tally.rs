@@ -158,7 +158,7 @@ impl Tally {
                 && let (Some(a), Some(b)) = (a.last(), b.first())
             {
                 let (from, to) = (class(a.point.value, width), class(b.point.value, width));
-                for border in risen(from, to) {
+                for border in risen_borders(from, to) {
                     *levels.entry(border).or_insert(0) += 1;
                 }
             }
@@ -270,7 +270,7 @@ pub(super) fn extremes(max: &mut Option<Extreme>, min: &mut Option<Extreme>, p: 
 }
 
 /// The borders that a rise from one class to another goes through, by the class above.
-pub(super) fn risen(from: i32, to: i32) -> impl Iterator<Item = i32> {
+pub(super) fn risen_borders(from: i32, to: i32) -> impl Iterator<Item = i32> {
     // A step through more borders than this is no load.
     (from.saturating_add(1)..=to).take(1 << 20)
 }

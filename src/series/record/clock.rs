@@ -13,7 +13,7 @@ const RATE: f64 = 1e-3;
 const MOST_ADDED: f64 = 100.0;
 const ALWAYS_ALLOWED: f64 = 3.6e6;
 
-/// Whether samples stand where they were stored.
+/// Whether samples are at their stored times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Evenness {
     /// Every sample is the stored one.
@@ -74,7 +74,7 @@ pub struct Clock {
     pub rows: usize,
     /// Even or resampled.
     pub evenness: Evenness,
-    /// The first change of rate: samples then stand at the fastest one, or between the two where these are less than a half apart.
+    /// The first change of rate: samples are then at the fastest one, or between the two where these are less than a half apart.
     pub change: Option<RateChange>,
     /// Samples missing in gaps.
     pub missing: usize,

@@ -62,7 +62,7 @@ impl Header {
         Self::plain(whole)
     }
 
-    /// A name, whatever stands in it.
+    /// A name with any content.
     fn plain(name: &str) -> Self {
         Self {
             whole: name.to_owned(),

@@ -3,7 +3,7 @@
 use super::clock::{Clock, Evenness, Steps, clock_of, counts};
 use super::column::Column;
 use super::reader::{BLOCK, Block, OtherChannel, Pick, RecordReader, Sink, Times};
-use super::timed::timed;
+use super::timed::with_times_in_seconds;
 use crate::series::error::SeriesError;
 use std::ops::ControlFlow;
 
@@ -37,7 +37,7 @@ impl Record {
         declared_hz: Option<f64>,
         time_unit_s: Option<f64>,
     ) -> Result<Self, SeriesError> {
-        let (reader, unit) = timed(reader, time_unit_s)?;
+        let (reader, unit) = with_times_in_seconds(reader, time_unit_s)?;
         let (mut clock, steps) = clock_of(&*reader, declared_hz)?;
         clock.unit = unit;
         let starts = match &steps {

@@ -41,7 +41,7 @@ pub fn open_record(bytes: Bytes, options: &Options) -> Result<Record, SeriesErro
 /// Every error of [`open_record`], and a file that can't be read.
 pub fn open_source(source: Source, options: &Options) -> Result<Record, SeriesError> {
     let unreadable = |e: std::io::Error| SeriesError::Broken {
-        wrong: format!("it can't be read ({e})"),
+        wrong: format!("it cannot be read ({e})"),
         remedy: "check the path and the disk",
     };
     if let Source::File(file) = &source {

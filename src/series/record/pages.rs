@@ -110,9 +110,9 @@ impl<P: PageReader> Pages<P> {
             self.check_texts(buf.get(values_at..).unwrap_or_default())?;
         }
         match encoding {
-            Encoding::RLE_DICTIONARY | Encoding::PLAIN_DICTIONARY if !self.has_dictionary => {
-                Err(damaged("a page of a dictionary, and no dictionary"))
-            }
+            Encoding::RLE_DICTIONARY | Encoding::PLAIN_DICTIONARY if !self.has_dictionary => Err(
+                damaged("a page needs a dictionary, and the column has none"),
+            ),
             Encoding::BYTE_STREAM_SPLIT => Ok(self.joined(page, values_at)),
             _ => Ok(page),
         }

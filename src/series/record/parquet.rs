@@ -7,7 +7,7 @@ use super::parquet_bytes::Whole;
 use super::reader::{BLOCK, Block, Pick, RecordReader, Sink, Times};
 use super::rows::{Shared, Strips};
 use super::source::Source;
-use super::strip::{Strip, broken, texts};
+use super::strip::{Strip, read_error, texts};
 use super::tile::Tile;
 use super::typed::{Meaning, Precision, TimeColumn, Typed};
 use crate::series::error::SeriesError;
@@ -73,7 +73,7 @@ impl Parquet {
         let whole = Arc::new(Whole::of(source));
         let metadata = ParquetMetaDataReader::new()
             .parse_and_finish(&*whole)
-            .map_err(broken)?;
+            .map_err(read_error)?;
         let schema = metadata.file_metadata().schema_descr();
         let notes = notes(metadata.file_metadata());
         let columns = schema.columns().iter().enumerate();
@@ -190,7 +190,7 @@ impl Parquet {
             }
             if out.len() != end {
                 let wrong = "a column ends before its row group";
-                return Err(broken(ParquetError::EOF(wrong.into())));
+                return Err(read_error(ParquetError::EOF(wrong.into())));
             }
         }
         Ok(Some(out))
@@ -198,11 +198,7 @@ impl Parquet {
 
     /// A reader of one column of a row group, its first `from` rows passed over.
     fn column(&self, group: usize, leaf: usize, from: usize) -> Result<ColumnReader, SeriesError> {
-        let cut = || {
-            broken(ParquetError::General(
-                "a column lies outside of the file".into(),
-            ))
-        };
+        let cut = || read_error(ParquetError::General("a column is outside the file".into()));
         let group = self.metadata.row_groups().get(group).ok_or_else(cut)?;
         let chunk = group.columns().get(leaf).ok_or_else(cut)?;
         let places = [
@@ -215,7 +211,7 @@ impl Parquet {
         }
         let rows = usize::try_from(group.num_rows()).map_err(|_| cut())?;
         let pages =
-            SerializedPageReader::new(self.whole.clone(), chunk, rows, None).map_err(broken)?;
+            SerializedPageReader::new(self.whole.clone(), chunk, rows, None).map_err(read_error)?;
         let descriptor = self.descriptor(leaf);
         let pages = Pages::of(pages, &descriptor);
         let mut reader = get_column_reader(descriptor, Box::new(pages));
@@ -382,7 +378,7 @@ fn type_words(c: &ColumnDescriptor) -> String {
         (_, Some(LogicalType::Date)) => "dates without a time of day".to_owned(),
         (_, Some(LogicalType::Decimal(_))) => "decimal numbers as bytes (DECIMAL)".to_owned(),
         (_, Some(LogicalType::String)) => "text".to_owned(),
-        (kind, _) => format!("values of the type {kind}, which are not read as numbers"),
+        (kind, _) => format!("values of the type {kind}, which are not supported as numbers"),
     }
 }
 
@@ -425,5 +421,5 @@ fn skip(reader: &mut ColumnReader, rows: usize) -> Result<(), SeriesError> {
         ColumnReader::FixedLenByteArrayColumnReader(r) => r.skip_records(rows),
         _ => Ok(rows),
     };
-    skipped.map(|_| ()).map_err(broken)
+    skipped.map(|_| ()).map_err(read_error)
 }

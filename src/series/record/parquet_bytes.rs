@@ -66,7 +66,7 @@ impl Whole {
             .source
             .size()
             .checked_sub(start)
-            .ok_or_else(|| ParquetError::EOF(format!("byte {start} lies beyond the end")))?;
+            .ok_or_else(|| ParquetError::EOF(format!("byte {start} is beyond the end")))?;
         let length = most.min(usize::try_from(left).unwrap_or(usize::MAX));
         if all && length < most {
             return Err(ParquetError::EOF("the file ends early".into()));

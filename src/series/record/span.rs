@@ -276,7 +276,7 @@ impl Walk {
         })
     }
 
-    /// Takes the step from `a` to `b`; `rows` stand before it.
+    /// Takes the step from `a` to `b`; `rows` precede it.
     pub(super) fn step(&mut self, a: f64, b: f64, rows: usize) {
         let step = b - a;
         let Scale {

@@ -83,7 +83,7 @@ impl Strip {
             Ok(())
         } else {
             let wrong = "a column ends before its row group";
-            Err(broken(ParquetError::EOF(wrong.into())))
+            Err(read_error(ParquetError::EOF(wrong.into())))
         }
     }
 
@@ -120,7 +120,7 @@ fn numbers<T: DataType, O: Clone>(
         values.clear();
         let known = if most > 0 { Some(&mut *levels) } else { None };
         let read = reader.read_records(ROWS.min(rows - out.len()), known, None, values);
-        let (records, _, _) = read.map_err(broken)?;
+        let (records, _, _) = read.map_err(read_error)?;
         if records == 0 {
             return Ok(());
         }
@@ -178,7 +178,7 @@ where
         let first = out.len();
         let known = if most > 0 { Some(&mut *levels) } else { None };
         let read = reader.read_records(ROWS.min(rows - first), known, None, out);
-        let (records, _, _) = read.map_err(broken)?;
+        let (records, _, _) = read.map_err(read_error)?;
         if records == 0 {
             return Ok(());
         }
@@ -219,9 +219,9 @@ pub(super) fn of_half(bits: u16) -> f64 {
 }
 
 /// Returns the error of a Parquet file, with its remedy.
-pub(super) fn broken(e: ParquetError) -> SeriesError {
+pub(super) fn read_error(e: ParquetError) -> SeriesError {
     SeriesError::Broken {
-        wrong: format!("it can't be read as Parquet ({e})"),
+        wrong: format!("it cannot be read as Parquet ({e})"),
         remedy: "write it again, columns of numbers and one `time` in seconds",
     }
 }

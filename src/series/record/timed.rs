@@ -25,7 +25,7 @@ struct Timed {
 ///
 /// # Errors
 /// Times that can't be read, and a file that states another unit than `time_unit_s`.
-pub(super) fn timed(
+pub(super) fn with_times_in_seconds(
     reader: Box<dyn RecordReader>,
     time_unit_s: Option<f64>,
 ) -> Result<(Box<dyn RecordReader>, Option<TimeUnit>), SeriesError> {
@@ -36,7 +36,7 @@ pub(super) fn timed(
             wrong: format!(
                 "the file states its times in units of {stated} s, the job states `time_unit` of {of_job} s"
             ),
-            remedy: "correct whichever is wrong: the unit of the column of times, or `time_unit` of the job",
+            remedy: "correct the wrong one: the unit of the column of times, or `time_unit` of the job",
         });
     }
     let (rounding_s, epoch_s, unit_stated) = match reader.times() {

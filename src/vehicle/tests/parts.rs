@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::finding::Severity;
-use crate::series::integrate::integrated;
+use crate::series::integrate::integrate_in_band;
 use crate::series::{Channel, SeriesError};
 use crate::vehicle::chassis::{LeafSeat, split_leaf};
 use crate::vehicle::checks::check_mass_closure;
@@ -44,7 +44,7 @@ pub(super) fn quarter(n: usize, seed: u64, values: [f64; 4]) -> Channels {
 fn quarter_at(rate: f64, n: usize, seed: u64, values: [f64; 4]) -> Channels {
     let [m_b, m_f, k, c] = values;
     let smooth = |x: &[f64], times| {
-        integrated(
+        integrate_in_band(
             x,
             rate,
             Band {
@@ -180,7 +180,7 @@ fn a_simulated_step_follows_the_closed_form() {
 fn body_motion_is_the_same_from_wheel_force_and_from_wheel_motion() {
     let q = task("front2", &["k_s", "c_s", "k3_s"], (0.7, 20.0));
     let values = [3000.0, 1000.0, 5e5, 9e3, 1e8];
-    let force: Vec<f64> = integrated(
+    let force: Vec<f64> = integrate_in_band(
         &noise(4000, 3),
         500.0,
         Band {

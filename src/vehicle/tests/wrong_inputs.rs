@@ -136,7 +136,7 @@ fn finds(task: &IdentifyTask, r: &Channels, code: &str, subject: &str, described
     assert!(named, "{subject}: {}: {}", wrong.subject, wrong.message);
     for text in found.unidentifiable.iter().chain([&wrong.message]) {
         assert!(!text.contains("NaN") && !text.contains("()"), "{text}");
-        assert!(!text.contains("Measure that force"), "{text}");
+        assert!(!text.contains("Measure this force"), "{text}");
     }
     assert!(found.fit.iter().all(|f| f.relative_rms.is_finite()));
 }
@@ -149,7 +149,7 @@ fn a_reversed_channel_is_found_in_quarter_half_and_full_trucks() {
         for channel in r.list.iter().step_by(every) {
             let name = &channel.name;
             let reversed = scaled(r, |c| c == name, -1.0);
-            let described = format!("`{name}` has the opposite sign");
+            let described = format!("`{name}` has reversed sign");
             finds(task, &reversed, "input-sign-reversed", name, &described);
         }
     }

@@ -48,16 +48,16 @@ impl Answer for Ballasted {
         let largest = |of: fn(&Reaction) -> f64| self.reactions.iter().map(of).fold(0.0, f64::max);
         let off = largest(|r| (r.after - r.measured).abs());
         let equal = match off <= 1e-6 * largest(|r| r.measured.abs()) {
-            true => "equals the measured one".to_owned(),
+            true => "equals the measured reaction".to_owned(),
             false => format!(
-                "is within {} {} of the measured one",
+                "is within {} {} of the measured reaction",
                 number(off),
                 force.name
             ),
         };
         let half = NORMAL_95 * self.together.mass_sigma;
         format!(
-            "{} of {} {} together: every reaction {equal}.",
+            "{} of {} {} in total: every reaction {equal}.",
             match self.masses.len() {
                 1 => "1 lumped mass".to_owned(),
                 n => format!("{n} lumped masses"),
@@ -128,7 +128,7 @@ pub(super) struct Sized<'a> {
 }
 
 /// The answer in report units, once it has its deck.
-pub(super) fn ballasted(
+pub(super) fn report_ballast(
     task: &Task,
     sized: &Sized,
 ) -> impl FnOnce(CompletedDeck) -> Ballasted + use<> {
@@ -245,7 +245,7 @@ pub(super) fn far_beyond(
             "ballast-beyond-model",
             run,
             format!(
-                "the masses weigh {} times what the model {weighs}: {} against {} {}",
+                "the masses weigh {} times the mass that the model {weighs}: {} against {} {}",
                 number(times),
                 in_words(hung),
                 in_words(own),
@@ -289,7 +289,7 @@ pub(super) fn judge(
                 Severity::Error,
                 "wheel-lifts-off",
                 &job.loads[*l].name,
-                "the completed model pulls at the floor here: the wheel would lift off, and the reactions do not hold",
+                "the completed model pulls at the floor here: the wheel would lift off, and the reactions are not valid",
                 "check masses and stations, or the measured reactions",
             ));
         }
@@ -302,11 +302,11 @@ pub(super) fn judge(
                 "reactions-not-matched",
                 name,
                 format!(
-                    "no {} masses in the region bring every reaction of run `{run}` closer: spring rates, the ground or friction share the \
-                     weight otherwise than the model does",
+                    "no {} masses in the region reduce the difference of every reaction of run `{run}`: spring rates, the ground or \
+                     friction distribute the weight differently than the model",
                     spec.masses
                 ),
-                "measure on level ground after rolling; check how the suspension shares load between axles and sides",
+                "measure on level ground after rolling; check how the suspension distributes load between axles and sides",
             )
             .with_numbers(worst, MATCHED),
         );
@@ -338,12 +338,12 @@ pub(super) fn judge(
                 "masses-not-separable",
                 "ballast",
                 format!(
-                    "the reactions fix {} of the {numbers} numbers: the total and where its centre lies, not how it is split. With the others \
-                     adjusted, equally good are {}",
+                    "the reactions determine {} of the {numbers} numbers: the total mass and its centre, not its distribution. With the \
+                     others adjusted, equally good are {}",
                     fit.fixed,
                     ranges.join("; ")
                 ),
-                "state where the heavy parts are (a smaller `region`, a `max_mass`), or ask for fewer masses",
+                "state the position of the heavy parts (a smaller `region`, a `max_mass`), or ask for fewer masses",
             )
             .with_numbers(fit.fixed as f64, numbers as f64),
         );

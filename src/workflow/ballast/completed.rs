@@ -78,7 +78,7 @@ pub(super) fn cards(
 }
 
 /// Reads the completed deck back, solves it again and returns its reactions.
-pub(super) fn after(
+pub(super) fn solve_completed(
     work: &mut Work,
     task: &Task,
     edited: &[(String, Vec<u8>)],
@@ -109,7 +109,7 @@ pub(super) fn after(
                 .grid_ix(task.read.model.grids.get(g.us())?.id)
         })
         .collect();
-    let grids = grids.ok_or_else(|| program("a wheel is gone".into()))?;
+    let grids = grids.ok_or_else(|| program("a wheel is missing".into()))?;
     let standing = solve_standing(&completed.model, task.wheels.axis, &grids, &[], None)
         .map_err(|e| floor_fault(task.job, &e))?;
     Ok(standing.under_weight(&completed.model, task.gravity))

@@ -92,7 +92,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
     edits.insert_cards(&read.deck, &text);
     let edited = write_edited(&read.deck, &edits);
     let after = work.stage("solve completed deck", |s| {
-        completed::after(s, &task, &edited)
+        completed::solve_completed(s, &task, &edited)
     })?;
     answer::judge(&mut work, &task, &run, &measured, &after, &fit, &spec);
     work.findings
@@ -107,7 +107,7 @@ pub fn ballast(job: &Job, cx: &Context) -> Result<Outcome<Ballasted>, Faults> {
         cards: &cards,
         height,
     };
-    let answer = answer::ballasted(&task, &sized);
+    let answer = answer::report_ballast(&task, &sized);
     let deck = CompletedDeck {
         deck: read.deck,
         edited,
@@ -134,7 +134,7 @@ fn asked(job: &Job) -> Result<&Ballast, Faults> {
         missing(
             job,
             "ballast",
-            "state what is looked for: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
+            "state the unknown masses: [ballast] masses = 2, region = [[x0, x1], [y0, y1]]",
         )
     })
 }
@@ -153,7 +153,7 @@ fn read_asked(work: &mut Work, job: &Job) -> Result<DeckModel, Faults> {
         return Err(Faults::from(Fault::of(
             &*job.file,
             "model.deck",
-            "an OP2 is no deck that could be completed",
+            "an OP2 is not a deck, and cannot be completed",
             "name the deck",
         )));
     }
@@ -172,11 +172,11 @@ fn largest(task: &Task, run: &str, lacking: f64) -> Result<f64, Faults> {
             ballast.line,
             "ballast",
             format!(
-                "the model already weighs {} {} more than run `{run}` measured",
+                "the model already weighs {} {} more than the measured weight of run `{run}`",
                 number(-lacking * force(job)),
                 job.report_units.force.name
             ),
-            "take masses out of the deck, or check the units of the runs file",
+            "remove masses from the deck, or check the units of the runs file",
         )));
     }
     Ok(largest)
@@ -209,8 +209,8 @@ fn size(
             &*task.job.file,
             task.ballast.line,
             "ballast.region",
-            "the grids near part of the region lie on a line and can't hold a mass",
-            "name properties of both rails in `properties`, or narrow the region",
+            "the grids near part of the region are on a line and cannot carry a mass",
+            "name properties of both rails in `properties`, or reduce the region",
         )));
     }
     Ok(fit)
@@ -237,7 +237,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
             &*job.file,
             task.ballast.line,
             "ballast.run",
-            format!("`{}` has no such run", runs.file.given),
+            format!("`{}` does not contain this run", runs.file.given),
             "name a run of the runs file",
         )));
     };
@@ -253,7 +253,7 @@ fn measured(work: &mut Work, task: &Task) -> Result<(String, Vec<f64>, Vec<f64>)
                 row.line,
                 name.clone(),
                 format!("run `{}` has no reaction of `{name}`", row.run),
-                "measure every wheel, or take its load out of the job",
+                "measure every wheel, or remove its load from the job",
             )),
         }
     }

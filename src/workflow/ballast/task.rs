@@ -5,7 +5,7 @@ use crate::job::{Ballast, Job};
 use crate::measured::wheels::Wheels;
 use crate::strain_chain::deck::DeckModel;
 use crate::units::factor;
-use crate::workflow::cases::relocated;
+use crate::workflow::cases::relocate_deck;
 use nastran::bdf::Deck;
 use std::path::Path;
 
@@ -21,7 +21,7 @@ pub struct CompletedDeck {
 impl CompletedDeck {
     /// Name and bytes of every file of the completed deck, its INCLUDEs as they are found from `folder`; the first is `completed.bdf`.
     pub fn files(&self, folder: &Path) -> Vec<(String, Vec<u8>)> {
-        relocated(&self.deck, self.edited.clone(), folder, DECK)
+        relocate_deck(&self.deck, self.edited.clone(), folder, DECK)
     }
 }
 

@@ -102,7 +102,7 @@ fn check_rows(
                     *line,
                     "check",
                     format!("`{word}`, expected true or false"),
-                    "write true for a run that is recovered and compared alone, else false",
+                    "write true for a run that is recovered and only compared, else false",
                 )),
             }
         }
@@ -114,7 +114,7 @@ fn check_rows(
             job.calibration.line,
             "calibration.check",
             format!("run `{run}` is a calibration run and a check run"),
-            "take it out of `[calibration] runs`, or out of the check runs",
+            "remove it from `[calibration] runs`, or from the check runs",
         ));
     }
     out

@@ -3,7 +3,7 @@
 use super::outcome::CheckLoad;
 use crate::calibrate::CheckedRun;
 use crate::estimate::{NORMAL_95, TOO_FEW, chance_of_so_few};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::units::number;
 use crate::workflow::recover::Listed;
 
@@ -13,7 +13,7 @@ const SELDOM: f64 = 0.05;
 const FAR: f64 = 2.0;
 
 /// Loads of the check runs, and combinations, report units. The interval of the comparison includes the error of the applied load.
-pub(super) fn compared(checked: &[CheckedRun], listed: &Listed) -> Vec<CheckLoad> {
+pub(super) fn compare_check_loads(checked: &[CheckedRun], listed: &Listed) -> Vec<CheckLoad> {
     let of_run = |c: &CheckedRun| -> Vec<CheckLoad> {
         let k = c.run.loads.mean.len();
         let mut estimate = c.estimate.clone();
@@ -72,9 +72,10 @@ pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding>
         Finding::new(
             severity,
             "check-loads-outside",
-            few(&names),
+            list_few(&names),
             format!(
-                "{inside} of {of} check loads are within their 95 % intervals. Farthest is `{}` in run `{}`: {} {} applied, {} ± {} recovered",
+                "{inside} of {of} check loads are within their 95 % intervals. The largest deviation is that of `{}` in run `{}`: {} {} \
+                 applied, {} ± {} recovered",
                 worst.load,
                 worst.run,
                 number(worst.applied),
@@ -82,7 +83,7 @@ pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding>
                 number(worst.recovered),
                 number(0.5 * (worst.high - worst.low))
             ),
-            "check load, place and zero of these runs; if they are right, calibrate with runs like them",
+            "check load, place and zero of these runs; if they are right, calibrate with similar runs",
         )
         .with_numbers(most, 1.0),
     )

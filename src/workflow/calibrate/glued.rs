@@ -2,7 +2,7 @@
 
 use super::outcome::{AsGluedSummary, CalibratedGauge, GlueSummary, GluedGauge};
 use crate::calibrate::{AsGlued, GlueTolerance, MoveKind, OffDrawing};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::{CornerRows, Drawn, Gauge, Offset, centre, reading};
 use crate::host::fault::{Fault, Faults};
 use crate::job::{CalibrationKeys, Job};
@@ -49,8 +49,8 @@ impl<'a> Sites<'a> {
                     &*job.file,
                     job.calibration.line,
                     "calibration.position_tolerance",
-                    "gauges can be moved and turned on a model alone, and S is given",
-                    "leave position_tolerance and angle_tolerance_deg out, or give a [model] and the gauges on it",
+                    "gauges can be moved and turned only on a model, and the job gives S",
+                    "delete position_tolerance and angle_tolerance_deg, or give a [model] and the gauges on it",
                 )
                 .into());
             }
@@ -228,7 +228,7 @@ pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
             .collect();
         count += names.len();
         if !names.is_empty() {
-            parts.push(format!("{what} of {}", few(&names)));
+            parts.push(format!("{what} of {}", list_few(&names)));
         }
     }
     (count > 0).then(|| {
@@ -237,10 +237,10 @@ pub(super) fn untold(gauges: &[CalibratedGauge]) -> Option<Finding> {
             "as-glued-untold",
             "calibration",
             format!(
-                "the runs leave more than half of the stated variance open: {}",
+                "the runs reduce the stated variance of these values by less than half: {}",
                 parts.join("; ")
             ),
-            "push where the strain under these gauges changes most over their length, or measure their place",
+            "apply loads for which the strain under these gauges changes most over their length, or measure their position",
         )
         .with_numbers(count as f64, 0.0)
     })

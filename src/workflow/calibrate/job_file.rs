@@ -9,8 +9,8 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// The job as it stands in folder `out`: everything kept, file names found from there, S and its covariance from `calibrate`. The model's
-/// error, which is in the covariance now, is no longer added.
+/// The job for folder `out`: everything kept, file names found from there, S and its covariance from `calibrate`. The model's error, which is in the
+/// covariance now, is no longer added.
 ///
 /// # Errors
 /// A job that is no TOML, which is a mistake of the program.

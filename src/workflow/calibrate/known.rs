@@ -3,9 +3,9 @@
 use super::asked::Asked;
 use super::payloads::{Payloads, add_columns};
 use crate::calibrate::KnownLoads;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::table::{Table, read_table};
 use crate::job::{HoldOut, Job, Measured, Runs};
@@ -131,7 +131,7 @@ pub(super) fn read_known(
                 let wrong = format!(
                     "the loads of run `{run}` are not known, and it is a calibration or a check run"
                 );
-                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 where there is none), or drop it from `[calibration] runs` or `check`"));
+                faults.push(Fault::at(&*table.file, line, "run", wrong, "fill in its loads (0 if a load did not act), or remove it from `[calibration] runs` or `check`"));
             } else if stated
                 .iter()
                 .any(|s| matches!(cell(&table, at, s), Ok(Some(_))))
@@ -206,15 +206,15 @@ fn without_strain(
     (!runs.is_empty()).then(|| {
         let wrong = format!(
             "the strain file has no row for {} with known loads in `{}`: {}",
-            counted(runs.len(), "run"),
+            count_of(runs.len(), "run"),
             table.file,
-            few(&runs)
+            list_few(&runs)
         );
         let remedy = "give the runs the same names in both files, or remove these rows";
         Finding::new(
             Severity::Warning,
             "run-without-record",
-            few(&runs),
+            list_few(&runs),
             wrong,
             remedy,
         )
@@ -234,9 +234,9 @@ fn partly_known(file: &str, runs: &[&String]) -> Option<Finding> {
         "run-partly-known",
         file,
         format!(
-            "run `{first}`{others}: some loads are known and others blank; such runs are left out"
+            "run `{first}`{others}: some loads are known and others blank; these runs are left out"
         ),
-        "fill in what is blank (0 where nothing acted), with its sd where it is estimated, or state a sum in [[combination]]",
+        "fill in the blank loads (0 if a load did not act), with the sd of an estimate, or state a sum in [[combination]]",
     ))
 }
 
@@ -248,7 +248,7 @@ fn nothing_known(table: &Table, loads: &[Load]) -> Fault {
         "run",
         "no run has both strain and known loads",
         format!(
-            "name its columns after the loads ({}), or map them in [runs] columns; blank: unknown, 0: known to be zero",
+            "name its columns after the loads ({}), or map them in [runs] columns. A blank is unknown, 0 is known to be zero",
             names.join(", ")
         ),
     )
@@ -273,7 +273,7 @@ fn named_twice(table: &Table, key: usize) -> FaultList {
                 row.0,
                 "run",
                 wrong,
-                "give every run its own name",
+                "give every run a separate name",
             )
         })
         .collect()
@@ -445,10 +445,10 @@ fn loads_of(
                 line,
                 &*s.name,
                 format!(
-                    "`{}` is {said}, and the loads of this run make {made}",
+                    "`{}` is {said}, and the loads of this run give {made}",
                     s.name
                 ),
-                "correct the one or the other, or state how well they are known in columns `<load>_sd`",
+                "correct one of the two, or state their standard deviations in columns `<load>_sd`",
             ));
         }
     }

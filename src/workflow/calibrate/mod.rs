@@ -31,7 +31,7 @@ use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::{Prepared, given_as_asked, prepare, stated_noise};
 use crate::units::MICROSTRAIN;
 use crate::workflow::reconcile::redirect::text_of;
-use crate::workflow::recover::listed;
+use crate::workflow::recover::list_load_columns;
 
 /// Estimates S of the gauges of a job from runs with known loads. S of a model or of a table, if the job has one, is the prior.
 ///
@@ -75,7 +75,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let zeroed = work.stage("read strain", |w| strain_of_runs(w, job, measured))?;
     let (prepared, prior) = prior(&mut work, job, &zeroed.table)?;
     let s = &prepared.sensitivity;
-    let listed = listed(job, s)?;
+    let listed = list_load_columns(job, s)?;
     let origin = payload_place(job, &prepared);
     let (known, strain) = read(&mut work, job, (measured, runs), &zeroed, s, origin)?;
     let names = zeroed.runs()?;
@@ -117,8 +117,10 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
             ))
         })?;
     work.findings.extend(found.findings.iter().cloned());
-    work.findings.extend(said::unchecked(&task, &listed));
-    work.findings.extend(said::uneven(&task, &found, &listed));
+    work.findings
+        .extend(said::report_unchecked_loads(&task, &listed));
+    work.findings
+        .extend(said::report_uneven_loads(&task, &found, &listed));
     let units = &listed.units[..task.loads.len()];
     let next = work.stage("next run", |_| said::next_run(&task, &found, units));
     let dependence = known
@@ -134,7 +136,7 @@ pub fn calibrate(job: &Job, cx: &Context) -> Result<Outcome<Calibrated>, Faults>
     let mut calibration = said::words(&task, &found, &listed, next, dependence.flatten());
     let checks: Vec<KnownRun> = known.checks.iter().map(as_run).collect();
     let checked = recover_checks(&found, task.noise, &checks);
-    calibration.checks = checks::compared(&checked, &listed);
+    calibration.checks = checks::compare_check_loads(&checked, &listed);
     work.findings.extend(checks::finding(
         &calibration.checks,
         &listed.names[..task.loads.len()],
@@ -166,8 +168,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
             &*job.file,
             job.calibration.line,
             "calibration.scale_sd",
-            "an error that all known loads share is not carried together with terms = \"intercept\"",
-            "leave out one of the two",
+            "an error common to all known loads is not available together with terms = \"intercept\"",
+            "delete one of the two",
         )
         .into()),
         (Terms::Intercept, false) => Ok(CommonZero::Sought),
@@ -175,8 +177,8 @@ fn common_zero(job: &Job, has_prior: bool) -> Result<CommonZero, Faults> {
             &*job.file,
             job.calibration.line,
             "calibration.terms",
-            "`intercept` needs an S that is learnt from the runs alone, and the job gives one by [model] or [sensitivity]",
-            "write terms = \"linear\" and take the zero of the runs from a run without load ([measured] zero or zero_runs), or leave [model] out",
+            "`intercept` needs an S that comes from the runs alone, and the job gives a [model] or a [sensitivity]",
+            "write terms = \"linear\" and take the zero from a run without load ([measured] zero or zero_runs), or delete [model]",
         )
         .into()),
     }
@@ -200,7 +202,7 @@ pub(super) fn look(work: &mut Work, job: &Job) -> Result<(), Faults> {
         Some(_) => given_as_asked(work, job)?,
         None => stated_alone(job, &zeroed.table),
     };
-    listed(job, &s)?;
+    list_load_columns(job, &s)?;
     read(work, job, (measured, runs), &zeroed, &s, [0.0; 2]).map(|_| ())
 }
 
@@ -299,7 +301,7 @@ fn prior(
         return Err(Fault::of(
             &*job.file,
             "load",
-            "the job names no loads",
+            "the job contains no loads",
             "add [[load]] with a `name` for each load that acts",
         )
         .into());

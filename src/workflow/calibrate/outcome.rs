@@ -4,7 +4,7 @@ use crate::calibrate::Calibration;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::{Gauge, GaugeSpec};
 use crate::host::outcome::Answer;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::Job;
 use crate::linalg::Matrix;
 use crate::model::Vec3;
@@ -48,10 +48,10 @@ impl Answer for Calibrated {
             _ => "without a model",
         };
         format!(
-            "Sensitivities of {} to {} from {} {prior}; the 95 % intervals contain {} of {} runs left out one by one.",
-            counted(self.sensitivity.gauges.len(), "gauge"),
-            counted(self.sensitivity.loads.len(), "load"),
-            counted(c.runs, "run"),
+            "Sensitivities of {} to {} from {} {prior}. In the leave-one-out test the 95 % intervals contain {} of {} runs.",
+            count_of(self.sensitivity.gauges.len(), "gauge"),
+            count_of(self.sensitivity.loads.len(), "load"),
+            count_of(c.runs, "run"),
             c.coverage.held,
             c.coverage.of
         )

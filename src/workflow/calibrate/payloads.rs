@@ -199,9 +199,9 @@ impl Payloads {
             &*table.file,
             line,
             self.column,
-            "a run of known loads carries a payload, and no load of the job is its",
-            "add its weight as a load: [[load]] name = \"payload\", and where its place varies \"payload.MY\" (weight times x) and \"payload.MX\" \
-             (less weight times y); with a model, loads at `[payload] grid`. Known mass and place make their columns",
+            "a run of known loads carries a payload, and the job has no load for it",
+            "add its weight as a load: [[load]] name = \"payload\". If its place varies, add \"payload.MY\" (weight times x) and \
+             \"payload.MX\" (minus weight times y). With a model, the loads act at `[payload] grid`. Known mass and place give the columns",
         ))
     }
 }

@@ -17,7 +17,7 @@ impl DependenceSummary {
     pub(super) fn finding(&self) -> Option<Finding> {
         (self.chance < SIGNIFICANT).then(|| {
             let message = format!(
-                "the strain of the runs depends on `{}`: loads come out {:+.2} % per unit of it (+- {:.2}, chance {:.1e})",
+                "the strain of the runs depends on `{}`: recovered loads change by {:+.2} % per unit of it (± {:.2}, probability {:.1e} by chance)",
                 self.column,
                 100.0 * self.slope_rel,
                 100.0 * student_95(self.dof) * self.sigma,
@@ -28,7 +28,7 @@ impl DependenceSummary {
                 "calibration-depends-on-column",
                 &self.column,
                 message,
-                "calibrate with the runs of one setting, or keep the width that the scatter gives",
+                "calibrate with the runs of one setting, or accept the width from the scatter",
             )
             .with_numbers(self.chance, SIGNIFICANT)
         })
@@ -36,7 +36,7 @@ impl DependenceSummary {
 }
 
 /// The largest known load of each unit, where there is no model that its strain could be held against.
-pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
+pub(super) fn report_unchecked_loads(task: &Task, listed: &Listed) -> Option<Finding> {
     if task.model.is_some() {
         return None;
     }
@@ -62,7 +62,7 @@ pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
     let most = largest.values().map(|l| l.0).fold(0.0, f64::max);
     let each: Vec<String> = largest.into_values().map(|l| l.1).collect();
     let message = format!(
-        "no model says how much strain the known loads make: nothing checks their unit. The largest is {}",
+        "the job has no model that predicts the strain of the known loads, and their unit is not checked. The largest is {}",
         each.join("; ")
     );
     (!each.is_empty()).then(|| {
@@ -71,7 +71,7 @@ pub(super) fn unchecked(task: &Task, listed: &Listed) -> Option<Finding> {
             "known-loads-unchecked",
             "runs",
             message,
-            "look whether that is the load that was applied, and the unit it is read in ([runs] units)",
+            "check whether this load was applied, and its unit ([runs] units)",
         )
         .with_numbers(most, 0.0)
     })
@@ -89,9 +89,13 @@ fn largest(task: &Task, l: usize) -> f64 {
     known.fold(0.0, f64::max)
 }
 
-/// Returns a finding on a load that makes far less strain in the runs than another load of its unit, although this strain exceeds the noise. Returns
-/// `None` for a job with a model.
-pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Option<Finding> {
+/// Returns a finding on a load with far less strain than another load of its unit, although this strain exceeds the noise. Returns `None` for a job
+/// with a model.
+pub(super) fn report_uneven_loads(
+    task: &Task,
+    found: &Calibration,
+    listed: &Listed,
+) -> Option<Finding> {
     if task.model.is_some() {
         return None;
     }
@@ -118,12 +122,12 @@ pub(super) fn uneven(task: &Task, found: &Calibration, listed: &Listed) -> Optio
             "known-loads-uneven",
             listed.names[a].clone(),
             format!(
-                "by the runs {} of it makes {} times less strain than of `{}`: is it noted in the same unit?",
+                "one {} of this load causes {} times less strain than one of `{}`: the recorded units may differ",
                 listed.units[a].name,
                 number(times),
                 listed.names[most]
             ),
-            "look at the known loads of both in the runs file, and at [runs] units",
+            "check the known loads of both in the runs file, and [runs] units",
         )
         .with_numbers(times, UNEVEN)
     })

@@ -18,7 +18,7 @@ struct Statement {
 }
 
 /// Files to write into `folder`: name and bytes, the deck first and as `<stem>.bdf`. `edited` are the deck's files in its order.
-pub(crate) fn relocated(
+pub(crate) fn relocate_deck(
     deck: &Deck,
     edited: Vec<(String, Vec<u8>)>,
     folder: &Path,
@@ -130,7 +130,7 @@ fn is_fixed(name: &str) -> bool {
     name.starts_with(['/', '\\', '$', '%']) || name.contains(':')
 }
 
-/// Paths that a name may stand for.
+/// Possible paths of a name.
 fn names(name: &str, first: &str, includer: &str) -> Vec<PathBuf> {
     let symbol = name
         .split_once(':')

@@ -3,14 +3,14 @@
 mod includes;
 
 pub(crate) use includes::from_folder;
-pub(crate) use includes::relocated;
+pub(crate) use includes::relocate_deck;
 
 use crate::fe::{Relief, Support, determinate_dofs};
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{Component, Job, JobLoad, LoadActs};
 use crate::model::{Grid, Model};
@@ -77,7 +77,7 @@ impl Answer for UnitLoadDeck {
     fn verdict(&self) -> String {
         format!(
             "{} written for Nastran; the structure is {}.",
-            counted(self.subcases.len(), "unit-load subcase"),
+            count_of(self.subcases.len(), "unit-load subcase"),
             self.support
         )
     }
@@ -103,7 +103,7 @@ pub fn edited_files(
     folder: &Path,
     stem: &str,
 ) -> Vec<(String, Vec<u8>)> {
-    includes::relocated(deck, write_edited(deck, edits), folder, stem)
+    includes::relocate_deck(deck, write_edited(deck, edits), folder, stem)
 }
 
 /// Makes the deck of a job with one unit-load subcase for each load, ready for Nastran. All other lines of the deck stay unchanged.
@@ -154,7 +154,7 @@ pub fn cases(job: &Job, cx: &Context) -> Result<Outcome<UnitLoadDeck>, Faults> {
     if read.deck.sources.is_empty() {
         return Err(fault(
             "model.deck",
-            "an OP2 is no deck that could be run again",
+            "an OP2 is not a deck, and cannot be run again",
             "name the deck",
         ));
     }
@@ -261,7 +261,7 @@ fn edits_of(
             Severity::Info,
             "suport-dropped",
             "SUPORT",
-            "the written deck has no SUPORT entries: neither its inertia relief nor a held structure needs them",
+            "the written deck has no SUPORT entries: neither its inertia relief nor a supported structure needs them",
             "",
         ));
     }
@@ -376,7 +376,7 @@ fn select_structure(
             "several-mpc-sets",
             "MPC",
             format!(
-                "the deck's subcases select several MPC sets: the unit loads take {}",
+                "the deck's subcases select several MPC sets: the unit loads use {}",
                 kept.first().copied().unwrap_or_default()
             ),
             "correct MPC in unit_loads.bdf if another set applies while gauges are read",

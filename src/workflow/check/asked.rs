@@ -39,7 +39,7 @@ pub(super) fn ask(work: &mut Work, job: &Job, grids: usize) -> Result<(), Faults
         _ if placed && job.candidates.line == 0 && job.placement.line == 0 => {
             read_fields(work, job, WantedAt::Anywhere).map(|_| ())
         }
-        _ if placed || recovers(job) => sensitivity::prepared(work, job).map(|_| ()),
+        _ if placed || recovers(job) => sensitivity::prepare_sensitivity(work, job).map(|_| ()),
         _ => prepare(work, job).map(|_| ()),
     }
 }
@@ -55,14 +55,16 @@ pub(super) fn recovers(job: &Job) -> bool {
 /// Returns the finding that the deck is not solved, with the checks that only the commands make.
 fn not_asked(job: &Job, grids: usize) -> Finding {
     let readings = match job.measured {
-        Some(_) => " and what the readings come to",
+        Some(_) => ", and the loads from the readings",
         None => "",
     };
     Finding::new(
         Severity::Info,
         "solution-not-checked",
         job.model.as_ref().map_or("model", |m| &m.deck.given),
-        format!("the deck is not solved here: whether it can be, where gauges may go{readings} is not checked"),
+        format!(
+            "the deck is not solved here. Not checked: the solution, the places of gauges{readings}"
+        ),
         "run `sensitivity` or `place` on the job: later commands use the stored solution",
     )
     .with_numbers(grids as f64, MOST_GRIDS as f64)

@@ -5,7 +5,7 @@ use super::records::RecordEntry;
 use super::results::ResultEntry;
 use crate::host::fault::{Fault, FaultList};
 use crate::host::outcome::{Answer, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::Candidates;
 use serde::{Serialize, Serializer};
 
@@ -44,7 +44,7 @@ impl Answer for Checked {
 
     fn verdict(&self) -> String {
         let files = self.decks.len() + self.results.len() + self.records.len() + self.jobs.len();
-        format!("{} read, no faults found.", counted(files, "file"))
+        format!("{} read, no faults found.", count_of(files, "file"))
     }
 
     fn faults(&self) -> &[Fault] {

@@ -3,7 +3,7 @@
 use crate::fe::{check_shapes, contradictions, held_dependents};
 use crate::finding::Finding;
 use crate::host::fault::FaultList;
-use crate::host::words::{counted, short};
+use crate::host::words::{count_of, short};
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::{Model, UnsupportedCard};
@@ -133,7 +133,9 @@ fn without_influence(
     for (name, n) in cards {
         let (reason, n) = match effect_of_card(name) {
             Some(Effect::None(reason)) => (reason, n - acting(name).min(*n)),
-            Some(Effect::ActsWith(_)) => ("acts on nothing in this deck", n - acting(name).min(*n)),
+            Some(Effect::ActsWith(_)) => {
+                ("acts on no element of this deck", n - acting(name).min(*n))
+            }
             _ => continue,
         };
         if n > 0 {
@@ -204,7 +206,7 @@ impl DeckEntry {
         // The mass must be finite in kilogrammes, too.
         let scale = self.shown.map_or(1.0, |u| u.system.mass_kg());
         if !(self.mass * scale).is_finite() || self.cg.iter().any(|v| !v.is_finite()) {
-            return "more than numbers can be".to_owned();
+            return "beyond the range of numbers".to_owned();
         }
         let wtmass = match self.wtmass == 1.0 {
             true => String::new(),
@@ -269,9 +271,9 @@ impl DeckEntry {
         format!(
             "deck `{}`: {}, {}, {}{solution}\n  mass {}\n  cards: {}\n{}  faults: {}",
             self.path,
-            counted(self.grids, "grid"),
-            counted(self.elements, "element"),
-            counted(self.subcases.len(), "subcase"),
+            count_of(self.grids, "grid"),
+            count_of(self.elements, "element"),
+            count_of(self.subcases.len(), "subcase"),
             self.weight(),
             cards.join(", "),
             self.idle(),

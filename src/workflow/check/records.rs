@@ -1,6 +1,6 @@
 //! Records and tables in `result.json` and in the text for people.
 
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::Faults;
 use crate::host::files::as_table;
 use crate::host::words::short;
@@ -111,7 +111,7 @@ impl RecordEntry {
         let is_whole = self.other_channels.is_empty();
         let names = self.channels.iter();
         let listed = match is_whole {
-            true => few(&names.map(ChannelEntry::text).collect::<Vec<_>>()),
+            true => list_few(&names.map(ChannelEntry::text).collect::<Vec<_>>()),
             false => by_group(names.map(|c| (c.group.clone(), c.text()))).join(", "),
         };
         let n = self.channels.len();
@@ -135,7 +135,7 @@ impl RecordEntry {
         let others = others.map(|c| (c.channel.group.clone(), c.text()));
         let mut lines = vec![line];
         for group in by_group(others) {
-            lines.push(format!("  not read with them: {group}"));
+            lines.push(format!("  in another group and not read: {group}"));
         }
         let plain = lines.iter().map(|l| l.replace(char::is_control, " "));
         plain.collect::<Vec<String>>().join("\n")
@@ -245,8 +245,8 @@ mod tests {
         assert_eq!(
             lines[1..],
             [
-                "  not read with them: group `slow`: battery, 3 samples at 1 Hz; cabin, 3 samples at 1 Hz",
-                "  not read with them: group `notes`: remark, 1 sample",
+                "  in another group and not read: group `slow`: battery, 3 samples at 1 Hz; cabin, 3 samples at 1 Hz",
+                "  in another group and not read: group `notes`: remark, 1 sample",
             ]
         );
     }

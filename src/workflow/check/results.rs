@@ -153,7 +153,7 @@ fn describe(
         .collect();
     for (why, n) in undecoded {
         let message = format!(
-            "{n} block{} can't be decoded: {why}",
+            "{n} block{} cannot be decoded: {why}",
             if n == 1 { "" } else { "s" }
         );
         findings.push(Finding::new(

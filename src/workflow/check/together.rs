@@ -3,7 +3,7 @@
 use super::checked::Checked;
 use super::decks::DeckEntry;
 use crate::fe::deck_result_consistency::{Supports, check_consistency, check_coordinates};
-use crate::fe::from_results::repeated;
+use crate::fe::from_results::find_repeated_results;
 use crate::finding::Finding;
 use crate::host::work::Work;
 use crate::strain_chain::deck::model_of_op2;
@@ -21,13 +21,13 @@ fn ambiguous(found: &Checked) -> Vec<Finding> {
         let read =
             read.filter_map(|r| Some((r.path(), ResultsFile::read(&r.bytes, r.path()).ok()?)));
         let (names, files): (Vec<&str>, Vec<ResultsFile>) = read.unzip();
-        let twice = repeated(&files.iter().collect::<Vec<_>>(), None);
+        let twice = find_repeated_results(&files.iter().collect::<Vec<_>>(), None);
         findings.extend(twice.iter().map(|r| r.finding(&names)));
     }
     findings
 }
 
-/// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry stands for it.
+/// Findings of every result file against the deck. Where no deck has a mesh, the first OP2 with geometry replaces it.
 pub(super) fn compare(work: &mut Work, found: &mut Checked) {
     work.findings.extend(ambiguous(found));
     let has_mesh = |d: &DeckEntry| d.model.as_ref().is_some_and(|m| !m.grids.is_empty());

@@ -2,7 +2,7 @@
 
 use super::day::FileHead;
 use super::name::Shard;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
@@ -51,20 +51,20 @@ impl Asked {
             .collect();
         let in_parts = match of {
             0 | 1 => String::new(),
-            _ => format!(" (shard {})", few(&parts)),
+            _ => format!(" (shard {})", list_few(&parts)),
         };
         (!missing.is_empty()).then(|| {
             Finding::new(
                 Severity::Error,
                 "fleet-records-missing",
-                few(&paths),
+                list_few(&paths),
                 format!(
-                    "of {} records that were to be done {} have no kept result{in_parts}: their hours and damage are not in this merge",
+                    "of {} requested records {} have no stored result{in_parts}: their hours and damage are not in this merge",
                     self.files.len(),
                     missing.len()
                 ),
                 format!(
-                    "run them into this folder; where they are no longer wanted, remove `{}`",
+                    "run them into this folder; if they are no longer wanted, delete `{}`",
                     self.place
                 ),
             )

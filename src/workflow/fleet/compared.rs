@@ -137,7 +137,7 @@ impl Compared {
             absent.push((kind.line, "fleet.mission", what));
         }
         let remedy = "correct vehicle and day, or name the records too";
-        let wrong = |what: &str| format!("no record that counts is {what}");
+        let wrong = |what: &str| format!("no valid record is {what}");
         if is_all && !absent.is_empty() {
             let faults = absent.iter();
             let faults =
@@ -148,7 +148,10 @@ impl Compared {
             ));
         }
         let finding = |(_, key, what): &(u32, &str, String)| {
-            let message = format!("{}: what is compared with it is blank", wrong(what));
+            let message = format!(
+                "{}: the columns that compare with it are blank",
+                wrong(what)
+            );
             Finding::new(Severity::Error, "fleet-days-absent", *key, message, remedy)
         };
         Ok(absent.iter().map(finding).collect())

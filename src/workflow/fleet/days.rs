@@ -17,9 +17,9 @@ pub enum DayOrder {
     /// By numbers, from left to right.
     #[default]
     Numbers,
-    /// By dates whose day stands before the month.
+    /// By dates with the day before the month.
     DayFirst,
-    /// By dates whose month stands before the day.
+    /// By dates with the month before the day.
     MonthFirst,
 }
 
@@ -69,16 +69,16 @@ impl DayOrder {
             }
             return Err(Unordered {
                 wrong: format!(
-                    "of the days `{first}` and `{other}` nobody knows which came first: the one is a date, the other none"
+                    "the order of the days `{first}` and `{other}` is unknown: one is a date, the other is not"
                 ),
-                remedy: "let {day} in [fleet] file_name take in dates alone, or write them with the year first (2026-05-31)",
+                remedy: "let {day} in [fleet] file_name contain dates only, or write them with the year first (2026-05-31)",
             });
         }
         let is = |of: [bool; 2]| of_year_last.iter().find(|(_, d)| fits(d) == of);
         match (is([true, false]), is([false, true])) {
             (Some((a, _)), Some((b, _))) => Err(Unordered {
                 wrong: format!(
-                    "of the days `{a}` and `{b}` the one has the day before the month and the other has it behind"
+                    "the days `{a}` and `{b}` have different formats: one has the day before the month, the other the month before the day"
                 ),
                 remedy: "write dates with the year first (2026-05-31)",
             }),
@@ -95,9 +95,9 @@ impl DayOrder {
                 }
                 Err(Unordered {
                     wrong: format!(
-                        "the day `{first}` may have its day or its month first, and no other day tells"
+                        "the day `{first}` may have its day or its month first, and no other day determines which"
                     ),
-                    remedy: "write dates with the year first (2026-05-31), or with points where the day comes first (31.05.2026)",
+                    remedy: "write dates with the year first (2026-05-31), or with points if the day is first (31.05.2026)",
                 })
             }
         }

@@ -82,7 +82,7 @@ pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
     let others = match moving.len() {
         1 => String::new(),
         n => format!(
-            "; {} others move less, as they do where one draws the loads along",
+            "; {} others drift less, as they do if one gauge changes the loads",
             n - 1
         ),
     };
@@ -92,10 +92,10 @@ pub(super) fn drift(v: &VehicleAnswer, errors: &ErrorModel) -> Option<Finding> {
             "zero_drift",
             format!("{} {}", v.name, g.name),
             format!(
-                "its zero against the other gauges moves by {:.1} microstrain from {first} to {last}, in a line about which days scatter by {:.1}{others}",
+                "its zero relative to the other gauges drifts by {:.1} microstrain from {first} to {last}, linearly. The scatter from day to day is {:.1} microstrain{others}",
                 t.moved, t.scatter
             ),
-            "balance it again, and look at its cover and cable; then see whether another gauge moves too",
+            "balance it again, and check its cover and cable; then check whether another gauge still drifts",
         )
         .with_numbers(t.moved, t.small),
     )

@@ -32,9 +32,10 @@ impl Exchange {
             "inputs-exchanged",
             format!("{a}, {b}"),
             format!(
-                "`{a}` and `{b}` read each other's strain: with their readings exchanged the loads leave {after:.1} microstrain unexplained instead of {before:.1}"
+                "`{a}` and `{b}` have each other's strain: with their readings exchanged the residual is {after:.1} microstrain instead of \
+                 {before:.1} microstrain"
             ),
-            "exchange their columns, or their plugs: [[correction]] exchanged_with; loads of these days are wrong until then",
+            "exchange their columns, or their plugs: [[correction]] exchanged_with; until then loads of these days are wrong",
         )
         .with_numbers(after, before / BETTER)
     }
@@ -45,7 +46,7 @@ impl Exchange {
 /// With `P = I - U U'`, U an orthonormal basis of the columns of S, and `M = sum of y y'` over the samples, the squares of the residuals sum to
 /// `tr(P M)`. Exchanged readings have M with rows and columns exchanged. Without the gauges a and b the sum is less by `tr(P_ab^-1 (P M P)_ab)`.
 /// Returns `None` if no pair or more than one pair explains the readings, or if the gauges are too few.
-pub(super) fn exchanged<'a>(
+pub(super) fn find_exchange<'a>(
     s: &Sensitivity,
     samples: impl Iterator<Item = &'a [f64]>,
     noise: f64,
@@ -144,7 +145,7 @@ mod tests {
             uncertainty: None,
             noise: None,
         };
-        let found = exchanged(&s, samples.iter().map(Vec::as_slice), 0.1);
+        let found = find_exchange(&s, samples.iter().map(Vec::as_slice), 0.1);
         found.map(|e| e.gauges)
     }
 

@@ -4,7 +4,7 @@ use super::day::FileHead;
 use super::days::DayOrder;
 use super::judged::OF_SAMPLES;
 use super::merge::Status;
-use crate::finding::{Finding, few};
+use crate::finding::{Finding, list_few};
 use crate::recovery::{ALARM, GAUGE_SUSPECT, UNEXPLAINED};
 use statrs::distribution::{Binomial, DiscreteCDF};
 use std::collections::{BTreeMap, BTreeSet};
@@ -127,7 +127,7 @@ fn told(vehicle: &str, subject: &str, alike: &Alike, of: usize) -> Finding {
     let of_vehicles = match vehicle {
         "" => {
             let names: Vec<&str> = alike.vehicles.iter().copied().collect();
-            format!(" ({})", few(&names))
+            format!(" ({})", list_few(&names))
         }
         _ => String::new(),
     };

@@ -132,9 +132,9 @@ impl GaugeHistory {
             None => String::new(),
         };
         let message = format!(
-            "gives nothing, or one and the same value, on {n} of {of} days, the first {first}{from}"
+            "it has no readings, or a constant reading, on {n} of {of} days, the first {first}{from}"
         );
-        let remedy = "repair it; while it was dead the loads are those of the other gauges where they can tell them";
+        let remedy = "repair it; while it was dead, the loads come from the other gauges if these determine them";
         let subject = format!("{vehicle} {}", self.name);
         let found = Finding::new(Severity::Warning, "gauge-silent", subject, message, remedy);
         Some(found.with_numbers(n as f64, 0.0))
@@ -182,8 +182,8 @@ impl GaugeHistory {
                 Severity::Warning,
                 "gauge_gain",
                 format!("{vehicle} {}", self.name),
-                format!("its gain against the other gauges is {was:.2} before {day} and {is:.2} from then on"),
-                "look at its lead wires, amplifier and glue",
+                format!("its gain relative to the other gauges is {was:.2} before {day} and {is:.2} from that day on"),
+                "check its lead wires, amplifier and bond",
             )
             .with_numbers(is - was, OFF),
         })

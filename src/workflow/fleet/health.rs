@@ -6,7 +6,7 @@ use crate::units::MICROSTRAIN;
 /// Every how many samples the residual is looked at: enough of a day for a gain to a thousandth, few enough to cost little.
 const THINNED: usize = 16;
 
-/// Vectors of gauges whose sums stand in registers at a time.
+/// Vectors of gauges whose sums are in registers at a time.
 const TOGETHER: usize = 2;
 /// Most gauges of so many vectors.
 const WIDEST: usize = 8 * TOGETHER;

@@ -1,7 +1,7 @@
 //! Samples of a record on which recovery tests whether the loads explain the strain. Some are spread evenly over the record. Others are the extremes
 //! of each load: they determine the range to the power of the S-N slope, and a single wrong sample makes an extreme.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::recovery::{
     ErrorModel, NOT_SOLVABLE, Readings, Recovery, UNEXPLAINED, recover_samples, unlike,
 };
@@ -207,7 +207,7 @@ fn findings_of_one(recovery: Recovery) -> Vec<Finding> {
     out.retain(|f| f.code != unlike::CODE || n_unlike as f64 >= enough);
     for f in &mut out {
         if let Some(list) = subjects.get(f.code) {
-            f.subject = few(list);
+            f.subject = list_few(list);
         }
     }
     out

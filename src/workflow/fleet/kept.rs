@@ -115,7 +115,7 @@ pub fn digests_of(text: &str) -> Result<BTreeMap<String, String>, String> {
             let is_digest = digest.len() == 64 && digest.bytes().all(|b| b.is_ascii_hexdigit());
             (is_digest && !path.is_empty()).then(|| (path.to_owned(), digest.to_ascii_lowercase()))
         });
-        parts.ok_or_else(|| format!("line {} is no line of `sha256sum`", i + 1))
+        parts.ok_or_else(|| format!("line {} is not a line of `sha256sum`", i + 1))
     };
     let lines = text.lines().enumerate().filter(|l| !l.1.trim().is_empty());
     lines.map(line).collect()
@@ -231,7 +231,7 @@ impl KeptDays {
         kept
     }
 
-    /// Keeps what a run is asked for, before it begins: a merge knows by it what is missing. Where it stands.
+    /// Stores the request of a run before it begins, so that a merge can report missing results. Returns the path.
     ///
     /// # Errors
     /// Those of the system.

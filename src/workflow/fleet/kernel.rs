@@ -2,12 +2,12 @@
 
 use super::day::{Day, GaugeDay, LoadDay};
 use super::dead_parts::{blank_of, dead_parts, told_dead};
-use super::exchange::exchanged;
+use super::exchange::find_exchange;
 use super::health::Health;
 use super::judged::{Judged, findings_of};
-use super::recovering::{Part, Recovering, UnderWay, counted};
+use super::recovering::{Part, Recovering, UnderWay, count_pieces};
 use super::scale::{noise_of, scales};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::may_be_cut;
 use crate::job::StrainCorrection;
@@ -172,7 +172,7 @@ impl Kernel {
             let decode = || group.par_iter().map(|p| r.part(record, *p, &marks));
             let (next, ()) = rayon::join(
                 || decode().collect::<Result<_, _>>(),
-                || counted(&mut pass.counters, &parts),
+                || count_pieces(&mut pass.counters, &parts),
             );
             parts = next.map_err(|e: SeriesError| record_fault("record", &e))?;
             for part in &mut parts {
@@ -184,7 +184,7 @@ impl Kernel {
                 }
             }
         }
-        counted(&mut pass.counters, &parts);
+        count_pieces(&mut pass.counters, &parts);
         Ok(pass)
     }
 
@@ -208,7 +208,7 @@ impl Kernel {
         let named = |f: &Finding| f.code == "inputs-exchanged";
         if !explained && !found.iter().any(named) {
             let rows = samples.iter().map(Vec::as_slice);
-            let pair = exchanged(&r.sensitivity, rows, self.errors.noise);
+            let pair = find_exchange(&r.sensitivity, rows, self.errors.noise);
             findings.extend(pair.map(|e| e.finding(&r.sensitivity.gauges)));
         }
         findings.extend(found);
@@ -272,7 +272,7 @@ impl Kernel {
         if !record.is_time_unit_stated() {
             let wrong = clock::check(1.0 / record.clock.rate_hz, &sampled, found.len());
             if let Some(f) = wrong {
-                return Err(Fault::of("record", "time", f.message, f.remedy).into());
+                return Err(Fault::from_finding("record", "time", &f).into());
             }
         }
         let n = found.len();
@@ -351,7 +351,7 @@ impl Kernel {
             return Err(Fault::of(
                 "record",
                 "gauge",
-                "no column is named after a gauge of the job, or none of them reads",
+                "no column has the name of a gauge of the job, or none of these has readings",
                 "name the columns after the gauges, and check the export of the record",
             ));
         }
@@ -371,7 +371,7 @@ impl Kernel {
             .map(|g| self.zero.get(*g).copied().unwrap_or(0.0))
             .collect();
         let singular = || {
-            let wrong = "S holds numbers that are not finite";
+            let wrong = "S contains numbers that are not finite";
             Fault::of("record", "sensitivity", wrong, "check the table of S")
         };
         let plain = Filter::new(
@@ -386,8 +386,8 @@ impl Kernel {
         if plain.whole().rank < k {
             let names: Vec<&str> = s.gauges.iter().map(String::as_str).collect();
             let wrong = format!(
-                "its gauges don't separate the loads: only {} read",
-                few(&names)
+                "the gauges do not separate the loads: only {} have readings",
+                list_few(&names)
             );
             return Err(Fault::of(
                 "record",
@@ -418,7 +418,7 @@ impl Kernel {
             return Err(Fault::of(
                 "record",
                 "readings-below-noise",
-                "every reading is less than a thousandth of the stated noise: are they in strain, not microstrain?",
+                "every reading is less than a thousandth of the stated noise: the unit may be strain, not microstrain",
                 "state readings in microstrain (strain times 1e6)",
             ));
         }

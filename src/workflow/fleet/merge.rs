@@ -114,7 +114,7 @@ pub struct Vehicle {
 ///
 /// Of two files for one day, or with the same bytes, that with the first path counts. What comes out does not depend on the order of
 /// `files`.
-pub fn sorted(
+pub fn sort_files(
     files: &[FileHead],
     days_in: DayOrder,
 ) -> (BTreeMap<&str, Vec<&FileHead>>, Vec<Status>) {
@@ -133,17 +133,17 @@ pub fn sorted(
         match (&file.result, seen_bytes.get(file.sha256.as_str()), same_day) {
             (Err(why), ..) => *slot = Status::Failed(why.clone()),
             (Ok(_), Some(first), _) if first.vehicle == file.vehicle => {
-                *slot = Status::Copy(format!("the same bytes as {}, which counts", first.path));
+                *slot = Status::Copy(format!("the same bytes as {}, which is used", first.path));
             }
             (Ok(_), Some(first), _) => {
                 *slot = Status::Foreign(format!(
-                    "the same bytes as {}, which counts for {}: {} lacks them, or they are not its own",
+                    "the same bytes as {}, which is used for {}: the record of {} is missing, or this file belongs to another vehicle",
                     first.path, first.vehicle, file.vehicle
                 ));
             }
             (Ok(_), None, Some(first)) => {
                 *slot = Status::Second(format!(
-                    "another file of {} on {}: {first} counts",
+                    "another file of {} on {}: {first} is used",
                     file.vehicle, file.day
                 ));
             }

@@ -177,10 +177,10 @@ impl MissionSums {
         };
         if let Some(second) = kinds.next() {
             let wrong = format!(
-                "day {} of {} is of the kinds `{}` and `{}`",
+                "day {} of {} belongs to the kinds `{}` and `{}`",
                 file.day, file.vehicle, first.key.name, second.key.name
             );
-            let remedy = "let every day be of one kind";
+            let remedy = "assign every day to one kind";
             let line = second.key.line;
             return Err(Fault::at(job, line, "fleet.mission", wrong, remedy).into());
         }
@@ -254,8 +254,8 @@ impl MissionSums {
         let measured: f64 = kinds.iter().map(|k| k.hours).sum();
         Some(MissionAnswer {
             statement: format!(
-                "An extrapolation: {} hours from {measured:.2} measured ones, as if every hour of a kind did what those measured did. Cycles that close between \
-                 days are left out; between_days_at_most bounds what they may add.",
+                "An extrapolation: {} hours from {measured:.2} measured hours, on the assumption that all hours of a kind are alike. \
+                 Cycles that close between days are left out; between_days_at_most is an upper bound of their damage.",
                 self.hours
             ),
             hours: self.hours,

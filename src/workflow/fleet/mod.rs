@@ -1,8 +1,7 @@
 //! `fleet`: records of many vehicles and days, one small result a file, merged by vehicle.
 //!
-//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`kept`] keeps it by the digest of what it
-//! depends on, so that a second run does what is new alone and many machines can share one folder; [`merge`] joins the days of a
-//! vehicle exactly.
+//! [`kernel`] turns a record into a [`day::Day`], by any number of threads and without a file; [`kept`] keeps it by the digest of what it depends on,
+//! so that a second run processes only new records and many machines can share one folder; [`merge`] joins the days of a vehicle exactly.
 
 mod asked;
 mod calibrated;
@@ -37,13 +36,13 @@ pub use mission::{KindAnswer, MissionAnswer, MissionLoad};
 pub use outcome::{FileAnswer, Fleet, VehicleAnswer, VehicleLoadAnswer};
 pub use prepared::kernel_of;
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::context::{Context, Files};
 use crate::host::fault::{Fault, Faults};
 use crate::host::files::Opened;
 use crate::host::outcome::{Outcome, StatedUnits};
-use crate::host::words::counted;
-use crate::host::work::{Work, stopped};
+use crate::host::words::count_of;
+use crate::host::work::{Work, cancelled_fault};
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::measured::faults::record_fault;
 use crate::series::record::{Options, open_source};
@@ -53,7 +52,7 @@ use days::DayOrder;
 use drift::drift;
 use kept::{KeptDays, digest};
 use kernel::Kernel;
-use merge::{Status, sorted, vehicle};
+use merge::{Status, sort_files, vehicle};
 use name::{NameForm, Shard};
 use other_scale::in_other_scale;
 use other_unit::in_other_units;
@@ -162,8 +161,8 @@ pub fn fleet(job: &Job, spec: &FleetSpec, cx: &Context) -> Result<Outcome<Fleet>
         let absent = compared.check(&job.file, section, is_all)?;
         work.findings.extend(absent);
     }
-    let kept = counted(reused, "result");
-    work.notes.push(format!("{kept} kept from an earlier run"));
+    let kept = count_of(reused, "result");
+    work.notes.push(format!("{kept} stored by an earlier run"));
     let answer = Fleet::of(job, &kernel, vehicles, &files, &status, compared);
     work.findings
         .extend(answer.findings(&files, &status, days_in));
@@ -195,7 +194,7 @@ fn merged(
     job: &str,
     keys: &FleetKeys,
 ) -> Result<Merged, Faults> {
-    let (by_vehicle, status) = sorted(files, days_in);
+    let (by_vehicle, status) = sort_files(files, days_in);
     let mut compared = Compared::of(keys, kept, &by_vehicle);
     let mut vehicles = Vec::with_capacity(by_vehicle.len());
     for (name, list) in by_vehicle {
@@ -207,7 +206,7 @@ fn merged(
                 None => Err(Fault::of(
                     &*file.path,
                     "days",
-                    "its kept result was removed or changed while results were merged",
+                    "its stored result was deleted or changed while results were merged",
                     "run again",
                 )),
             })
@@ -247,18 +246,18 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
         Faults::from(Fault::of(
             &*shown,
             "folder",
-            format!("can't be read ({e})"),
+            format!("cannot be read ({e})"),
             "check the path",
         ))
     })?;
     if held.files.is_empty() {
         let wrong = match held.damaged.first() {
-            None => "no results of this job are kept there".to_owned(),
+            None => "the folder contains no results of this job".to_owned(),
             Some(path) => format!(
-                "`{path}` is cut or was changed, and no other result of this job is kept there"
+                "`{path}` is cut or was changed, and the folder contains no other result of this job"
             ),
         };
-        let remedy = "name the records to be done, or the folder of an earlier run with --out";
+        let remedy = "name the records to be processed, or the folder of an earlier run with --out";
         return Err(Fault::of(&*shown, "days", wrong, remedy).into());
     }
     if held.others > 0 {
@@ -267,10 +266,10 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             "fleet-other-results",
             &shown,
             format!(
-                "{} kept results are of another job or version and were left out",
+                "{} stored results belong to another job or version and were left out",
                 held.others
             ),
-            "remove them where they are no longer wanted",
+            "delete them if they are no longer wanted",
         ));
     }
     work.findings.extend(held.damaged.iter().map(|path| {
@@ -278,8 +277,8 @@ fn held(work: &mut Work, kept: &KeptDays, folder: &Path) -> Result<(Vec<FileHead
             Severity::Error,
             "fleet-result-damaged",
             path,
-            "this stored result is cut, or was changed after it was written: it does not count",
-            "run the records again into this folder, then remove it if it is still there",
+            "this stored result is cut, or was changed after it was written: it is not used",
+            "run the records again into this folder, then delete it if it still exists",
         )
     }));
     let missing = held.asked.iter().filter_map(|a| a.missing(&held.files));
@@ -314,7 +313,7 @@ fn done(
         .par_iter()
         .map(|path| {
             if progress.is_cancelled() {
-                return Err(stopped());
+                return Err(cancelled_fault());
             }
             let told = spec.digests.get(*path);
             let told = told.and_then(|d| kept.head(path, d));
@@ -369,9 +368,9 @@ fn told_replaced(paths: &[String]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "fleet-record-replaced",
-            few(paths),
+            list_few(paths),
             format!("{n} records changed since an earlier run and were processed again"),
-            "none is needed if they were written again; records of another folder need other paths",
+            "nothing, if they were written again; records of another folder need other paths",
         )
         .with_numbers(n as f64, 0.0)
     })
@@ -399,7 +398,7 @@ fn one(
     };
     let unread = |mut file: FileResult, e: &std::io::Error| {
         file.sha256 = String::new();
-        file.result = Err(format!("it can't be read: {e}"));
+        file.result = Err(format!("it cannot be read: {e}"));
         Ok((file.into(), Came::New))
     };
     let opened = match opened {
@@ -409,7 +408,7 @@ fn one(
     let before = kept.latest(path);
     let (hash, result) = match (&named, &before) {
         (None, _) => {
-            let wrong = "its path is not of the form that [fleet] file_name states";
+            let wrong = "its path does not match the form of [fleet] file_name";
             (opened.sha256(), Some(Err(wrong.to_owned())))
         }
         (Some(_), Some(_)) => (opened.sha256(), None),
@@ -449,7 +448,7 @@ fn one(
 }
 
 fn not_kept(path: &str, e: &std::io::Error) -> Fault {
-    let wrong = format!("its result can't be kept ({e})");
+    let wrong = format!("its result cannot be written ({e})");
     Fault::of(path, "output", wrong, "choose another folder with --out")
 }
 
@@ -483,7 +482,7 @@ pub fn day_of(kernel: &Kernel, opened: &Opened) -> Result<Day, Faults> {
     match day.loads.iter().find(|l| !is_number(l)) {
         None => Ok(day),
         Some(l) => {
-            let wrong = "its damage is larger than numbers can be";
+            let wrong = "its damage exceeds the range of numbers";
             let remedy = "report it in a larger unit, or state a lower slope";
             Err(Fault::of("record", &*l.name, wrong, remedy).into())
         }

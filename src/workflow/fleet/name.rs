@@ -58,12 +58,12 @@ impl NameForm {
         for (part, word) in [(Part::Vehicle, "vehicle"), (Part::Day, "day")] {
             let n = parts.iter().filter(|p| **p == part).count();
             if n != 1 {
-                return Err(format!("`{{{word}}}` stands {n} times, expected once"));
+                return Err(format!("`{{{word}}}` occurs {n} times, expected once"));
             }
         }
         let touch = |w: &[Part]| !w.iter().any(|p| matches!(p, Part::Text(_)));
         if parts.windows(2).any(touch) {
-            return Err("two places without text between them".to_owned());
+            return Err("two fields without text between them".to_owned());
         }
         Ok(Self { parts })
     }

@@ -4,7 +4,7 @@
 use super::other_unit;
 use super::outcome::VehicleAnswer;
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 
@@ -82,13 +82,14 @@ pub(super) fn in_other_scale(v: &VehicleAnswer, errors: &ErrorModel) -> Option<F
             "fleet-day-scale",
             &v.name,
             format!(
-                "on {} of {} days ({}) the noise of nearly all gauges is the same factor of what it is on the other days, {times:.2} on {first}: noise is that of \
-                 the electronics, so that the readings of these days may be {times:.2} times what they should be, and damage that to the power of the slope",
+                "on {} of {} days ({}) the noise of nearly all gauges is multiplied by one factor, {times:.2} on {first}. Noise comes from \
+                 the electronics. The readings of these days may therefore be {times:.2} times too large, and damage grows with the power \
+                 of the slope",
                 days.len(),
                 v.days.len(),
-                few(&names),
+                list_few(&names),
             ),
-            "see whether the bridge factor, the gain or the filter of the logger was another one; put the records right with [[correction]], or leave them out",
+            "check the bridge factor, the gain and the filter of the logger; correct the records with [[correction]], or leave them out",
         )
         .with_numbers(*times, FROM),
     )

@@ -1,8 +1,8 @@
-//! Days whose readings are so many times larger or smaller than those of the fleet's other days, noise and all, that their unit must be another one.
+//! Days whose readings and noise are larger or smaller than on the other days of the fleet by the factor of another unit.
 
 use super::outcome::VehicleAnswer;
 use crate::estimate::median;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::recovery::ErrorModel;
 use crate::units::MICROSTRAIN;
 use std::collections::BTreeMap;
@@ -41,13 +41,12 @@ pub(super) fn in_other_units(vehicles: &[VehicleAnswer], errors: &ErrorModel) ->
         };
         let names: Vec<&String> = days.iter().map(|d| d.0).collect();
         let message = format!(
-            "on {} of {} days ({}) its readings are {times:.0} times {word} than on the other days of the fleet, and so is their noise, from {first} on: they \
-             are in another unit, and damage of these days is of no use",
+            "on {} of {} days ({}) readings and noise are {times:.0} times {word} than on the other days of the fleet, from {first} on. They are in another unit. Do not use the damage of these days",
             days.len(),
             v.days.len(),
-            few(&names),
+            list_few(&names),
         );
-        let remedy = "state the unit in the columns of these records ([um/m], [mm/m], [m/m]), or put them right with [[correction]]";
+        let remedy = "state the unit in the columns of these records ([um/m], [mm/m], [m/m]), or correct them with [[correction]]";
         let found = Finding::new(Severity::Error, "fleet-day-unit", &v.name, message, remedy);
         Some(found.with_numbers(times, TIMES))
     };

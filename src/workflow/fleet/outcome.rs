@@ -8,9 +8,9 @@ use super::gauge_history::{GainChange, GaugeHistory, moving_days};
 use super::kernel::Kernel;
 use super::merge::{RecordOf, SampleOf, Status, Vehicle, VehicleLoad};
 use super::mission::{MissionAnswer, MissionSums};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::outcome::Answer;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::{Fleet as FleetKeys, Job};
 use crate::series::rainflow::{DamageInterval, Ratio};
 use crate::units::number;
@@ -172,12 +172,12 @@ impl Answer for Fleet {
         let count = |status: &str| self.files.iter().filter(|f| f.status == status).count();
         let hours: f64 = self.vehicles.iter().map(|v| v.hours).sum();
         format!(
-            "{} of {} counted, {} failed: {} h of {}.",
+            "{} of {} used, {} failed: {} h of {}.",
             count("done"),
-            counted(self.files.len(), "file"),
+            count_of(self.files.len(), "file"),
             count("failed"),
             number(hours),
-            counted(self.vehicles.len(), "vehicle")
+            count_of(self.vehicles.len(), "vehicle")
         )
     }
 }
@@ -353,12 +353,12 @@ impl Fleet {
                 Status::Failed(_) => (
                     Severity::Error,
                     "fleet-file-failed",
-                    "mend the file, or leave it out",
+                    "repair the file, or leave it out",
                 ),
                 Status::Copy(_) => (
                     Severity::Warning,
                     "fleet-second-copy",
-                    "keep one file a day",
+                    "keep one file for each day",
                 ),
                 Status::Foreign(_) => (
                     Severity::Error,
@@ -369,7 +369,7 @@ impl Fleet {
                 Status::Second(_) => (
                     Severity::Error,
                     "fleet-day-twice",
-                    "keep one file a day; where both count, let {day} in [fleet] file_name take in what tells them apart",
+                    "keep one file for each day; if both are valid, let {day} in [fleet] file_name contain the part that differs",
                 ),
             };
             out.push(Finding::new(
@@ -400,10 +400,11 @@ fn mostly_noise(vehicle: &str, l: &VehicleLoadAnswer) -> Option<Finding> {
     let share = l.noise_bias / l.damage_counted;
     (share > MOST).then(|| {
         let message = format!(
-            "{:.0} % of the damage that was counted is made by noise, and is taken off by what more noise makes: the rest is known as well as its interval says",
+            "noise causes {:.0} % of the counted damage. The noise damage is estimated with added noise and subtracted; the interval of \
+             the remaining damage includes its uncertainty",
             100.0 * share
         );
-        let remedy = "filter the record below the noise, or place gauges that read this load better";
+        let remedy = "filter the record below the noise, or place gauges with a higher sensitivity to this load";
         let subject = format!("{vehicle} {}", l.load);
         Finding::new(Severity::Warning, "damage-of-noise", subject, message, remedy)
             .with_numbers(share, MOST)
@@ -417,10 +418,10 @@ fn known_in_part(v: &VehicleAnswer, l: &VehicleLoadAnswer) -> Option<Finding> {
     let missing = 1.0 - l.hours / v.hours;
     (missing > MISSING).then(|| {
         let message = format!(
-            "the gauges that read tell it in {:.4} of {:.4} hours alone, and its damage is that of these",
+            "the gauges determine it in {:.4} of {:.4} hours only, and its damage is the damage of these hours",
             l.hours, v.hours
         );
-        let remedy = "repair the gauges that its days lack, or add some; until then compare its damage an hour";
+        let remedy = "repair the gauges that are missing on some days, or add gauges; until then compare its damage per hour";
         let subject = format!("{} {}", v.name, l.load);
         let found = Finding::new(Severity::Warning, "load-known-in-part", subject, message, remedy);
         found.with_numbers(missing, MISSING)
@@ -434,12 +435,13 @@ fn in_doubt(v: &VehicleAnswer) -> Option<Finding> {
     let shares: Vec<String> = v.loads.iter().map(share).collect();
     let most = v.loads.iter().map(|l| l.doubtful_share).fold(0.0, f64::max);
     let message = format!(
-        "{} of {} days (the first {first}) hold strain that the loads don't explain, and their damage is in the sums: of {}. The intervals of the sums do not include this error",
+        "on {} of {} days (the first {first}) the loads do not explain the strain, and the damage of these days is in the sums. Share by \
+         load: {}. The intervals of the sums do not include this error",
         v.doubtful_days.len(),
         v.days.len(),
-        few(&shares)
+        list_few(&shares)
     );
-    let remedy = "put right what the findings of these records name, or leave the records out";
+    let remedy = "correct the causes in the findings of these records, or leave the records out";
     let found = Finding::new(Severity::Error, "damage-in-doubt", &v.name, message, remedy);
     Some(found.with_numbers(most, 0.0))
 }

@@ -15,7 +15,7 @@ use crate::sensitivity::check_separability;
 use crate::series::rainflow::{Knee, Law};
 use crate::strain_chain::named_results::check_tables;
 use crate::strain_chain::stated_errors;
-use crate::workflow::recover::listed;
+use crate::workflow::recover::list_load_columns;
 
 /// Classes up to the expected size of a load.
 const CLASSES: f64 = 32.0;
@@ -33,8 +33,8 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     };
     no_zero_runs(job, measured, "FILES")?;
     if let Some(dynamic) = job.dynamic {
-        let wrong = "records of a fleet are read a piece at a time, and the structure's vibration is not taken out of them";
-        let remedy = "take [dynamic] out, and low-pass the strain below a third of the first mode; or `recover` the records one by one";
+        let wrong = "records of a fleet are read in pieces, and the vibration of the structure cannot be subtracted";
+        let remedy = "delete [dynamic], and low-pass filter the strain below a third of the first mode; or `recover` the records one by one";
         return Err(Fault::at(&*job.file, dynamic.line, "dynamic", wrong, remedy).into());
     }
     let prepared = prepare_with_noise(work, job)?;
@@ -45,7 +45,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     let wanted = |g: &usize| !channel_of(&job.corrections, &s.gauges[*g]).ignore;
     let blank = (0..zero.len()).filter(wanted).find(|g| zero[*g].is_nan());
     if let (Some(named), Some(g)) = (&measured.zero, blank) {
-        let remedy = "repair the channel of the zero file, or leave its gauge out of the job";
+        let remedy = "repair the channel of the zero file, or remove its gauge from the job";
         return Err(Fault::of(&*named.given, &*s.gauges[g], "no zero reading", remedy).into());
     }
     for (z, r) in zero
@@ -54,7 +54,7 @@ pub fn kernel_of(work: &mut Work, job: &Job) -> Result<Kernel, Faults> {
     {
         *z -= r;
     }
-    let listed = listed(job, s)?;
+    let listed = list_load_columns(job, s)?;
     let section = job.fleet.as_ref();
     let law = Law {
         slope: job.recover.slope,

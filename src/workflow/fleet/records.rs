@@ -1,7 +1,7 @@
 //! The records that are asked for: files as they are, folders with all records below them, patterns, lists of paths.
 
 use super::name::NameForm;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, Faults};
 use glob::{MatchOptions, Pattern, glob_with};
 use std::collections::BTreeSet;
@@ -20,8 +20,8 @@ pub fn paths_of_list(shown: &str, text: &str) -> Result<Vec<PathBuf>, Fault> {
         true => Err(Fault::of(
             shown,
             "--files",
-            "the list names no record",
-            "write one path in each line, or leave --files out to merge the stored results",
+            "the list contains no record",
+            "write one path in each line, or omit --files to merge the stored results",
         )),
         false => Ok(paths),
     }
@@ -73,11 +73,11 @@ fn below(folder: &Path, form: &NameForm) -> Result<Vec<PathBuf>, Wrong> {
     let others: Vec<String> = others.iter().map(|p| p.display().to_string()).collect();
     let held = match others.is_empty() {
         true => "contains no file".to_owned(),
-        false => format!("contains {}", few(&others)),
+        false => format!("contains {}", list_few(&others)),
     };
     Err((
         format!(
-            "no file below the folder has the form that [fleet] file_name states: the folder {held}"
+            "no file below the folder matches the form of [fleet] file_name: the folder {held}"
         ),
         "name another folder, or change file_name",
     ))

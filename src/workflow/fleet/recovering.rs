@@ -157,7 +157,7 @@ impl Recovering {
 }
 
 /// Counts what pieces that follow each other give: a thread some of the loads, samples in runs that stay in its cache for all of them.
-pub(super) fn counted(counters: &mut [Counter], parts: &[Part]) {
+pub(super) fn count_pieces(counters: &mut [Counter], parts: &[Part]) {
     /// Samples of a run.
     const RUN: usize = 1024;
     let k = counters.len().max(1);

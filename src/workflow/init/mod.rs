@@ -13,13 +13,14 @@ mod text;
 mod trial;
 
 use crate::fe::from_results::{
-    Displacements, HOLD_ONCE, ReadOptions, repeated, solution_from_file, subcase_labels,
+    Displacements, HOLD_ONCE, ReadOptions, find_repeated_results, solution_from_file,
+    subcase_labels,
 };
 use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::Job;
 use crate::model::{Model, Shell};
@@ -57,7 +58,7 @@ pub struct Proposal {
     /// The job as read, and the model of the deck; `None` without a deck, or if `text` needs a correction before it can be read.
     #[serde(skip)]
     pub read: Option<(Job, Model)>,
-    /// Where it is to stand.
+    /// Path of the proposed job.
     #[serde(skip)]
     pub path: PathBuf,
     /// The command that it is written for, where that is not `place`.
@@ -84,13 +85,13 @@ impl Answer for Proposal {
             n => format!(", leaves out {n}"),
         };
         let places = match (self.placeable, self.purpose) {
-            (false, None) => ", and cannot place gauges as it is: the findings state why",
+            (false, None) => ", and cannot place gauges yet: the findings state why",
             _ => "",
         };
         format!(
             "{} proposes {}{left_out}{places}.",
             self.job,
-            counted(self.loads.len(), "load")
+            count_of(self.loads.len(), "load")
         )
     }
 }
@@ -138,7 +139,7 @@ pub fn init(
         let none = Fault::of(
             &*given,
             "GRID",
-            "no grid in it",
+            "the deck contains no grid",
             "give a deck, or an OP2 that contains the mesh",
         );
         return Err(Faults::or(deck.faults, none));
@@ -158,7 +159,7 @@ pub fn init(
         system,
         from: found.first().map_or(StrainFrom::Solver, |p| p.from),
         without_results: match strained.iter().all(|s| s.1.is_empty()) {
-            true => "no static subcase of them has strain of shells",
+            true => "no static subcase in them has strain of shells",
             false => "`place` finds no gauges with them",
         },
         loads: found.first().map_or(&[], |p| &p.loads),
@@ -208,7 +209,7 @@ fn named_zones(model: &Model) -> BTreeMap<String, BTreeSet<u32>> {
     zones
 }
 
-/// Where the job is to stand.
+/// Path of the proposed job.
 ///
 /// # Errors
 /// A job that is there already.
@@ -218,7 +219,7 @@ fn free_target(folder: &Path, cx: &Context) -> Result<PathBuf, Fault> {
         return Err(Fault::of(
             target.display().to_string(),
             JOB,
-            "there is one already, and it is not overwritten",
+            "a file of this name exists, and it is not overwritten",
             "move it away, or name another folder with `--out`",
         ));
     }
@@ -244,11 +245,11 @@ fn obstacle(deck: &DeckModel, given: &str, units_open: bool) -> Option<Finding> 
     }
     if m.shells.is_empty() {
         let message = format!(
-            "there is nothing to glue gauges on: no shell among {} solids and {} bars and beams",
+            "there is no surface for gauges: no shell among {} solids and {} bars and beams",
             m.solids.len(),
             m.beams.len()
         );
-        let remedy = "coat the solids' faces with thin shells (membranes of a thousandth of the thickness) and solve again";
+        let remedy = "cover the faces of the solids with thin shells (membranes of a thousandth of the thickness) and solve again";
         return stop("nothing-to-glue-on", message, remedy);
     }
     if units_open {
@@ -275,7 +276,11 @@ fn read_strained(
         let read = work.stage("read results", |_| {
             ResultsFile::read(&bytes, &name).map(|f| {
                 let solution = solution_from_file(&deck.model, &name, &f, &options);
-                (solution, repeated(&[&f], None), subcase_labels(&f))
+                (
+                    solution,
+                    find_repeated_results(&[&f], None),
+                    subcase_labels(&f),
+                )
             })
         });
         let (solution, repeated, labels) =

@@ -117,7 +117,7 @@ fn axle_ends(m: &Model) -> BTreeSet<GridIx> {
         .collect()
 }
 
-/// Ends of bushes and springs that carry nothing else than the spring, or stand opposite the ground.
+/// Ends of bushes and springs that carry nothing else than the spring, or are connected to ground.
 fn spring_ends(m: &Model) -> BTreeSet<GridIx> {
     let bushes = m.bushes.iter().map(|b| [Some(b.grids.0), b.grids.1]);
     let springs = m.springs.iter().map(|s| s.ends.map(|e| e.map(|e| e.0)));

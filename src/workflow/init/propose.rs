@@ -120,8 +120,8 @@ fn by_number(
     strained: &[Strained],
     system: Option<UnitSystem>,
 ) -> Vec<ProposedLoad> {
-    const REPLACE: &str = "# replace: what acts in this subcase";
-    const NAMED: &str = "# check: the grid by the name of the subcase";
+    const REPLACE: &str = "# replace: the load of this subcase";
+    const NAMED: &str = "# check: the grid, from the name of the subcase";
     let subcases = deck.deck.case_control.effective_subcases();
     let first = deck.model.grids.first().map_or(1, |g| g.id);
     let points = load_points(deck);
@@ -306,7 +306,7 @@ fn of_set(
         None => {
             let times = (
                 times_of_set(model, sid, system),
-                " in times the load set".to_owned(),
+                " in multiples of the load set".to_owned(),
             );
             (format!("load_set = {sid}"), format!("set{sid}"), 1.0, times)
         }

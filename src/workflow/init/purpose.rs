@@ -36,19 +36,19 @@ model_uncertainty_rel = 0.02          # check: of the predicted strain, 1 sd
 const RUNS: &str = r#"
 [runs]
 file = "runs.csv"                     # check: `run`, one column for each load (names as above), payload_mass, payload_x, payload_y
-# columns = { "LF.FZ" = "FZ_LF_kN" }  # where the file names them otherwise
+# columns = { "LF.FZ" = "FZ_LF_kN" }  # if the file has other names
 units = { force = "kN", mass = "kg", length = "m" }
 noise = { force = 0.1 }               # check: of the scales, 1 sd
-wheel_forces = "measured"             # "flat_ground_model": computed, which proves nothing
+wheel_forces = "measured"             # "flat_ground_model": computed, not evidence
 "#;
 
 const PAYLOAD: &str = r#"
 [payload]
 # grid = 901                          # fill in: the grid through which the payload acts
-position = "free"                     # "known": it sits at payload_x, payload_y of the runs
+position = "free"                     # "known": it is at payload_x, payload_y of the runs
 use = ["strain", "reactions"]         # or one of them
 # unloaded = "R00"                    # run without payload: it is subtracted
-# region = [[1000.0, 3000.0], [-300.0, 300.0]]   # where it can be, job units of length
+# region = [[1000.0, 3000.0], [-300.0, 300.0]]   # possible places, job units of length
 "#;
 
 const RECONCILE: &str = r#"
@@ -59,21 +59,21 @@ position = "known"
 [reconcile]
 path = "static"                       # strain of runs; "dynamic": accelerations, with a [vehicle]
 effects = "all"                       # or a list of ids
-# places = { rear = 9204 }            # grids where a mass may sit
+# places = { rear = 9204 }            # grids where a mass may be
 # thermal_microstrain_per_degC = { quarter = 1.4 }
-# Hold runs out in [measured]: hold_out = ["R10", "R11"]. They prove what was named.
+# Hold runs out in [measured]: hold_out = ["R10", "R11"]. They test the identified cause.
 "#;
 
 const CALIBRATION: &str = r#"
 [calibration]
-# runs = ["R01", "R02"]               # left out: every run of [measured] whose loads [runs] gives; the others are to be recovered
-# repeats = ["lane"]                  # columns of the runs file: runs alike in these are repeats
-# depends_on = "speed"                # whether loads come out larger with it is tested
+# runs = ["R01", "R02"]               # default: every run of [measured] whose loads [runs] gives; the others are recovered
+# repeats = ["lane"]                  # columns of the runs file: runs with equal values are repeats
+# depends_on = "speed"                # tests whether recovered loads depend on it
 # model_uncertainty_rel = 0.1         # with a [model]: of its S, 1 sd
 "#;
 
 /// A whole job: a vehicle needs no deck.
-const IDENTIFY: &str = r#"# Written by `strainbridge init --for identify`. Read every line that says `check`.
+const IDENTIFY: &str = r#"# Written by `strainbridge init --for identify`. Read every line with `check`.
 title = "Quarter truck"
 units = "m-kg-s"                      # of [vehicle]: m/s2, N
 
@@ -81,25 +81,25 @@ units = "m-kg-s"                      # of [vehicle]: m/s2, N
 model = "front2"                      # check: "rear3", "front_pair", "half", "full2", "full3"
 terms = ["k_s", "c_s"]                # check: what the model contains, a coefficient and a link each
 data = "data.csv"                     # check: t, a_body, a_wheel (m/s2), f_wheel (N); also RPC III, Parquet, MDF4
-hold_out = "holdout.csv"              # check: another stretch of road, which proves the fit
+hold_out = "holdout.csv"              # check: another stretch of road, which tests the fit
 sample_rate = 500                     # check: Hz
-# known = { m_b = 3200.0 }            # what was weighed
+# known = { m_b = 3200.0 }            # weighed values
 noise = { acc = 0.02, force = 60.0 }  # check: of the sensors, 1 sd
 tolerance = { gain = 0.01, sync = 0.0004 }   # check: of the measuring chain, 1 sd
 band_hz = [0.7, 20.0]                 # check: where model and record are compared
 
-# To find what the model lacks, `strainbridge reconcile` on this job with:
+# To find a missing effect, run `strainbridge reconcile` on this job with:
 # [reconcile]
 # path = "dynamic"
 "#;
 
 /// A job whose S comes from runs alone.
-const CALIBRATE_ALONE: &str = r#"# Written by `strainbridge init --for calibrate`. Read every line that says `check`.
+const CALIBRATE_ALONE: &str = r#"# Written by `strainbridge init --for calibrate`. Read every line with `check`.
 title = "Calibrated by runs of known load"
 units = "m-kg-s"                      # check
 report_units = { force = "kN", moment = "kN m" }
 
-# One [[load]] for each load that the runs know.
+# One [[load]] for each known load of the runs.
 [[load]]
 name = "front"                        # check: a column of the runs file
 

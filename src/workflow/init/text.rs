@@ -95,7 +95,7 @@ impl JobPlan<'_> {
             }
         };
         format!(
-            "# Written by `strainbridge init`. Read every line that says `check`: they are proposals from the deck.\n\
+            "# Written by `strainbridge init`. Read every line with `check`: they are proposals from the deck.\n\
              title = \"{}\"\n\
              {units}\n\
              report_units = {{ force = \"{force}\", moment = \"{moment}\" }}\n\n\

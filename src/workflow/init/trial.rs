@@ -143,16 +143,15 @@ fn try_place(cx: &Context, trial: &JobPlan) -> Result<(), String> {
         job.placement.proof = false;
         place(&job, &cx)
     });
-    let said = |wrong: &str, remedy: &str| format!("{wrong}: {remedy}");
     match placed {
         Err(faults) => Err(faults
             .iter()
             .next()
-            .map_or_else(String::new, |f| said(&f.wrong, &f.remedy))),
+            .map_or_else(String::new, |f| format!("{}: {}", f.wrong, f.remedy))),
         Ok(placed) => {
             let mut findings = placed.findings.iter();
             match findings.find(|f| f.severity == Severity::Error) {
-                Some(f) => Err(said(&f.message, &f.remedy)),
+                Some(f) => Err(format!("{} {}", f.message, f.remedy)),
                 None => Ok(()),
             }
         }

@@ -5,7 +5,7 @@ use super::model::Parts;
 use super::readings::{NetReading, Readings};
 use super::task::Task;
 use crate::host::outcome::{Answer, finite};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::Job;
 use crate::payload::{PayloadRun, Place, WeighSpec, WeighedRun, Weighing};
 use crate::strain_chain::{Conditioning, Prepared};
@@ -47,7 +47,7 @@ impl Answer for Weighed {
         let weighed = || self.payload.iter().filter(|p| p.refused.is_none());
         let refused = match self.payload.len() - weighed().count() {
             0 => String::new(),
-            n => format!("; {} refused", counted(n, "run")),
+            n => format!("; {} refused", count_of(n, "run")),
         };
         let (force, mass) = (self.job.report_units.force, self.job.report_units.mass);
         let words = |p: &WeighedPayload| {
@@ -59,11 +59,11 @@ impl Answer for Weighed {
         let half = |p: &WeighedPayload| p.half_width();
         let widest = weighed().max_by(|a, b| half(a).total_cmp(&half(b)));
         match (weighed().count(), widest) {
-            (_, None) => "No run gives a payload.".to_owned(),
+            (_, None) => "No run determines a payload.".to_owned(),
             (1, Some(one)) => format!("Payload of {}: {}{refused}.", one.run, words(one)),
             (n, Some(widest)) => format!(
                 "{} weighed, least certain {}: {}{refused}.",
-                counted(n, "payload"),
+                count_of(n, "payload"),
                 widest.run,
                 words(widest)
             ),
@@ -156,7 +156,7 @@ fn kept(r: &WeighedRun, v: f64) -> Option<f64> {
 const CARRIES: f64 = 32.0;
 
 /// The answer.
-pub(super) fn weighed(
+pub(super) fn report_payload(
     task: &Task,
     parts: Parts,
     readings: Readings,
@@ -180,9 +180,9 @@ pub(super) fn weighed(
                 sigma: r.estimate_sigma.get(g).copied().and_then(finite),
                 used: verdict.is_some_and(|v| v.used) && estimate.is_finite() && carries,
                 reason: match verdict {
-                    None => "no gauge says a possible payload".to_owned(),
+                    None => "no gauge gives a possible payload".to_owned(),
                     Some(v) if v.used && estimate.is_finite() && !carries => {
-                        "too weak: the gauge carries less than a thousandth of the answer"
+                        "too weak: the gauge has less than a thousandth of the weight in the answer"
                             .to_owned()
                     }
                     Some(v) => v.reason.clone(),

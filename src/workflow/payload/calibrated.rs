@@ -7,7 +7,7 @@ use crate::finding::Finding;
 use crate::job::calibrated_range::calibrated_range;
 use crate::job::payload_loads::part_of;
 use crate::payload::{WeighedRun, Weighing};
-use crate::recovery::by_calibration::untested;
+use crate::recovery::by_calibration::report_untested_intervals;
 use crate::recovery::outside_calibration::{CalibratedLoad, RangeRules, Reached, check_load};
 use crate::strain_chain::has_covariance;
 
@@ -19,7 +19,10 @@ pub(super) fn findings(task: &Task, parts: &Parts, weighing: &Weighing) -> Vec<F
     };
     let uncertainty = prepared.sensitivity.uncertainty.as_ref();
     let is_tested = uncertainty.is_none_or(|u| u.is_tested);
-    let mut out: Vec<Finding> = (!is_tested).then(untested).into_iter().collect();
+    let mut out: Vec<Finding> = (!is_tested)
+        .then(report_untested_intervals)
+        .into_iter()
+        .collect();
     let rules = RangeRules::default();
     let weighed = || weighing.runs.iter().filter(|r| r.refused.is_none());
     let loads = prepared.sensitivity.loads.iter();

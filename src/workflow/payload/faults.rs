@@ -59,8 +59,8 @@ fn all_reversed(weighing: &Weighing) -> Option<Finding> {
             Severity::Error,
             "input-sign-reversed",
             "all",
-            "the readings mean a payload below zero in every run: all readings have the opposite sign, or the zero was taken under the payload",
-            format!("{SIGN_OF_ALL}. Else name the unloaded run or file as the zero"),
+            "the readings give a negative payload in every run: all readings have reversed sign, or the zero was measured with the payload",
+            format!("{SIGN_OF_ALL}. Otherwise name the unloaded run or file as the zero"),
         )
         .with_numbers(told.len() as f64, 0.0)
     })

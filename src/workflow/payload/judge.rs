@@ -4,11 +4,11 @@ use super::model::Parts;
 use super::stated::REFUTED;
 use super::task::Task;
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::words::short;
 use crate::host::work::Work;
 use crate::input_faults::identical::identical_readings;
-use crate::measured::zero::judged;
+use crate::measured::zero::subtract_and_test_zero;
 use crate::payload::{PayloadRun, Place, Refusal, WeighSpec, WeighedRun, Weighing};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
@@ -21,11 +21,11 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
     let unit = task.job.report_units.force.name;
     match refusal {
         Refusal::Negative { force } => format!(
-            "the readings say {} {unit}: a payload can't pull the structure up",
+            "the readings give {} {unit}, and a payload cannot be negative",
             short(*force)
         ),
         Refusal::OutsideRegion { sigmas } => format!(
-            "the computed place is {} standard deviations outside the region where the payload can be",
+            "the computed place is {} standard deviations outside the region of the payload",
             short(*sigmas)
         ),
         Refusal::OutOfBalance {
@@ -33,7 +33,7 @@ pub(super) fn words(task: &Task, refusal: &Refusal) -> String {
             wheels,
             sigmas,
         } => format!(
-            "strain says {} {unit} and the wheels carry {} {unit}: {} standard deviations apart, so forces are not in balance",
+            "strain gives {} {unit} and the wheel forces give {} {unit}: they differ by {} standard deviations, so forces are not in balance",
             short(*strain),
             short(*wheels),
             short(*sigmas)
@@ -51,15 +51,15 @@ fn refused(task: &Task, run: &str, refusal: &Refusal) -> Finding {
         ),
         Refusal::OutsideRegion { .. } => (
             "payload-outside-region",
-            "check `region`, signs and names of gauges, and for a load that is not the payload",
+            "check `region`, signs and names of gauges, and whether another load than the payload acts",
         ),
         Refusal::OutOfBalance { .. } => (
             "payload-out-of-balance",
-            "check scale and sign of the channels, the zero of both, and `use` one of them alone",
+            "check scale and sign of the channels, the zero of both, and `use` only one of them",
         ),
         Refusal::Undetermined => (
             "payload-undetermined",
-            "glue gauges where the payload strains the structure, or measure wheel forces",
+            "add gauges where the payload strains the structure, or measure wheel forces",
         ),
     };
     Finding::new(Severity::Error, code, run, words(task, refusal), remedy)
@@ -90,7 +90,7 @@ fn lift_off(work: &mut Work, task: &Task, parts: &Parts, run: &PayloadRun, r: &W
                 Severity::Error,
                 "wheel-lifts-off",
                 format!("{}: {}", r.run, task.wheels[w]),
-                "this payload at this place lifts the wheel off the floor: the structure is not supported as in the model",
+                "this payload at this place lifts the wheel off the floor: the support of the structure differs from the model",
                 "check the place of the payload, and the model's masses (`ballast`)",
             )
             .with_numbers(*t, 0.0),
@@ -110,7 +110,7 @@ fn place_told(work: &mut Work, spec: &WeighSpec, r: &WeighedRun) {
                 Severity::Warning,
                 "place-not-determined",
                 &r.run,
-                "the 95 % region of the place is as large as the region where the payload can be: the readings do not determine it",
+                "the 95 % region of the place is as large as the region of the payload: the readings do not determine it",
                 "add gauges between the axles on both rails, or wheel forces",
             )
             .with_numbers(axes[0], room),
@@ -153,11 +153,11 @@ fn elsewhere(
                 "payload-elsewhere",
                 &r.run,
                 format!(
-                    "the moments of the wheel forces put the payload at {}, {} {unit}, not where the job states it",
+                    "the moments of the wheel forces put the payload at {}, {} {unit}, not at the place in the job",
                     short(task.nominal[0] + at[0]),
                     short(task.nominal[1] + at[1])
                 ),
-                "correct the place, or let it free: position = \"free\"",
+                "correct the place, or let the payload be anywhere: position = \"free\"",
             )
             .with_numbers(worst, REFUTED),
         );
@@ -191,7 +191,7 @@ pub(super) fn readings(work: &mut Work, task: &Task, parts: &Parts, runs: &mut [
     let of_gauge = |g: usize| read.iter().map(|r| r.strain[g]).collect();
     let columns: Vec<Vec<f64>> = (0..gauges.len()).map(of_gauge).collect();
     work.findings.extend(identical_readings(gauges, &columns));
-    let kept = judged(work, measured, gauges, &read);
+    let kept = subtract_and_test_zero(work, measured, gauges, &read);
     let strained = runs.iter_mut().filter(|r| !r.strain.is_empty());
     for (run, kept) in strained.zip(kept) {
         run.strain = kept.strain;
@@ -221,11 +221,11 @@ pub(super) fn findings(
                     "payload-vague",
                     &r.run,
                     format!(
-                        "the readings do not distinguish a payload from an empty structure: it is {} {} at most, with 97.5 %",
+                        "the readings do not distinguish a payload from an empty structure: it is at most {} {}, with 97.5 % probability",
                         short(r.interval[1]),
                         task.job.report_units.force.name
                     ),
-                    "nothing, where the structure is empty; else gauges where the payload strains it, longer means, or wheel forces",
+                    "nothing, if the structure is empty; otherwise add gauges where the payload strains it, longer means, or wheel forces",
                 )
                 .with_numbers(r.force / r.sigma, NORMAL_95),
             );
@@ -235,7 +235,7 @@ pub(super) fn findings(
                     Severity::Warning,
                     "payload-vague",
                     &r.run,
-                    "the 95 % interval is wider than half the payload",
+                    "the 95 % interval is wider than half of the payload",
                     "add gauges where the payload strains the structure, longer means, or wheel forces",
                 )
                 .with_numbers(wide, VAGUE),
@@ -261,9 +261,9 @@ pub(super) fn findings(
             Finding::new(
                 if most { Severity::Error } else { Severity::Warning },
                 "gauges-not-used",
-                few(&rejected),
-                "these gauges disagree with the rest and carry nothing in the answer (reasons in by_gauge)",
-                "check their wiring, place and sign; where they are most of the gauges, the place of the payload and the model",
+                list_few(&rejected),
+                "these gauges disagree with the others and are not used in the answer (reasons in by_gauge)",
+                "check their wiring, place and sign; if they are the majority, check the place of the payload and the model",
             )
             .with_numbers(rejected.len() as f64, 0.0),
         );

@@ -71,7 +71,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
             &*job.file,
             "payload",
             "the job has no [payload]",
-            "state what is looked for: [payload] grid = 9101, position = \"known\"",
+            "state the unknown payload: [payload] grid = 9101, position = \"known\"",
         )));
     };
     let use_strain = payload.use_strain && job.measured.is_some();
@@ -81,7 +81,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
             &*job.file,
             payload.line,
             "payload.use",
-            "neither strain nor reactions to weigh by",
+            "the job has neither strain nor reactions that determine a payload",
             "add [measured] strain = \"strain.csv\" or [runs] file = \"runs.csv\", and name them in `use`",
         )));
     }
@@ -111,7 +111,7 @@ pub fn payload(job: &Job, cx: &Context) -> Result<Outcome<Weighed>, Faults> {
     work.findings.extend(place);
     let mass = stated::mass_contradicted(&mut work, &task, &weighing)?;
     work.findings.extend(mass);
-    let answer = answer::weighed(&task, parts, readings, &spec, weighing);
+    let answer = answer::report_payload(&task, parts, readings, &spec, weighing);
     Ok(work.finish(StatedUnits::of(job.units, &job.report_units), answer))
 }
 

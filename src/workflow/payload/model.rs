@@ -111,7 +111,7 @@ struct Place {
 
 /// Weight down; its shift along b turns about c, along c against b.
 const SIGNS: [f64; 3] = [-1.0, -1.0, 1.0];
-/// Part of `p = (F, F dx, F dy)` that each of [`Place::parts`] stands for.
+/// Part of `p = (F, F dx, F dy)` of each of [`Place::parts`].
 const SHIFT_OF: [usize; 3] = [0, 2, 1];
 
 impl Place {
@@ -244,10 +244,10 @@ fn held(
         "payload-on-supports",
         "payload",
         format!(
-            "the structure is {}: its supports carry the payload, and strain alone weighs it",
+            "the structure is {}: its supports carry the payload, and only strain determines it",
             support.words()
         ),
-        "write support = \"free\" where wheels carry it",
+        "write support = \"free\" if wheels carry it",
     ));
     let columns = direct((job, fields.model()), prepared, place, &solution.cases);
     let own = own_columns(job, fields.model(), place);
@@ -395,7 +395,7 @@ fn given(work: &mut Work, task: &mut Task, use_strain: bool) -> Result<Parts, Fa
                     &*job.file,
                     tables.line,
                     "sensitivity.signatures.payload",
-                    "the job gives S without the payload's signature",
+                    "the job gives S, and not the payload's signature",
                     "name its table: signatures = { payload = \"B_payload.csv\" } with columns gauge, b0, b_dx, b_dy; or calibrate with payloads of \
                      known mass and a [[load]] name = \"payload\"",
                 )));
@@ -475,7 +475,7 @@ fn signature(
                 &*file.given,
                 "gauge",
                 format!("no row for gauge `{name}`"),
-                "give every gauge a row",
+                "add a row for every gauge",
             ));
             continue;
         };

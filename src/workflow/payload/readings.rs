@@ -1,7 +1,7 @@
 //! Readings of the runs: net strain with its noise, changes of the wheel forces, known places.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::finite;
 use crate::host::work::Work;
@@ -117,15 +117,15 @@ pub(super) fn runs_of(
                 &*job.file,
                 job.runs.as_ref().map_or(0, |r| r.line),
                 "runs",
-                format!("no wheel forces of every wheel for {}", few(&without)),
+                format!("no force of some wheel for {}", list_few(&without)),
                 "add their rows and columns",
             )));
         }
         work.findings.push(Finding::new(
             Severity::Warning,
             "run-without-wheel-forces",
-            few(&without),
-            "not every wheel was measured in these runs: all runs are weighed by strain on a flat floor",
+            list_few(&without),
+            "these runs do not contain the force of every wheel: all runs are weighed by strain on a flat floor",
             "add their rows and columns to the runs file",
         ));
     } else if !reactions && model.floor.is_none() {
@@ -133,7 +133,7 @@ pub(super) fn runs_of(
             &*job.file,
             task.payload.line,
             "payload",
-            "a given S has no floor: without measured wheel forces the payload is not determined",
+            "a given S contains no floor: without measured wheel forces the payload is not determined",
             "give a [model], or measured wheel forces with `use = [\"strain\", \"reactions\"]`",
         )));
     }
@@ -141,7 +141,7 @@ pub(super) fn runs_of(
         return Err(Faults::from(Fault::of(
             &*job.file,
             "run",
-            "no run to be weighed",
+            "there is no run with a payload",
             "add rows to the strain or runs file",
         )));
     }
@@ -168,7 +168,7 @@ fn same_runs(
     let row = |run: &PayloadRun| rows.iter().find(|row| row.run == run.run);
     let names = |some: &mut dyn Iterator<Item = &PayloadRun>| {
         let names: Vec<&str> = some.map(|r| r.run.as_str()).collect();
-        few(&names)
+        list_few(&names)
     };
     // The strain of a single record has the name of its file, which a runs file need not know.
     if read.len() > 1 && !read.iter().any(|run| row(run).is_some()) {
@@ -192,7 +192,7 @@ fn same_runs(
                 Severity::Warning,
                 "payload-place-assumed",
                 names(&mut unplaced.iter().copied()),
-                "the runs file gives no place of the payload in these runs: it is taken at its nominal place",
+                "the runs file gives no place of the payload in these runs: the nominal place is used",
                 "give payload_x and payload_y of every run",
             )
             .with_numbers(unplaced.len() as f64, 0.0),
@@ -259,7 +259,7 @@ fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
                 Severity::Info,
                 "reaction-noise-assumed",
                 "runs.noise.force",
-                "the job does not state the noise of the wheel forces: 1 % of the largest is assumed",
+                "the job does not state the noise of the wheel forces: 1 % of the largest force is assumed",
                 "state [runs] noise = { force = 0.06 }",
             ));
         }
@@ -270,8 +270,8 @@ fn believed(work: &mut Work, task: &Task, use_strain: bool) -> bool {
             Severity::Info,
             "wheel-forces-computed",
             "runs.wheel_forces",
-            "the wheel forces were computed for flat ground, not measured: they are no evidence of the payload and are left out",
-            "measure them, or weigh by strain",
+            "the wheel forces were computed for flat ground, not measured. They are not evidence of the payload and are left out",
+            "measure them, or use strain",
         ));
     }
     false
@@ -471,9 +471,9 @@ fn judge_net(work: &mut Work, task: &Task, model: &PayloadModel, runs: &[(String
             Finding::new(
                 Severity::Warning,
                 "gauges-too-weak",
-                few(&weak),
+                list_few(&weak),
                 "the net reading does not exceed the noise in any run: these gauges do not measure the payload",
-                "leave them out, or glue gauges where the payload strains the structure (`place`)",
+                "leave them out, or add gauges where the payload strains the structure (`place`)",
             )
             .with_numbers(best, WEAK),
         );

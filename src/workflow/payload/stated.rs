@@ -3,7 +3,7 @@
 use super::model::Parts;
 use super::task::Task;
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::words::short;
 use crate::host::work::Work;
@@ -58,9 +58,10 @@ pub(super) fn place_contradicted(
         Finding::new(
             severity,
             "payload-place-contradicted",
-            few(&names),
+            list_few(&names),
             format!(
-                "the readings refute the stated place of the payload. With a free place run {} weighs {} +- {} {force} at {}, {} {length}; at the stated one {} {force}",
+                "the readings contradict the stated place of the payload. With a free place, run {} weighs {} ± {} {force} at {}, {} \
+                 {length}; at the stated place it weighs {} {force}",
                 free.run,
                 short(free.force),
                 short(NORMAL_95 * free.sigma),
@@ -68,7 +69,7 @@ pub(super) fn place_contradicted(
                 place[1],
                 short(known.force)
             ),
-            "correct the place in the runs file, `nominal_x`, `nominal_y` or `grid`, or let the place free: position = \"free\"",
+            "correct the place in the runs file, `nominal_x`, `nominal_y` or `grid`, or let the payload be anywhere: position = \"free\"",
         )
         .with_numbers(worst, REFUTED),
     )
@@ -86,7 +87,7 @@ fn sigmas(free: &WeighedRun, run: &PayloadRun) -> Option<f64> {
     Some(square.sqrt()).filter(|s| s.is_finite())
 }
 
-/// Returns the finding on masses of the runs file that differ from the weighed ones by more than the interval and a tenth, in most runs.
+/// Returns the finding on masses of the runs file that differ from the result by more than the interval and 10 %, in most runs.
 ///
 /// # Errors
 /// The faults of the runs file.
@@ -121,9 +122,9 @@ pub(super) fn mass_contradicted(
         Finding::new(
             Severity::Error,
             "recorded-mass-contradicts",
-            few(&names),
+            list_few(&names),
             format!(
-                "the payload masses of `{}` contradict the readings: run {} weighs {} to {} {}, and {} {} are recorded",
+                "the payload masses of `{}` contradict the readings: run {} weighs {} to {} {}, and the recorded payload is {} {}",
                 file.file.given,
                 run.run,
                 short(mass(run.interval[0])),
@@ -132,7 +133,7 @@ pub(super) fn mass_contradicted(
                 short(*recorded),
                 unit.name
             ),
-            "check the recorded masses and their unit, scale and unit of the wheel forces or the gauges, and the run that is the zero",
+            "check the recorded masses and their unit, scale and unit of the wheel forces or the gauges, and the run of the zero",
         )
         .with_numbers(ratio, 1.0),
     ))

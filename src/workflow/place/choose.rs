@@ -102,16 +102,16 @@ pub(super) fn choose_once(task: &Task, kinds: &[Kind], spec: &Spec) -> Result<Ch
         return Err(single(
             job.placement.line,
             "placement.criterion",
-            "the least condition number is looked for among",
-            "write criterion = \"D\", or leave those keys out",
+            "the least condition number is available only for",
+            "write criterion = \"D\", or delete those keys",
         ));
     }
     if job.candidates.wanted_elements.is_some() {
         return Err(single(
             job.candidates.line,
             "candidates.wanted_elements",
-            "wanted elements are for",
-            "leave those keys out, or state the gauges of these elements as [[gauge]] and keep them",
+            "wanted elements are available only for",
+            "delete those keys, or state the gauges of these elements as [[gauge]] and keep them",
         ));
     }
     match &task.spots {
@@ -132,7 +132,7 @@ fn well_conditioned(task: &Task, kind: &Kind, spec: &Spec, layout: &mut Layout) 
     for row in &task.kept_rows {
         spd::add_outer(&mut base, row, noise * noise);
     }
-    let found = condition::best(&kind.candidates, spec, layout, &base)?;
+    let found = condition::find_least_condition(&kind.candidates, spec, layout, &base)?;
     put_instead(kind, spec, layout, found.gauges)?;
     Some(found.least)
 }
@@ -353,7 +353,7 @@ fn few_enough(task: &Task, a_site: usize) -> Result<(), Refused> {
         &*task.job.file,
         task.job.candidates.line,
         "candidates",
-        format!("{many} gauges, pairs and rosettes to choose from, more than {MOST_BUNDLES}"),
+        format!("{many} gauges, pairs and rosettes to choose from, limit {MOST_BUNDLES}"),
         "state a wider `angle_step_deg`, or fewer elements; rosettes, pairs and costs are compared one by one",
     )))
 }

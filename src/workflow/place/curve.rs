@@ -94,7 +94,7 @@ pub(super) fn incomplete(left_out: &[usize]) -> Option<Finding> {
             "curve-incomplete",
             "placement.curve",
             format!(
-                "no layout of {} gauges separates the loads and keeps the spacing",
+                "no layout of {} gauges separates the loads with the stated spacing",
                 counts.join(", ")
             ),
             "",

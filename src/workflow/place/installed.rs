@@ -4,7 +4,7 @@ use super::judge::{as_recovered, in_job_order, sigma_rows};
 use super::known::gluing_variance;
 use super::outcome::{Installed, InstalledQuality, WorstLoss};
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::outcome::finite;
 use crate::host::work::Work;
@@ -12,10 +12,10 @@ use crate::placement::candidates::Candidates;
 use crate::placement::quality::judge_rows;
 use crate::placement::{self, Spec, place};
 use crate::strain_chain::lay_gauges;
-use crate::workflow::recover::listed;
+use crate::workflow::recover::list_load_columns;
 
 /// The installed layout by the same measures, its determinant with noise alone; `None` without gauges in the job.
-pub(super) fn installed(
+pub(super) fn evaluate_installed(
     work: &mut Work,
     task: &Task,
     c: &Candidates,
@@ -32,8 +32,8 @@ pub(super) fn installed(
             work.findings.push(Finding::new(
                 Severity::Warning,
                 "installed-gauges-without-strain",
-                few(&missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>()),
-                "installed gauges are at places where a subcase has no strain: the installed layout is not evaluated",
+                list_few(&missing.iter().map(|m| m.gauge.as_str()).collect::<Vec<_>>()),
+                "a subcase has no strain at the installed gauges: the installed layout is not evaluated",
                 "ask for STRAIN of their elements in every subcase",
             ));
             return Ok(None);
@@ -84,7 +84,7 @@ pub(super) fn installed(
     let glued = task.rows_of(&gauges, &s, job.placement.model_uncertainty_rel, &more);
     let as_glued = as_recovered(task, &spec.prior, &glued.over_sd, u);
     let load_sigma = match (&recovered, &as_glued) {
-        (Some(r), Some(g)) => sigma_rows(job, &listed(job, &s)?, Some(r), g, scales),
+        (Some(r), Some(g)) => sigma_rows(job, &list_load_columns(job, &s)?, Some(r), g, scales),
         _ => Vec::new(),
     };
     let quality = InstalledQuality {

@@ -110,7 +110,7 @@ pub(super) fn chosen_as_recovered(
     )
 }
 
-/// Returns the covariance of the loads of a chosen layout with the tolerances of gluing, which its rows contain, and with the error of the model.
+/// Returns the covariance of the loads of a chosen layout, with the tolerances of installation in its rows and the error of the model.
 pub(super) fn as_glued(job: &Job, q: &Quality, k: usize) -> Vec<f64> {
     let mut out = q.covariance.clone();
     let model = job.placement.model_uncertainty_rel.powi(2);
@@ -158,9 +158,9 @@ pub(super) fn with_unit_loads(job: &Job, mut finding: Finding) -> Finding {
     });
     if let Some((name, size)) = unit_load {
         finding.message = format!(
-            "`expected` of `{name}` is {size}, the size of a unit load, and the gauges do not resolve loads that small"
+            "`expected` of `{name}` is {size}, the size of a unit load, and the gauges do not resolve a load of this size."
         );
-        finding.remedy = "state how large it gets (`expected` in [[load]])".to_owned();
+        finding.remedy = "State how large it gets (`expected` in [[load]]).".to_owned();
     }
     finding
 }
@@ -187,7 +187,8 @@ fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
                 "expected-strain-high",
                 &g.name,
                 format!(
-                    "{n} gauges see more than {STRAIN:.0} microstrain if all loads of expected size add up, `{}` sees {:.0}: foil gauges tire and mild steel yields",
+                    "{n} gauges exceed {STRAIN:.0} microstrain under the sum of all expected loads, `{}` reaches {:.0} microstrain: foil \
+                     gauges fatigue and mild steel yields",
                     g.name, g.expected_microstrain
                 ),
                 "state smaller `expected` loads if they are too large, or exclude these elements in [candidates]",
@@ -207,14 +208,14 @@ fn judge_workshop(work: &mut Work, job: &Job, placed: &[PlacedGauge]) {
             Severity::Info,
             "model-uncertainty-unstated",
             "placement.model_uncertainty_rel",
-            "no model uncertainty is stated: gauges are chosen, and sigmas planned, as if the model's strain were exact",
+            "no model uncertainty is stated: gauges and sigmas are computed for an exact model",
             "state model_uncertainty_rel in [placement] or [measured] (0.02 is a good model away from welds)",
         ));
     }
 }
 
-/// Gauges whose place has to be kept better than it will be: than the stated tolerance where that is finer than a rule, else than a rule.
-/// Budgets and tolerance are in `unit`; the remedy is what is left to do.
+/// Gauges whose place has to be kept better than it will be: than the stated tolerance where that is finer than a rule, else than a rule. Budgets and
+/// tolerance are in `unit`; the remedy follows from both.
 fn check_budgets<'a>(
     budgets: impl Iterator<Item = (&'a str, Option<f64>)>,
     tolerance: f64,
@@ -235,15 +236,15 @@ fn check_budgets<'a>(
         n => format!("{n} gauges have"),
     };
     let message = format!(
-        "{gauges} to be glued within {} mm, `{name}` within {least:.2} mm: a load moves by a twentieth of its expected size otherwise",
+        "{gauges} to be glued within {} mm, `{name}` within {least:.2} mm: a larger error changes a load by more than 5 % of its expected size",
         short(kept)
     );
     let remedy = match tolerance > 0.0 {
-        true => "place more gauges, so that each decides less, or state a larger position_tolerance, so that steep places weigh less: what the stated one \
-                 costs is `sigma_as_glued`; a template that keeps a finer one is stated likewise"
+        true => "place more gauges, so that each has less weight, or state a larger position_tolerance, so that places with large strain gradients \
+         have less weight. `sigma_as_glued` contains the effect of the stated tolerance. If you use a template, state its tolerance"
             .to_owned(),
         false => format!(
-            "state [placement] position_tolerance, {} {} for gauges laid out with a rule, so that steep places are avoided",
+            "state [placement] position_tolerance, {} {} for gauges positioned with a ruler, so that places with large strain gradients are avoided",
             short(2.0 * PLACE / mm),
             unit.name
         ),
@@ -274,8 +275,8 @@ pub(super) fn judge_layout(
             Severity::Warning,
             "no-gauge-may-fail",
             "placement.gauges",
-            format!("{} gauges for {k} loads, and nothing may fail: the loss of one leaves loads that can't be separated, and no residual shows a fault", placed.len()),
-            "place a few gauges more than loads",
+            format!("{} gauges for {k} loads have no redundancy: if one gauge fails, the loads cannot be separated, and no residual shows a fault", placed.len()),
+            "place several gauges more than loads",
         ));
     } else if q.worst_loss < 0.5 {
         work.findings.push(
@@ -284,7 +285,7 @@ pub(super) fn judge_layout(
                 "worst-loss",
                 &placed[q.worst].gauge.name,
                 format!(
-                    "losing gauge `{}` leaves {:.0} % of the efficiency",
+                    "without gauge `{}`, {:.0} % of the efficiency remains",
                     placed[q.worst].gauge.name,
                     100.0 * q.worst_loss
                 ),
@@ -298,8 +299,8 @@ pub(super) fn judge_layout(
             Severity::Info,
             "no-spacing",
             "placement.spacing",
-            "no spacing is stated: gauges may be asked for side by side, or at several angles on one element",
-            "state [placement] spacing, as much as a technician needs",
+            "no spacing is stated: gauges may be next to each other, or at several angles on one element",
+            "state [placement] spacing, as much as the installation needs",
         ));
     }
     if layout.efficiency_bound < 0.9
@@ -343,7 +344,7 @@ mod tests {
         assert!(
             unstated
                 .remedy
-                .contains("state [placement] position_tolerance, 0.002 m"),
+                .contains("State [placement] position_tolerance, 0.002 m"),
             "{}",
             unstated.remedy
         );
@@ -351,12 +352,12 @@ mod tests {
         assert!(
             !stated
                 .remedy
-                .contains("state [placement] position_tolerance"),
+                .contains("State [placement] position_tolerance"),
             "{}",
             stated.remedy
         );
         assert!(
-            stated.remedy.starts_with("place more gauges"),
+            stated.remedy.starts_with("Place more gauges"),
             "{}",
             stated.remedy
         );

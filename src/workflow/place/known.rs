@@ -17,7 +17,10 @@ use crate::units::MICROSTRAIN;
 ///
 /// # Errors
 /// Faults of its table and of its covariance.
-pub(super) fn given(work: &mut Work, job: &Job) -> Result<Option<Sensitivity>, Faults> {
+pub(super) fn read_given_sensitivity(
+    work: &mut Work,
+    job: &Job,
+) -> Result<Option<Sensitivity>, Faults> {
     match job.sensitivity {
         Some(_) => read_given(work, job).map(Some),
         None => Ok(None),

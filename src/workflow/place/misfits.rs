@@ -10,7 +10,7 @@ use crate::placement::sites::Site;
 /// Gauges on the model with their findings, or the reason why they can't be built.
 type Built = Result<(Vec<Gauge>, Vec<Finding>), GaugeError>;
 
-/// Returns a gauge as it can be built, at a point where its grid is longer than the part, and the fault of a grid that does not fit.
+/// Returns a gauge, reduced to a point if its grid is longer than the part, and the fault of a grid that does not fit.
 pub(super) fn fitting(
     job: &Job,
     spec: GaugeSpec,
@@ -43,10 +43,10 @@ fn misfit(job: &Job, built: &Built) -> Option<Fault> {
         Ok((_, findings)) => {
             let off = findings.iter().find(|f| f.code == "gauge-off-structure")?;
             let remedy = format!(
-                "lower [candidates] `grid_length`, or keep gauges away from edges: [candidates] clear_of = {{ edges = {} }}",
+                "lower [candidates] `grid_length`, or exclude places near edges: [candidates] clear_of = {{ edges = {} }}",
                 0.5 * job.candidates.grid_length
             );
-            (off.message.clone(), remedy)
+            (off.clause().to_owned(), remedy)
         }
         Err(_) => return None,
     };

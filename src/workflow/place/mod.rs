@@ -35,7 +35,7 @@ use crate::strain_chain::{
     Conditioning, Fields, GaugeMeshError, LoadSigma, WantedAt, coarse_at_gauges, mesh_errors,
     read_fields, without_strain,
 };
-use crate::workflow::recover::listed;
+use crate::workflow::recover::list_load_columns;
 
 /// Chooses gauges for the loads of a job from its candidates, with a certificate. If the job has installed gauges, it evaluates them as well.
 ///
@@ -76,11 +76,11 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     work.findings.extend(findings);
     let (sites, strict) = match &job.candidates.spots {
         Some(_) => (Vec::new(), None),
-        None => region::allowed(job, fields, &common)?,
+        None => region::allowed_sites_and_rule(job, fields, &common)?,
     };
     let k = cases.len();
     let scales = scales(work, &cases, &common);
-    let given = known::given(work, job)?;
+    let given = known::read_given_sensitivity(work, job)?;
     let mut task = task::task(job, fields, cases, scales, sites, given);
     task.strict = strict;
     task.lay_spots(work)?;
@@ -132,11 +132,11 @@ fn placed(work: &mut Work, job: &Job, fields: &Fields) -> Result<LayoutOf, Fault
     let mesh_error = mesh_errors(&all, &s, &task.errors);
     work.findings
         .extend(coarse_at_gauges(&all, &mesh_error, fields.mesh_left()));
-    let listed = listed(job, &s)?;
+    let listed = list_load_columns(job, &s)?;
     let units = &listed.units[..k];
-    let gauges = sheet::placed(&task, &chosen, &spec.prior, &quality, &validation);
+    let gauges = sheet::list_placed_gauges(&task, &chosen, &spec.prior, &quality, &validation);
     let installed = match kinds.first().filter(|_| choose::is_plain(&task)) {
-        Some(kind) => installed::installed(work, &task, &kind.candidates, &spec)?,
+        Some(kind) => installed::evaluate_installed(work, &task, &kind.candidates, &spec)?,
         None => None,
     };
     work.findings.extend(check_separability(&s.unconditioned()));
@@ -263,7 +263,10 @@ fn reserved(
             &*task.job.file,
             task.job.placement.line,
             "placement.reserve",
-            format!("{} gauges less {n} do not separate the loads", rows.len()),
+            format!(
+                "{} gauges without {n} validation gauges do not separate the loads",
+                rows.len()
+            ),
             "reserve fewer, or place more",
         )));
     };

@@ -4,7 +4,7 @@ use crate::estimate::NORMAL_95;
 use crate::fe::strain_tensor::Surface;
 use crate::gauge::Gauge;
 use crate::host::outcome::Answer;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::{Job, JobGauge};
 use crate::placement::Role;
 use crate::sensitivity::Sensitivity;
@@ -96,7 +96,7 @@ impl Answer for Placed {
         });
         format!(
             "{} from {} candidates: {share}{least_certain}.",
-            counted(self.gauges.len(), "gauge"),
+            count_of(self.gauges.len(), "gauge"),
             self.candidates.rows
         )
     }

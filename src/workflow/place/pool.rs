@@ -8,7 +8,7 @@ use crate::model::{Model, ShellIx};
 use crate::placement::angle_variance::Form;
 use crate::placement::candidates::{Angles, Candidates, Scatter};
 use crate::placement::gradient::forms;
-use crate::placement::sites::{Site, bridges, wired};
+use crate::placement::sites::{Site, bridge_strain, bridges};
 use crate::sensitivity::LoadCaseOf;
 use crate::strain_chain::left_squared;
 use crate::units::MICROSTRAIN;
@@ -64,7 +64,7 @@ fn add_mesh_error(
     for (form, &site) in forms.iter_mut().zip(sites) {
         for (cases, left) in [errors, loads].into_iter().zip(left_squared()) {
             for (case, scale) in cases.iter().zip(scales) {
-                let Some(strain) = wired(bridge, case.case, site) else {
+                let Some(strain) = bridge_strain(bridge, case.case, site) else {
                     continue;
                 };
                 let [x, y, g] = strain.map(|v| v * scale / case.applied / MICROSTRAIN);
@@ -155,8 +155,8 @@ pub(crate) fn scales(work: &mut Work, cases: &[LoadCaseOf], common: &[ShellIx]) 
             Severity::Info,
             "expected-assumed",
             assumed.join(", "),
-            format!("loads without `expected` are taken as large as strains the candidates by {ASSUMED_STRAIN} microstrain rms"),
-            "state `expected`: it weighs the angle tolerance and the scaled condition number",
+            format!("the expected size of loads without `expected` is the size that strains the candidates by {ASSUMED_STRAIN} microstrain rms"),
+            "state `expected`: the angle tolerance and the scaled condition number depend on it",
         ));
     }
     scales

@@ -16,7 +16,7 @@ use std::collections::BTreeSet;
 /// # Errors
 /// No surface is left, or the deck lacks a SET, an element or a property.
 pub fn allowed_sites(job: &Job, fields: &Fields, common: &[ShellIx]) -> Result<Vec<Site>, Faults> {
-    allowed(job, fields, common).map(|(sites, _)| sites)
+    allowed_sites_and_rule(job, fields, common).map(|(sites, _)| sites)
 }
 
 /// Rule of `[candidates]` that excludes the most shells, with the number of shells before and after it.
@@ -52,7 +52,7 @@ impl StrictRule {
 type Follows<'a> = &'a dyn Fn(&Shell, u32, Vec3) -> bool;
 
 /// [`allowed_sites`] with the rule that excludes the most.
-pub(super) fn allowed(
+pub(super) fn allowed_sites_and_rule(
     job: &Job,
     fields: &Fields,
     common: &[ShellIx],

@@ -16,7 +16,7 @@ use crate::sensitivity::LoadCaseOf;
 const BUDGET: f64 = 0.05;
 
 /// Returns the gauges with all data of the sheet; the gauges in `validation` are not used for estimating.
-pub(super) fn placed(
+pub(super) fn list_placed_gauges(
     task: &Task,
     chosen: &Chosen,
     prior: &[f64],

@@ -11,7 +11,7 @@ use crate::job::{Job, Keep, LoadRole, Optimality};
 use crate::linalg::spd;
 use crate::model::Vec3;
 use crate::placement::region::clear_of;
-use crate::placement::sites::{Site, wired};
+use crate::placement::sites::{Site, bridge_strain};
 use crate::placement::{Criterion, PlaceError, Spec};
 use crate::sensitivity::{LoadCaseOf, Sensitivity};
 use crate::strain_chain::{Fields, lay_gauges, left_in_reading, without_strain};
@@ -197,7 +197,7 @@ impl<'a> Task<'a> {
                 .iter()
                 .zip(&scales)
                 .map(|(c, f)| {
-                    let t = wired(Bridge::Quarter, c.case, site).unwrap_or_default();
+                    let t = bridge_strain(Bridge::Quarter, c.case, site).unwrap_or_default();
                     // Engineering shear g: 2 (g/2)^2 is its part of the square of the tensor.
                     [t[0], t[1], t[2] / std::f64::consts::SQRT_2]
                         .map(|v| v * f / c.applied / MICROSTRAIN)
@@ -255,10 +255,10 @@ pub(super) fn know_the_loads(work: &mut Work, spec: &mut Spec, gauges: usize, lo
             "loads-not-separable",
             "placement",
             format!(
-                "no {gauges} gauges among these candidates separate the {loads} loads: the layout is the best for loads known \
-                 beforehand to their expected size, and so are its sigmas"
+                "no {gauges} gauges among these candidates separate the {loads} loads: layout and sigmas assume that loads are known \
+                 beforehand to their expected size"
             ),
-            format!("ask for at least {loads} gauges, drop loads that act alike, or widen [candidates]"),
+            format!("ask for at least {loads} gauges, drop loads with the same effect, or widen [candidates]"),
         )
         .with_numbers(gauges as f64, loads as f64),
     );

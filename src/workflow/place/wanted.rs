@@ -34,7 +34,7 @@ pub(super) fn on_wanted(
     for [a, b] in &wanted.0 {
         if !places.iter().any(|(id, _)| (*a..=*b).contains(id)) {
             let wrong = match a == b {
-                true => format!("element {a} is no candidate"),
+                true => format!("element {a} is not a candidate"),
                 false => format!("none of elements {a} to {b} is a candidate"),
             };
             let remedy = "name shells that the other keys of [candidates] allow";
@@ -55,7 +55,7 @@ pub(super) fn on_wanted(
         .map_err(|group| {
             let ids: Vec<u32> = places.chunk_by(|a, b| a.0 == b.0).map(|g| g[0].0).collect();
             let wrong = format!(
-                "no gauge on element {} keeps the spacing from the others and separates the loads",
+                "no gauge on element {} separates the loads with the stated spacing from the others",
                 ids[group]
             );
             refuse(

@@ -30,7 +30,7 @@ pub struct Added {
 pub(super) type Place = [String; 3];
 
 /// Converts places into the changes by one effect.
-pub(super) fn added(effect: &str, places: Vec<Place>) -> Vec<Added> {
+pub(super) fn list_changes(effect: &str, places: Vec<Place>) -> Vec<Added> {
     let one = |[path, old, new]: Place| Added {
         effect: effect.to_owned(),
         path,
@@ -57,7 +57,7 @@ pub(super) fn added_to_strain(
         extended,
         deck,
     };
-    let of = |e: &NamedEffect| added(&e.id, held.places(e));
+    let of = |e: &NamedEffect| list_changes(&e.id, held.places(e));
     effects.iter().flat_map(of).collect()
 }
 
@@ -116,7 +116,7 @@ impl Held<'_> {
                 ..
             } => {
                 let size = e.size.first().copied().unwrap_or(0.0);
-                let found = format!("{} kN rms, found anew in every run", number(size));
+                let found = format!("{} kN rms, estimated in every run", number(size));
                 vec![self.in_job("[runs] ground", "none", found)]
             }
             Extension::NuisanceLoads { source, loads, .. } => {
@@ -152,7 +152,7 @@ impl Held<'_> {
                 at(
                     format!("{STRAIN}: column {gauge}"),
                     "as read",
-                    format!("put right by {key} {new}"),
+                    format!("corrected by {key} {new}"),
                 )
             }
             _ => self.entry(gauge, correction),
@@ -230,7 +230,7 @@ impl Held<'_> {
             | Correction::Offset(_)
             | Correction::AngleDeg(_)
             | Correction::PositionMm(_) => {
-                let why = format!("as it was: {found} is undone by another effect");
+                let why = format!("unchanged: another effect cancels {found}");
                 return self.in_job(&format!("[[correction]] of {gauge}"), "as it is", why);
             }
         };
@@ -276,7 +276,7 @@ impl Held<'_> {
             ),
             None => {
                 let key = "[[correction]] of every gauge, offset_microstrain";
-                self.in_job(key, "as it is", format!("more by the {of_mass}"))
+                self.in_job(key, "as it is", format!("plus the {of_mass}"))
             }
         };
         let card = self

@@ -1,6 +1,6 @@
 //! Changes of the job by the named effects of motion.
 
-use super::added::{Added, Place, added};
+use super::added::{Added, Place, list_changes};
 use super::extended::ExtendedModel;
 use crate::reconcile::motion::change::Change;
 use crate::reconcile::motion::{MotionEffect, MotionFrame, MotionOutcome};
@@ -16,7 +16,7 @@ pub(super) fn added_to_motion(
     let Some(extended) = extended else {
         return Vec::new();
     };
-    let of = |e: &MotionEffect| added(&e.id, places(frame, outcome, extended.name, e));
+    let of = |e: &MotionEffect| list_changes(&e.id, places(frame, outcome, extended.name, e));
     outcome.effects.iter().flat_map(of).collect()
 }
 

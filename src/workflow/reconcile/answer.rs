@@ -353,7 +353,7 @@ impl From<SimulatedGap> for SimulationFound {
         };
         Self {
             metric: format!(
-                "RMS of measured less simulated on {}, in the unit of the channel; both models fitted by simulation",
+                "RMS of measured minus simulated on {}, in the unit of the channel; both models fitted by simulation",
                 found.judged_by.words()
             ),
             judged_by: found.judged_by,

@@ -3,7 +3,7 @@
 use super::influence::influence;
 use super::model_part::ModelPart;
 use crate::fe::Solution;
-use crate::gauge::{Gauge, moved};
+use crate::gauge::{Gauge, strain_gradient_gauge};
 use crate::job::Job;
 use crate::model::Model;
 use crate::reconcile::strain::Scatter;
@@ -43,7 +43,7 @@ pub(super) fn gradients(
             Axis::Along => g.direction,
             Axis::Across => g.normal.cross(&g.direction),
         };
-        let row = moved(g, model, direction)
+        let row = strain_gradient_gauge(g, model, direction)
             .map(|m| influence(job, model, &[m], solution, n_columns))
             .filter(|row| row.iter().all(|v| v.is_finite()));
         match row {

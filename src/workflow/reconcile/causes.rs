@@ -34,7 +34,7 @@ pub(super) fn answer(
             Severity::Warning,
             "rival",
             names.join(", "),
-            "these causes explain the runs alike: they can't be told apart",
+            "these causes fit the runs equally well and are indistinguishable",
             outcome.next_measurement.clone(),
         ));
     }
@@ -49,7 +49,8 @@ pub(super) fn answer(
         best_attempt: None,
         rivals: rivals(&outcome),
         gap: GapFound {
-            metric: "RMS(reading - prediction) / RMS(reading), cross-validated: every run in turn from the mean of the others, each channel over its range"
+            metric: "RMS(reading - prediction) / RMS(reading), cross-validated: the prediction of each run is the mean of the other runs, each \
+             channel over its range"
                 .to_owned(),
             before,
             after: best.map_or(before, |b| b.gap),
@@ -157,7 +158,7 @@ fn read(
                     &*t.file,
                     column.clone(),
                     format!("no value for run `{run}`"),
-                    "give every run of the strain file its causes",
+                    "state the causes of every run of the strain file",
                 )),
             }
         }

@@ -19,7 +19,7 @@ pub(super) enum Changed {
 }
 
 impl DeckFrame {
-    /// Change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh as it stands.
+    /// Change of the influence matrix by each change of the deck, from solutions of the changed models on the mesh of the deck.
     pub(super) fn changes_by(&self, job: &Job, all: &[Changed]) -> Result<Vec<Vec<f64>>, Faults> {
         if all.is_empty() {
             return Ok(Vec::new());

@@ -122,7 +122,7 @@ pub(super) fn corrections(
 }
 
 /// Returns the corrections of gauges of a deck with a wrong angle. Rewritten readings can't contain them.
-pub(super) fn turned(effects: &[NamedEffect], has_deck: bool) -> Vec<Corrected> {
+pub(super) fn angle_corrections(effects: &[NamedEffect], has_deck: bool) -> Vec<Corrected> {
     let lists = effects.iter().filter_map(|e| match &e.extension {
         Extension::Channels(list) if has_deck => Some(list),
         _ => None,
@@ -150,7 +150,7 @@ fn is_corrected(job: &Job, frame: &StrainFrame, gauge: usize) -> bool {
     name.is_some_and(|name| job.corrections.iter().any(|c| is_of(c, name)))
 }
 
-/// A correction as it stands in a job.
+/// A correction of a job.
 pub(super) fn entry(c: &Corrected) -> Value {
     let mut t = Table::new();
     t.insert("gauge".into(), Value::String(c.gauge.clone()));

@@ -29,7 +29,7 @@ pub(super) struct DeckFrame {
     pub(super) fields: Fields,
     pub(super) gauges: Vec<Gauge>,
     pub(super) columns: Vec<UnitLoad>,
-    /// Influence on the mesh as it stands, by the built-in solver.
+    /// Influence on the mesh of the deck, by the built-in solver.
     pub(super) base: Vec<f64>,
     /// Small regions whose stiffness is tried.
     pub(super) regions: Vec<Region>,
@@ -56,7 +56,7 @@ pub(super) fn read(
         return Err(Faults::from(Fault::of(
             &*job.file,
             "model",
-            "S comes from no model",
+            "S does not come from a model",
             "name the deck in [model]",
         )));
     };
@@ -230,7 +230,9 @@ fn in_order(job: &Job, laid: Vec<Gauge>, channels: &[String]) -> Result<Vec<Gaug
             .find(|g| g.name == *name)
             .cloned()
             .ok_or_else(|| {
-                let wrong = format!("the strain file has a column `{name}`, the job no such gauge");
+                let wrong = format!(
+                    "the strain file has a column `{name}`, and the job has no gauge of this name"
+                );
                 Fault::of(&*job.file, "gauge", wrong, "name the gauges as the columns")
             })
     };
@@ -256,10 +258,11 @@ fn mesh_unknown(job: &Job, why: &str) -> Finding {
         "mesh-not-checked",
         "model",
         format!(
-            "what the mesh makes of the strain is not known, since no finer mesh was solved: {why}. Each influence coefficient is taken to err by {:.2} % (1 sd), {:.0} % of the stated model uncertainty",
+            "the mesh error of the strain is unknown, since no finer mesh was solved: {why}. Each influence coefficient is assumed \
+             uncertain by {:.2} % (1 sd), {:.0} % of the stated model uncertainty",
             100.0 * ENTRY_SHARE * stated,
             100.0 * ENTRY_SHARE
         ),
-        "compare the strain at the gauges with that of a finer mesh, and state `model_uncertainty_rel` accordingly",
+        "compare the strain at the gauges with the strain of a finer mesh, and state `model_uncertainty_rel` accordingly",
     )
 }

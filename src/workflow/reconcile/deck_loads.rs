@@ -230,23 +230,39 @@ fn job_loads(job: &Job, model: &Model) -> Result<JobLoads, Faults> {
     let payload = payload_grid(job, model);
     for (l, load) in job.loads.iter().zip(unit_loads(job, model)?) {
         match (&l.acts, l.role) {
-            (LoadActs::AtGrid { grid, component, .. }, LoadRole::Wanted) => {
-                out.wheels.push((l.name.clone(), grid_of(job, model, *grid)?));
-                out.columns.push(scaled(&load, KILO / (l.applied * job.units.si(component.quantity()))));
+            (
+                LoadActs::AtGrid {
+                    grid, component, ..
+                },
+                LoadRole::Wanted,
+            ) => {
+                out.wheels
+                    .push((l.name.clone(), grid_of(job, model, *grid)?));
+                out.columns.push(scaled(
+                    &load,
+                    KILO / (l.applied * job.units.si(component.quantity())),
+                ));
             }
             (LoadActs::Set(sid), LoadRole::Wanted) => faults.push(Fault::at(
                 &*job.file,
                 l.line,
                 "load.load_set",
-                format!("load `{}` is load set {sid}: how much of a set acts in a run, `reconcile` does not read", l.name),
+                format!(
+                    "load `{}` is load set {sid}, and `reconcile` does not accept load sets",
+                    l.name
+                ),
                 "give the load as a grid and a component, or role = \"nuisance\"",
             )),
-            (LoadActs::AtGrid { grid, .. }, LoadRole::Nuisance) if payload.is_some() && model.grid_ix(*grid) == payload => {}
+            (LoadActs::AtGrid { grid, .. }, LoadRole::Nuisance)
+                if payload.is_some() && model.grid_ix(*grid) == payload => {}
             (LoadActs::Named, LoadRole::Wanted) => faults.push(Fault::at(
                 &*job.file,
                 l.line,
                 "load.grid",
-                format!("load `{}` is a name alone: where it acts on the model is not said", l.name),
+                format!(
+                    "load `{}` has a name only: its place on the model is not stated",
+                    l.name
+                ),
                 "state `grid` and `component`",
             )),
             (acts, LoadRole::Nuisance) => out.nuisance.push(JobNuisance {

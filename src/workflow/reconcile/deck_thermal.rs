@@ -145,7 +145,7 @@ fn scaled(
     };
     if let Some((card, _)) = set.unsupported.first() {
         return Err(fault(
-            format!("temperature set {sid} asks for {card}, which is not carried"),
+            format!("temperature set {sid} selects {card}, which is not supported"),
             "give temperatures by TEMP, TEMPD and TEMPP1",
         ));
     }
@@ -153,8 +153,8 @@ fn scaled(
     let range = high - low;
     if !(range > 0.0 && range.is_finite()) {
         return Err(fault(
-            format!("temperature set {sid} is the same everywhere"),
-            "leave it out: an even temperature is `thermal_uniform` already",
+            format!("temperature set {sid} is uniform"),
+            "delete it: `thermal_uniform` contains a uniform temperature already",
         ));
     }
     let default = set.default.unwrap_or(0.0);

@@ -51,7 +51,7 @@ pub(super) fn from_tables(
             &*job.file,
             e.line,
             "reconcile.effect.edit",
-            format!("`{}` edits a deck, and S is given", e.id),
+            format!("`{}` edits a deck, and the job gives S", e.id),
             "give a `signature`, or the deck in `[model]`",
         ))),
     };
@@ -103,8 +103,8 @@ fn from_table(
         return Err(Faults::from(Fault::of(
             &*file.given,
             "header",
-            "no column bears the name of a load",
-            "give a column a load, named as the load or as its column of S",
+            "no column has the name of a load",
+            "give a column for each load, with the name of the load or of its column of S",
         )));
     }
     for (c, (name, factor)) in known {

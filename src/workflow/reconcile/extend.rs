@@ -1,6 +1,6 @@
 //! Changes by the named effects of strain: readings, S, loads of the runs, the deck.
 
-use super::corrected::{Weight, corrections, turned};
+use super::corrected::{Weight, angle_corrections, corrections};
 use super::deck_frame::DeckFrame;
 use super::described::effect_of;
 use super::extended::{ExtendedModel, ExtendedRuns, ExtendedS};
@@ -26,14 +26,14 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
     let moved = |c: &Correction| matches!(c, Correction::PositionMm(_));
     match (&e.extension, deck) {
         (Extension::Channels(list), Some(_)) if list.iter().any(|(_, c)| moved(c)) => {
-            Some("another place of the gauge: change it in the list of gauges")
+            Some("it moves the gauge: change the position in the list of gauges")
         }
         (Extension::LocalStiffness { .. }, Some(_)) => {
-            Some("a change of a region of the deck that no property bounds")
+            Some("it changes the stiffness of a region of the deck that is not a property")
         }
-        (Extension::Described { id, .. }, Some(_)) if !is_edit(job, id) => {
-            Some("a table of strain, which no card of the deck makes: describe it as an `edit`")
-        }
+        (Extension::Described { id, .. }, Some(_)) if !is_edit(job, id) => Some(
+            "it is a table of strain, which no card of the deck describes: describe it as an `edit`",
+        ),
         (
             Extension::NuisanceLoads {
                 source: Nuisance::UniformTemperature,
@@ -41,7 +41,7 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
             },
             Some(_),
         ) => Some(
-            "the apparent strain of an even temperature, which no load of the deck makes: log the temperature in every run",
+            "it is the apparent strain of a uniform temperature, which no load of the deck describes: record the temperature in every run",
         ),
         (
             Extension::NuisanceLoads {
@@ -55,10 +55,10 @@ fn out_of_reach(job: &Job, e: &NamedEffect, deck: Option<&DeckFrame>) -> Option<
             .is_none_or(|r| r.temperature_set.is_none()) =>
         {
             Some(
-                "a temperature that differs from place to place, and the job names no temperature set",
+                "it is a temperature that varies with position, and the job names no temperature set",
             )
         }
-        (Extension::Nothing, _) => Some("no effect of the library"),
+        (Extension::Nothing, _) => Some("it is not an effect of the library"),
         _ => None,
     }
 }
@@ -72,7 +72,7 @@ fn is_edit(job: &Job, id: &str) -> bool {
 ///
 /// # Errors
 /// A job that can't be read again.
-pub(super) fn extended(
+pub(super) fn extend_model(
     job: &Job,
     work: &mut Work,
     frame: &StrainFrame,
@@ -91,7 +91,7 @@ pub(super) fn extended(
         Edited::Deck(bytes) => Some(bytes),
         Edited::Refused => {
             let ids: Vec<&str> = effects.iter().map(|e| e.id.as_str()).collect();
-            let why = "the cards of the deck could not be edited (a property that is no PSHELL or PBUSH, files that do not join)";
+            let why = "the cards of the deck could not be edited (a property other than PSHELL or PBUSH, or files that do not match)";
             work.findings
                 .push(effect_not_in_model(&ids.join(" + "), why));
             return Ok(None);
@@ -105,7 +105,7 @@ pub(super) fn extended(
     let corrections = corrections(job, frame, effects, weights.as_deref());
     let scaled = |e: &&NamedEffect| matches!(e.extension, Extension::Scale(_));
     if let (None, Some(e), true) = (&corrections, effects.iter().find(scaled), deck.is_some()) {
-        let why = "one factor on all strain: change the modulus in the deck, or the gains";
+        let why = "it is one factor on all strain: change the modulus in the deck, or the gains";
         work.findings.push(effect_not_in_model(&e.id, why));
         return Ok(None);
     }
@@ -122,7 +122,7 @@ pub(super) fn extended(
     };
     if sensitivity.is_some() && frame.learnt.is_some() {
         let ids: Vec<&str> = effects.iter().map(|e| e.id.as_str()).collect();
-        let why = "S was calibrated without it, and its covariance knows nothing of the change: calibrate again with the effect in the job";
+        let why = "S was calibrated without it, and the covariance of S does not include the change: calibrate again with the effect in the job";
         work.findings
             .push(effect_not_in_model(&ids.join(" + "), why));
         return Ok(None);
@@ -133,7 +133,7 @@ pub(super) fn extended(
         None => (
             corrected_readings(frame, effects)
                 .map(|values| less_gains(values, frame, effects, weights.as_deref())),
-            turned(effects, deck.is_some()),
+            angle_corrections(effects, deck.is_some()),
         ),
     };
     Ok(Some(ExtendedModel {
@@ -194,7 +194,7 @@ fn less_gains(
     values
 }
 
-/// Where a payload that stands elsewhere than noted is moved.
+/// Place in the extended model in which the recorded position of the payload is corrected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Moved {
     /// Nowhere.
@@ -228,8 +228,8 @@ pub(super) fn effect_not_in_model(id: &str, why: &str) -> Finding {
         Severity::Warning,
         "effect-not-in-model",
         id,
-        format!("no extended model is written, since this effect can't be put into it: {why}"),
-        "put it into the model by hand, then run `reconcile` again",
+        format!("no extended model is written, because this effect cannot be added to it: {why}"),
+        "add it to the model by hand, then run `reconcile` again",
     )
 }
 
@@ -302,8 +302,8 @@ fn runs_with(frame: &StrainFrame, effects: &[NamedEffect], state: &StrainState) 
     }
 }
 
-/// Returns the payload of every run with the identified errors of the records corrected, if the payload weight acts in no run and no column contains
-/// it.
+/// Returns the payload of every run with identified errors of the records corrected. The condition is that the payload weight acts in no run and no
+/// column contains it.
 fn payload_noted(frame: &StrainFrame, effects: &[NamedEffect]) -> Vec<[f64; 3]> {
     let at = |run: &String| frame.observations.runs.iter().position(|r| r == run);
     let mut out = frame.payload.clone();

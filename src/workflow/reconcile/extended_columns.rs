@@ -57,7 +57,7 @@ fn quantity_left_out(load: &str) -> Quantity {
 }
 
 /// Size of a load that was left out, kN or kN m, in the units of the job.
-pub(super) fn expected(job: &Job, load: &str, kilo: f64) -> f64 {
+pub(super) fn typical_size(job: &Job, load: &str, kilo: f64) -> f64 {
     kilo * KILO / job.units.si(quantity_left_out(load))
 }
 

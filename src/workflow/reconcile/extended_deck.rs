@@ -144,7 +144,7 @@ impl DeckFrame {
             pid: Some(id),
             ..bush.card
         });
-        let note = noted(&format!("joint {place}: the property of its own is {id}"));
+        let note = noted(&format!("joint {place}: its separate property is {id}"));
         edits.replace_card(deck, bush.at, &(note + &card)).ok()
     }
 

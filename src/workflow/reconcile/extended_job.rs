@@ -48,13 +48,13 @@ pub fn extended_job(answer: &Reconciled, out: &Path) -> Result<Option<String>, F
         ))
     })?;
     let mut text =
-        String::from("# The job with the named effects in it; `size` and `sigma` as found.\n");
+        String::from("# The job with the identified effects; `size` and `sigma` as found.\n");
     for e in &answer.effects {
         text.push_str(&format!("# {}\n", effect_in_words(e)));
     }
     for r in answer.rivals.iter().filter(|r| r.indistinguishable) {
         text.push_str(&format!(
-            "# {} explains the data as well and is not in it: separate the two before loads unlike these are recovered\n",
+            "# {} fits the data equally well and is not included. Separate the two before you recover other load cases.\n",
             r.id
         ));
     }

@@ -15,7 +15,7 @@ impl Finer {
     /// Why no finer mesh was made.
     pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
         let refined = refined_mesh(model, laid.first().map(|g| g.as_slice()))?;
-        let lost = || "a gauge is on no part of the divided mesh".to_owned();
+        let lost = || "a gauge is not on the refined mesh".to_owned();
         let on = |gauges: &Vec<Gauge>| -> Option<Vec<Gauge>> {
             gauges
                 .iter()

@@ -31,8 +31,9 @@ impl FrameColumns {
             match sensitivity.gauges.iter().position(|g| g == name) {
                 Some(row) => rows.push(row),
                 None => {
-                    let wrong =
-                        format!("the strain file has a column `{name}`, S no row for such a gauge");
+                    let wrong = format!(
+                        "the strain file has a column `{name}`, and S has no row of this name"
+                    );
                     let remedy = "name the gauges as the columns, or leave the column out";
                     faults.push(Fault::of(&*job.file, "gauge", wrong, remedy));
                 }

@@ -6,7 +6,7 @@ use crate::fe::{
 };
 use crate::gauge::{Gauge, reading};
 use crate::host::fault::{Fault, Faults};
-use crate::host::work::stopped;
+use crate::host::work::cancelled_fault;
 use crate::job::Job;
 use crate::model::{GridIx, Model};
 use crate::reconcile::strain::N_PAYLOAD_COLUMNS;
@@ -14,7 +14,7 @@ use crate::stop::Stop;
 use crate::strain_chain::solved::support_of_job;
 use crate::units::MICROSTRAIN;
 
-/// Influence of the columns, `n_gauges x n_columns`, those that stand for nothing zero.
+/// Influence of the columns, `n_gauges x n_columns`, zero for columns without a load.
 pub(super) fn influence(
     job: &Job,
     model: &Model,
@@ -27,7 +27,7 @@ pub(super) fn influence(
     out
 }
 
-/// Sets the columns of an influence matrix that stand for nothing to zero.
+/// Sets the columns of an influence matrix without a load to zero.
 pub(super) fn blank_payload(job: &Job, model: &Model, influence: &mut [f64], n_columns: usize) {
     let blank = if payload_grid(job, model).is_some() {
         1
@@ -133,7 +133,7 @@ fn until(stop: &Stop) -> SolveOptions {
 pub(super) fn of_solver(job: &Job, e: &FeError) -> Faults {
     let remedy = "repair the deck, or give S as CSV files in `[sensitivity]`";
     match e {
-        FeError::Stopped => Faults::from(stopped()),
+        FeError::Stopped => Faults::from(cancelled_fault()),
         e => Faults::from(Fault::of(&*job.file, "model", e.to_string(), remedy)),
     }
 }

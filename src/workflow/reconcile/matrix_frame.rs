@@ -66,7 +66,7 @@ pub(super) fn read(
             &*given.file.given,
             "columns",
             "no load column",
-            "give S a column a load",
+            "give S one column for each load",
         )));
     }
     Ok(part)

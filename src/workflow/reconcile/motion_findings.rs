@@ -19,7 +19,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                 "gap-unexplained",
                 "model",
                 format!(
-                    "There is a gap that nothing in the library closes. {}",
+                    "No effect of the library explains the gap. {}",
                     outcome.remains
                 ),
                 outcome.next_measurement.clone(),
@@ -35,11 +35,11 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                 "readings-below-noise",
                 "vehicle.data",
                 format!(
-                    "The stated noise and tolerances leave {} times what was measured: model and record can't be compared. A channel is not in \
-                     the unit that is taken, its noise is stated too large, or nothing moved.",
+                    "The stated noise and tolerances are {} times the measured quantity: model and record cannot be compared. The assumed \
+                     unit of a channel is wrong, the stated noise is too large, or the vehicle did not move.",
                     number(floor)
                 ),
-                "State the unit after the name of the channel, `f_wheel [kN]`, or the noise that the sensors have.",
+                "State the unit after the name of the channel, `f_wheel [kN]`, or the noise of the sensors.",
             )
             .with_numbers(floor, DROWNED),
         );
@@ -51,7 +51,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
             "no-hold-out",
             "vehicle.hold_out",
             format!(
-                "There is no `hold_out` to judge by: gaps are those of {}.",
+                "The job has no `hold_out` record: the stated gaps are those of {}.",
                 outcome.judged_by.words()
             ),
             "Name a record of another stretch of road as `hold_out` in [vehicle].",
@@ -72,7 +72,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                 "below-detectability",
                 hint.ids.join(" + "),
                 format!(
-                    "There is a hint, too small for this record to name. The smallest size that would have been named: {}.",
+                    "The record indicates an effect that is too small to identify. The smallest size that would be identified: {}.",
                     sizes.join(", ")
                 ),
                 outcome.next_measurement.clone(),
@@ -87,8 +87,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
                     Severity::Warning,
                     "rival",
                     r.ids.join(" + "),
-                    "Explains these data as well as what was named: where this is what is wrong, the parameters of a model that holds what was \
-                     named are off.",
+                    "This alternative fits the data equally well. If it is the true cause, the parameters of the extended model are wrong.",
                     outcome.next_measurement.clone(),
                 )
                 .with_numbers(r.evidence_difference, 3.0),

@@ -73,12 +73,12 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     findings(work, &outcome);
     let can_state = motion_job::can_state(&outcome);
     let lost = outcome.effects.iter().filter(|e| is_lost(e));
-    let why = "what such a channel should have read nobody knows, and no correction brings it back: repair it and drive again";
+    let why = "the true signal of the channel is unknown, and no correction restores it: repair it and drive again";
     let lost = lost.map(|e| effect_not_in_model(&e.id, why));
     work.findings.extend(lost);
     if named && !can_state {
         let ids: Vec<&str> = outcome.effects.iter().map(|e| e.id.as_str()).collect();
-        let why = "a channel has several slips, low-passes or lines, and [vehicle] corrections states one of each";
+        let why = "a channel has several slips, low-pass filters or interference lines, and [vehicle] corrections contains one of each kind";
         work.findings
             .push(effect_not_in_model(&ids.join(" + "), why));
     }
@@ -186,10 +186,10 @@ fn without_dead_hold_out(work: &mut Work, section: &VehicleJob, frame: &mut Moti
         "no-hold-out",
         "vehicle.hold_out",
         format!(
-            "`{file}` can't judge: {} carries no signal there",
+            "`{file}` cannot serve as hold-out: {} has no signal there",
             dead.join(", ")
         ),
-        "name a record in which every channel is alive as `hold_out` in [vehicle]",
+        "name a record in which every channel has a signal as `hold_out` in [vehicle]",
     ));
 }
 

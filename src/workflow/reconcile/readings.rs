@@ -4,7 +4,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{HoldOut, Job, Measured, Reference};
-use crate::measured::zero::{Zeroed, judged, read_zeroed, some_left};
+use crate::measured::zero::{Zeroed, read_zeroed, some_left, subtract_and_test_zero};
 use crate::reconcile::Observations;
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
@@ -65,12 +65,12 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
         out.values.extend(&kept.microstrain);
     }
     if out.held_out.iter().all(|h| *h) || out.runs.len() < 2 {
-        let wrong = "fewer than one run to fit and one to prove";
+        let wrong = "fewer than one run for the fit and one for the proof";
         return Err(Faults::from(Fault::of(
             &*table.file,
             "run",
             wrong,
-            "measure more runs, keep some from `hold_out`",
+            "measure more runs, or remove some from `hold_out`",
         )));
     }
     if !out.held_out.iter().any(|h| *h) {
@@ -78,8 +78,8 @@ pub(super) fn observations(job: &Job, work: &mut Work) -> Result<Observations, F
             Severity::Warning,
             "no-hold-out",
             &*table.file,
-            "[measured] has no `hold_out`: the gap is cross-validated, every run in turn judged by what the others tell",
-            "keep a third of the runs with `hold_out`",
+            "[measured] has no `hold_out`: the gap is cross-validated, each run is predicted from the other runs",
+            "hold out a third of the runs with `hold_out`",
         ));
     }
     judge(work, measured, &table.file, &noise_factor, &mut out)?;
@@ -107,7 +107,7 @@ fn judge(
             noise_factor: *noise_factor,
         })
         .collect();
-    let kept = judged(work, measured, &observations.channels, &readings);
+    let kept = subtract_and_test_zero(work, measured, &observations.channels, &readings);
     some_left(file, &kept)?;
     let strain = kept.iter().flat_map(|r| &r.strain);
     for (v, kept) in observations.values.iter_mut().zip(strain) {

@@ -1,7 +1,7 @@
 //! Static frame: the model part joined with the measured strain and the recorded loads of the runs.
 
 use super::model_part::ModelPart;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::Job;
@@ -51,11 +51,11 @@ pub(super) fn frame(
     }
     if let Some(first) = without_row.first() {
         let of_file = rows.iter().map(|r| r.run.as_str());
-        let general = "give every run of the strain file a row";
+        let general = "add a row for every run of the strain file";
         faults.push(Fault::of(
             &*runs.file.given,
             "run",
-            format!("no row for {}", few(&without_row)),
+            format!("no row for {}", list_few(&without_row)),
             header_remedy(first, of_file, general),
         ));
     }
@@ -70,8 +70,8 @@ pub(super) fn frame(
                     &*runs.file.given,
                     first.line,
                     name.clone(),
-                    format!("load `{name}` has no value in {}", few(&names)),
-                    "give the load in every run, 0 where it does not act",
+                    format!("load `{name}` has no value in {}", list_few(&names)),
+                    "state the load in every run, 0 if it does not act",
                 ))
             }
             None => None,

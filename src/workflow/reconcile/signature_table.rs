@@ -44,7 +44,7 @@ impl SignatureTable {
                     &*named.given,
                     "gauge",
                     format!("no row for gauge `{gauge}`"),
-                    "give every gauge a row",
+                    "add a row for every gauge",
                 )),
             }
         }
@@ -99,7 +99,7 @@ impl SignatureTable {
                 1,
                 name,
                 wrong,
-                "name the columns as the job does",
+                "name the columns as in the job",
             )));
         };
         self.mark(c);

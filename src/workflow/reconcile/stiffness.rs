@@ -81,8 +81,8 @@ impl DeckFrame {
         Ok(wanted.into_iter().map(signature).collect())
     }
 
-    /// Change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]), from a solution of
-    /// the changed model on the mesh as it stands.
+    /// Change of the influence matrix when the stiffness of a zone or a joint changes by `percent` (see [`factor`]), from a solution of the changed
+    /// model on the mesh of the deck.
     pub(super) fn stiffness_change(
         &self,
         job: &Job,

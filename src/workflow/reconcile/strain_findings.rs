@@ -20,11 +20,11 @@ fn far_above_readings(outcome: &Outcome) -> Option<Finding> {
             "model-far-above-readings",
             "runs",
             format!(
-                "the noted loads and payloads make {} times the strain that was read: a column of the runs file, or the readings, are in \
-                 another unit, and no effect found here means anything",
+                "the recorded loads and payloads give {} times the measured strain: a column of the runs file, or the readings, are in \
+                 another unit. Do not use the effects found here",
                 number(gap.before)
             ),
-            "state the units of the runs file: [runs] units = { force = \"N\" }, or beside a column's name; readings count in microstrain",
+            "state the units of the runs file, [runs] units = { force = \"N\" } or after a column\'s name; readings are in microstrain",
         )
         .with_numbers(gap.before, OTHER_UNIT)
     })
@@ -45,8 +45,8 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                 Severity::Warning,
                 "noise-above-stated",
                 "measured.noise_microstrain",
-                format!("the readings scatter {:.2} times as much as their stated noise allows, alike at all gauges", outcome.noise_factor),
-                "find what scatters (repeat a run three times), or state the noise that the repeats show",
+                format!("the readings scatter {:.2} times as much as their stated noise allows, equally at all gauges", outcome.noise_factor),
+                "find the cause of the scatter (repeat a run three times), or state the noise that the repeats show",
             )
             .with_numbers(outcome.noise_factor, NOISE_KNOWN),
         );
@@ -61,7 +61,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                 "gap-unexplained",
                 "model",
                 format!(
-                    "there is a gap, and no effect of the library is named for it: {}",
+                    "the model has a gap, and no effect of the library explains it: {}",
                     outcome.remains
                 ),
                 outcome.next_measurement.clone(),
@@ -76,7 +76,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                 .unwrap_or_default();
             let size = outcome.detectable.iter().find(|d| d.id == hint).map(|d| {
                 format!(
-                    "; the smallest that would be seen: {:.3} {}",
+                    "; the smallest size that would be seen: {:.3} {}",
                     d.size, d.unit
                 )
             });
@@ -85,7 +85,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                 "below-detectability",
                 hint,
                 format!(
-                    "a hint of an effect, too small to name{}",
+                    "the readings indicate an effect that is too small to identify{}",
                     size.unwrap_or_default()
                 ),
                 outcome.next_measurement.clone(),
@@ -98,8 +98,8 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                         Severity::Warning,
                         "rival",
                         r.ids.join(" + "),
-                        "explains these data as well as what was named: where this is what is wrong, loads unlike those of these runs are \
-                         recovered wrong by a model that holds what was named",
+                        "this alternative fits the data equally well. If it is the true cause, the extended model gives wrong loads for \
+                         other load cases",
                         outcome.next_measurement.clone(),
                     )
                     .with_numbers(r.evidence_difference, 3.0),
@@ -112,7 +112,7 @@ pub(super) fn findings(work: &mut Work, outcome: &Outcome) {
                         "load-moved",
                         format!("{} in {}", l.load, l.run),
                         format!(
-                            "the recovered load moves from {:.2} to {:.2} {} with the effect in",
+                            "with the effect, the recovered load changes from {:.2} to {:.2} {}",
                             l.before, l.after, l.unit
                         ),
                         "use the extended model",
@@ -135,7 +135,7 @@ fn smooth(outcome: &Outcome) -> Finding {
                 .as_ref()
                 .map_or(String::new(), |l| format!(" under {l}"));
             format!(
-                "{:.3} +- {:.3} at {}{load}",
+                "{:.3} ± {:.3} at {}{load}",
                 s.factor,
                 NORMAL_95 * s.sd,
                 s.gauge
@@ -150,11 +150,11 @@ fn smooth(outcome: &Outcome) -> Finding {
         "smooth",
         "model",
         format!(
-            "the model is off by a factor that changes smoothly from place to place, from {} to {}: no single effect explains these runs clearly better",
+            "the model is wrong by a factor that changes smoothly with position, from {} to {}: no single effect explains these runs clearly better",
             at(outcome.smooth.iter().min_by(by_factor)),
             at(outcome.smooth.iter().max_by(by_factor)),
         ),
-        "compare mesh, sections, supports and load paths with the structure where the factor leaves one, or add gauges between these places",
+        "where the factor differs from 1, compare mesh, sections, supports and load paths with the structure, or add gauges between these places",
     )
     .with_numbers(farthest, 0.0)
 }

@@ -4,7 +4,7 @@ use super::answer::StrainPart;
 use super::corrected::entry;
 use super::deck_thermal;
 use super::extended::{DECK, ExtendedModel, ExtendedS, PAYLOAD, RUNS, SENSITIVITY, STRAIN};
-use super::extended_columns::{expected, sensitivity_columns};
+use super::extended_columns::{sensitivity_columns, typical_size};
 use super::extended_loads::{component_word, entries, side_loads};
 use crate::job::Job;
 use crate::reconcile::NamedEffect;
@@ -143,7 +143,7 @@ fn edit_sensitivity(table: &mut Table, job: &Job, frame: &StrainFrame, s: &Exten
                 Value::String(component_word(name).into()),
             );
             t.insert("role".into(), Value::String("nuisance".into()));
-            let size = expected(job, name, *size);
+            let size = typical_size(job, name, *size);
             t.insert("expected".into(), Value::Float(size));
             list.push(Value::Table(t));
         }

@@ -20,7 +20,7 @@ use crate::job::{EffectSource, Job};
 use crate::linalg::Matrix;
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{
-    StiffnessOf, StrainFrame, examine, gauges_installed_otherwise, predict, refused,
+    StiffnessOf, StrainFrame, examine, gauges_installed_otherwise, outcome_of_wrong_inputs, predict,
 };
 use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
 use crate::strain_chain::alternatives_of;
@@ -50,7 +50,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
             return Err(Faults::from(Fault::of(
                 &*job.file,
                 "model",
-                "neither `[model]` nor `[sensitivity]`",
+                "the job has neither `[model]` nor `[sensitivity]`",
                 "name the deck, or the CSV file with S",
             )));
         }
@@ -71,7 +71,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     }
     let mut outcome = match wrong.is_empty() {
         true => searched(work, &frame, &only)?,
-        false => work.stage("search", |_| refused(&frame, wrong)),
+        false => work.stage("search", |_| outcome_of_wrong_inputs(&frame, wrong)),
     };
     if let Some(deck) = &mut deck {
         let off = gauges_that_disagree(&outcome);
@@ -96,7 +96,7 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
     }
     findings(work, &outcome);
     let extended_model = match outcome.verdict {
-        Verdict::Named => extend::extended(job, work, &frame, &outcome, deck.as_ref())?,
+        Verdict::Named => extend::extend_model(job, work, &frame, &outcome, deck.as_ref())?,
         _ => None,
     };
     let added = added_to_strain(
@@ -215,8 +215,8 @@ fn strain_part(
 fn gap_found(outcome: &Outcome) -> GapFound {
     let gap = &outcome.gap;
     GapFound {
-        metric: "RMS(reading - model) / RMS(reading); amplitudes of the named effects that differ from run to run are found from one \
-                 half of the gauges and judged on the other; nothing else is found anew, before, after or in the floor"
+        metric: "RMS(reading - model) / RMS(reading). Amplitudes that differ from run to run are estimated from one half of the gauges and tested \
+         on the other half. Before, after and floor use the same other parameters"
             .to_owned(),
         before: gap.before,
         after: gap.after,

@@ -2,7 +2,7 @@
 
 use super::answer::{EffectFound, GapFound, Reconciled};
 use crate::estimate::NORMAL_95;
-use crate::finding::few;
+use crate::finding::list_few;
 use crate::reconcile::Verdict;
 use crate::units::{number, plus_minus};
 
@@ -72,7 +72,7 @@ fn clause(e: &EffectFound) -> String {
             format!("the model lacks {} kg at {place}", plus_minus(*v, *half))
         }
         ("thermal_uniform", [(v, half)]) => format!(
-            "the temperature differs from that of the zeros by {} degC (rms over the runs)",
+            "the temperature differs from the temperature of the zeros by {} degC (rms over the runs)",
             plus_minus(*v, *half)
         ),
         ("lateral_wheel_loads", sizes) if sizes.len() == SIDE.len() => {
@@ -130,7 +130,7 @@ impl Reconciled {
                 self.nearest()
             ),
             Verdict::BelowDetectability => format!(
-                "An effect is indicated, too small for these data to identify{}.{}",
+                "The data indicate an effect that is too small to identify{}.{}",
                 open(gap),
                 self.nearest()
             ),
@@ -156,8 +156,8 @@ impl Reconciled {
         match names.len() {
             0 => String::new(),
             _ => format!(
-                "; {} {} off by up to {} microstrain and now by up to {}",
-                few(&names[..names.len().min(MOST)]),
+                "; {} {} off by up to {} microstrain, and now by up to {} microstrain",
+                list_few(&names[..names.len().min(MOST)]),
                 if names.len() == 1 { "was" } else { "were" },
                 number(residuals(false)),
                 number(residuals(true))

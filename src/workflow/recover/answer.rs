@@ -9,7 +9,7 @@ use super::sink::RecordHead;
 use super::trace::Spans;
 use super::validation::ValidationGauge;
 use crate::host::outcome::Answer;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::Job;
 use crate::recovery::{Readings, Recovery, Sums};
 use crate::sensitivity::Sensitivity;
@@ -62,8 +62,8 @@ impl Answer for Recovered {
     fn verdict(&self) -> String {
         let spans = self.spans();
         let measured = match &self.states {
-            States::Runs(runs) => counted(runs.runs.len(), "run"),
-            States::Record(record) => counted(record.samples as usize, "sample"),
+            States::Runs(runs) => count_of(runs.runs.len(), "run"),
+            States::Record(record) => count_of(record.samples as usize, "sample"),
         };
         let known = spans.iter().filter(|s| s.share().is_finite());
         let least_certain = known.max_by(|a, b| a.share().total_cmp(&b.share()));
@@ -77,7 +77,7 @@ impl Answer for Recovered {
         });
         format!(
             "{} from {measured}{least_certain}; residual {}.",
-            counted(spans.len(), "load"),
+            count_of(spans.len(), "load"),
             self.states.residual()
         )
     }

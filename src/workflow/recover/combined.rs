@@ -19,7 +19,7 @@ pub struct Listed {
 ///
 /// # Errors
 /// Combinations of loads that S lacks, of forces with moments, or that bear a load's name.
-pub fn listed(job: &Job, s: &Sensitivity) -> Result<Listed, Faults> {
+pub fn list_load_columns(job: &Job, s: &Sensitivity) -> Result<Listed, Faults> {
     let mut names: Vec<String> = s.loads.iter().map(|l| l.name.clone()).collect();
     let mut units = load_units(job, &names);
     let mut faults = FaultList::new();

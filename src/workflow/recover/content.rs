@@ -47,7 +47,7 @@ pub(super) fn check_band(names: &[String], content: &[Option<f64>], up_to_hz: f6
     let beyond = names.iter().zip(content).filter_map(|(name, f)| {
         let f = f.filter(|f| *f > up_to_hz)?;
         let message = format!(
-            "its content reaches {f:.2} Hz, beyond the {up_to_hz} Hz up to which it is recovered: what is faster is not in it"
+            "its content reaches {f:.2} Hz, above the limit of {up_to_hz} Hz: the recovered load does not contain faster changes"
         );
         let remedy = "raise `up_to_hz` of [dynamic], if the gauges determine the loads there";
         Some(
@@ -82,8 +82,9 @@ pub(super) fn check_content(
                     Severity::Warning,
                     "content-near-first-mode",
                     format!("load `{name}`"),
-                    format!("its content reaches {f:.2} Hz, a third or more of the first elastic mode of {structure} ({first_mode:.2} Hz): quasi-static recovery reads elastic vibration as load"),
-                    "state [dynamic] (the vibration is then taken out with the modes of the model), low-pass the strain below a third of the first mode, or take the loads from accelerations (`identify`)",
+                    format!("its content reaches {f:.2} Hz, a third or more of the first elastic mode of {structure} ({first_mode:.2} Hz): \
+                     quasi-static recovery treats elastic vibration as load"),
+                    "state [dynamic] to subtract the vibration. Or low-pass filter the strain below a third of the first mode, or recover the loads from accelerations (`identify`)",
                 )
                 .with_numbers(f, limit),
             )

@@ -85,9 +85,9 @@ pub(super) fn about_damage(slope: f64) -> Finding {
         "pseudo-damage",
         "damage",
         format!(
-            "rainflow counts by ASTM E1049-85, open ranges as half cycles; pseudo-damage is the sum of cycles times range to the \
-             power {slope}, without a limit below which ranges do no harm. It compares records; it is no life. Its interval moves all \
-             ranges together by their own 95 % interval"
+            "rainflow counts by ASTM E1049-85, open ranges as half cycles. Pseudo-damage is the sum of cycles times range to the power \
+             {slope}, without a fatigue limit. It compares records and is not a life. Its interval shifts all ranges together by their own \
+             95 % interval"
         ),
         "state the slope of the part's S-N curve: [recover] slope",
     )

@@ -67,20 +67,18 @@ pub(super) fn without_dead_parts(
 /// Returns the warning of a gauge that is dead from one time to another, s.
 pub(crate) fn silent_in_part(gauge: &str, gives: Gives, [from, to]: [f64; 2]) -> Finding {
     let [what, why] = match gives {
-        Gives::Nothing => ["nothing", "read"],
-        Gives::OneValue | Gives::Signal => {
-            ["one and the same value", "say that its strain changes"]
-        }
+        Gives::Nothing => ["no reading", "have readings"],
+        Gives::OneValue | Gives::Signal => ["a constant reading", "show that its strain changes"],
     };
     Finding::new(
         Severity::Warning,
         "gauge-silent",
         gauge,
         format!(
-            "it gives {what} from t = {from:.6} s to t = {to:.6} s, while the others {why}: there the loads are those of the others, with wider \
-             intervals"
+            "it has {what} from t = {from:.6} s to t = {to:.6} s, while the others {why}. Loads in this span are computed from the other \
+             gauges, with wider intervals"
         ),
-        "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+        "repair the channel, or exclude its gauge: [[correction]] ignore = true",
     )
     .with_numbers(to - from, 0.0)
 }
@@ -98,10 +96,10 @@ fn stands_still(record: &Record, parts: &[[usize; 2]]) -> Option<Finding> {
         "record-stands-still",
         record.file(),
         format!(
-            "from t = {from:.6} s to t = {to:.6} s{others} no gauge changes by a digit: the structure stands still there, or its logger gave nothing \
-             and repeats itself; the readings count as they are"
+            "from t = {from:.6} s to t = {to:.6} s{others} all gauges are constant. Either the structure is at standstill, or the logger \
+             recorded no signal and repeats its last values. The readings are used"
         ),
-        "leave the field blank where nothing was measured: loads and cycles there are then left out",
+        "leave the field blank if nothing was measured: loads and cycles are then blank too",
     );
     Some(finding.with_numbers(parts.len() as f64, 0.0))
 }

@@ -59,7 +59,7 @@ pub(super) struct Rested {
 /// # Errors
 /// A job without a model that could vibrate; a band that does not fit the sampling rate; gauges that don't determine the loads in the band; a record
 /// that is too long.
-pub(super) fn rested(
+pub(super) fn remove_vibration(
     work: &mut Work,
     task: &Task,
     record: &Record,
@@ -85,9 +85,11 @@ pub(super) fn rested(
     if samples.saturating_mul(n).saturating_add(errors) > MOST_NUMBERS {
         return Err(fault(
             format!(
-                "the record has {samples} samples of {n} gauges, which are held in memory with what they are off by while the structure's vibration is taken out"
+                "the record has {samples} samples of {n} gauges. Readings and their errors must be held in memory while the vibration of \
+                 the structure is subtracted"
             ),
-            "cut the record into parts: readings, and half of the squared number of gauges in each period of `up_to_hz`, are 100 million numbers at most",
+            "cut the record into parts. The limit is 100 million numbers: readings, and half of the squared number of gauges in each \
+             period of `up_to_hz`",
         ));
     }
     let readings = record.columns()?;
@@ -102,10 +104,11 @@ pub(super) fn rested(
     if rested.known == 0 && rested.read > 0 {
         return Err(fault(
             format!(
-                "no stretch of the record in which the same gauges read, and tell the loads, is longer than {:.4} s, twice what a sample at rest hangs on",
+                "no stretch of the record with readings of the same gauges is longer than {:.4} s. A quasi-static sample depends on half \
+                 of that time",
                 2.0 * motion.blank_s
             ),
-            "take a longer record, or a higher `up_to_hz`",
+            "record a longer time, or state a higher `up_to_hz`",
         ));
     }
     work.findings
@@ -131,12 +134,14 @@ fn remedy_of(e: &Unfit) -> &'static str {
         Unfit::Untold { .. } => {
             "state a lower `up_to_hz`, add gauges, or give nuisance loads `expected`"
         }
-        Unfit::Narrow { .. } => "state a higher `up_to_hz`, or give a record of a lower rate",
+        Unfit::Narrow { .. } => {
+            "state a higher `up_to_hz`, or give a record with a lower sample rate"
+        }
         Unfit::Large { .. } => {
             "recover with fewer gauges, or state a lower `up_to_hz`, which takes fewer modes"
         }
         Unfit::Rings { .. } => {
-            "state a lower `up_to_hz`, or add gauges that measure the loads of which the others measure little"
+            "state a lower `up_to_hz`, or add gauges for the loads that are measured least"
         }
     }
 }
@@ -155,8 +160,8 @@ fn dynamics(
     let Some(fields) = &task.prepared.fields else {
         return Err(fault(
             "dynamic",
-            "S is given without a model: nothing is known of the structure's modes".to_owned(),
-            "give a [model], or take [dynamic] out and low-pass the strain",
+            "S is given without a model: the modes of the structure are unknown".to_owned(),
+            "give a [model], or delete [dynamic] and low-pass filter the strain",
         ));
     };
     let deck = &fields.deck;
@@ -178,8 +183,8 @@ fn dynamics(
         let Some(l) = job.loads.iter().position(|l| l.name == load.name) else {
             return Err(fault(
                 "load",
-                format!("where load `{}` acts is not known", load.name),
-                "give it a [[load]] with `grid` and `component`, or take [dynamic] out",
+                format!("the place of load `{}` is not known", load.name),
+                "give it a [[load]] with `grid` and `component`, or delete [dynamic]",
             ));
         };
         columns.push(l);
@@ -191,7 +196,7 @@ fn dynamics(
                 fault(
                     "gauge",
                     format!("gauge `{name}` has no strain in the structure's modes"),
-                    "take it out, or move it to an element of the deck",
+                    "delete it, or move it to an element of the deck",
                 )
             })
         };
@@ -254,10 +259,10 @@ fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
     let most = known.map(|k| k.into_iter().fold(0.0_f64, f64::max));
     let as_at_rest = match most {
         Some(most) => format!(
-            "taken as at rest, a load would be off by up to {:.1} % of its rms about the mean",
+            "without the correction, a load would be wrong by up to {:.1} % of its rms about the mean",
             100.0 * most
         ),
-        None => "what loads would be off by if taken as at rest is not known".to_owned(),
+        None => "the error of the loads without the correction is not known".to_owned(),
     };
     let first = motion.modes_hz.first();
     let first = first.map_or_else(String::new, |f| format!(", the first at {f:.2} Hz"));
@@ -266,7 +271,7 @@ fn about(motion: &Motion, asked: Dynamic, file: &str) -> Finding {
         "vibration-taken-out",
         file,
         format!(
-            "loads up to {} Hz, with {} modes{first}, damping {}: {as_at_rest}; {:.3} s at either end and beside gaps are blank",
+            "loads up to {} Hz, with {} modes{first}, damping {}: {as_at_rest}; {:.3} s at either end and next to gaps are blank",
             asked.up_to_hz,
             motion.modes_hz.len(),
             asked.damping,
@@ -287,6 +292,6 @@ pub(super) fn without_record() -> Finding {
         "dynamic-without-record",
         "dynamic",
         "the strain file contains runs, which are treated as quasi-static: [dynamic] has no effect",
-        "name a record, or take [dynamic] out",
+        "name a record, or delete [dynamic]",
     )
 }

@@ -18,7 +18,7 @@ const MOST_ROWS: usize = 20_000;
 ///
 /// # Errors
 /// A file asked for that this build can't write.
-pub(super) fn wanted(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
+pub(super) fn select_load_files(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults> {
     let Some(files) = &job.recover.files else {
         let list = LoadFile::ALL.iter().map(|f| f.1);
         let few = list.filter(|f| {
@@ -35,7 +35,7 @@ pub(super) fn wanted(job: &Job, samples: usize) -> Result<Vec<LoadFile>, Faults>
             &*job.file,
             "recover.files",
             "this build of strainbridge does not write Parquet",
-            "take a released binary, build with `--features parquet`, or leave `parquet` out",
+            "use a released binary, build with `--features parquet`, or delete `parquet`",
         )));
     }
     Ok(files.clone())
@@ -88,7 +88,7 @@ fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
     let samples = sums.missing.samples();
     let repeated: u64 = (0..head.n_loads()).map(|l| samples - sums.known(l)).sum();
     let gaps = if repeated > 0 {
-        format!("; {repeated} numbers that were not measured repeat the one before")
+        format!("; {repeated} missing numbers repeat the number before")
     } else {
         String::new()
     };
@@ -96,7 +96,7 @@ fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
         String::new()
     } else {
         format!(
-            "; its time begins at 0, that of the record at {} s",
+            "; its time begins at 0, the record begins at {} s",
             head.first_s
         )
     };
@@ -105,10 +105,10 @@ fn quantised(head: &RecordHead, sums: &Sums) -> Finding {
         "rpc-quantised",
         "loads.rsp",
         format!(
-            "16-bit integers: values are off by up to half of a step, which is {}{gaps}{start}",
+            "16-bit integers: values are rounded by up to half a step, {}{gaps}{start}",
             steps.join(", ").trim_end()
         ),
-        "take `loads.csv` or `loads.bin` where that matters",
+        "use `loads.csv` or `loads.bin` if this matters",
     )
 }
 
@@ -127,7 +127,7 @@ fn left_out(job: &Job, head: &RecordHead, sums: &Sums) -> Option<Finding> {
             Severity::Info,
             "files-not-written",
             left.join(", "),
-            "the record is long: these files are written only where they are asked for",
+            "the record is long: these files are written only on request",
             "name them in [recover] files",
         )
         .with_numbers(sums.missing.samples() as f64, MOST_ROWS as f64),

@@ -2,7 +2,7 @@
 //! `[sensitivity] signatures.payload`; from a deck that of the job's nuisance loads at `[payload] grid`.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
 use crate::job::payload_signature::{COLUMNS, note_unread};
@@ -12,10 +12,10 @@ use crate::measured::runs_file::{RunRow, read_runs};
 use crate::recovery::Readings;
 use crate::units::MICROSTRAIN;
 
-/// Loads that are known, by run: number of the load, value in job units. What the recovery finds of them is what is left besides.
+/// Loads that are known, by run: number of the load, value in job units. The recovery determines the remainder of these loads.
 pub(super) type KnownLoads = Vec<Vec<(usize, f64)>>;
 
-/// Takes the strain of the known payload from the readings of every run; what is left is that of the loads.
+/// Takes the strain of the known payload from the readings of every run; the remaining strain is the strain of the loads.
 ///
 /// `strain = m (b0 + dx b_dx + dy b_dy + dx dy b_dxdy)`, `dx`, `dy` from the nominal place of `[payload]`.
 ///
@@ -86,7 +86,7 @@ pub(super) fn take_out(
         work.findings.push(Finding::new(
             Severity::Warning,
             "payload-unknown",
-            few(&unknown),
+            list_few(&unknown),
             "the runs file states no payload for these runs: none is assumed",
             "state its mass (0 without a payload) and its place",
         ));
@@ -193,7 +193,7 @@ fn signature(
                 &*file.given,
                 "gauge",
                 format!("no row for gauge `{gauge}`"),
-                "give every gauge a row",
+                "add a row for every gauge",
             )),
             Some(row) => {
                 for ((b, column), scale) in b.iter_mut().zip(COLUMNS).zip(scale) {

@@ -1,6 +1,6 @@
 //! Tests of measured strain before its loads are recovered, for `check`.
 
-use super::combined::listed;
+use super::combined::list_load_columns;
 use super::task::{Task, task_of, without_reference};
 use super::{open_strain, record, runs};
 use crate::host::fault::{FaultList, Faults};
@@ -68,7 +68,7 @@ fn readings(work: &mut Work, task: &Task, known: Known) -> Result<(), Faults> {
         if task.job.reconcile.is_none() {
             work.findings.extend(check_separability(&s.unconditioned()));
         }
-        listed(task.job, s)?;
+        list_load_columns(task.job, s)?;
     }
     let (s, readings) = match open_strain(work, task.job, task.measured)? {
         MeasuredStrain::Record(record) => record::look(work, task, &record)?,

@@ -36,7 +36,7 @@ pub use answer::{
     RunFit, States,
 };
 pub use by_load::LoadSpan;
-pub(super) use combined::{Listed, listed};
+pub(super) use combined::{Listed, list_load_columns};
 pub use compare::{Comparison, ComparisonShift, LoadComparison};
 pub use damage::LoadDamage;
 pub(super) use dead_parts::silent_in_part;

@@ -3,11 +3,11 @@
 use super::answer::{Beside, Content, GaugeResidual, RecordLoad, RecoveredRecord};
 use super::block::block;
 use super::calibrated;
-use super::combined::{Listed, listed};
+use super::combined::{Listed, list_load_columns};
 use super::compare::{self, Gap};
 use super::damage::{Counting, LoadDamage, about_damage, damage};
 use super::dead_parts::{Living, without_dead_parts};
-use super::dynamic::{Motion, rested};
+use super::dynamic::{Motion, remove_vibration};
 use super::files;
 use super::judged::{check_times, content, judge, judge_at_rest, spread};
 use super::runs::identical;
@@ -56,7 +56,7 @@ pub(super) fn record(
         names,
         units,
         sums: combinations,
-    } = listed(task.job, &sensitivity)?;
+    } = list_load_columns(task.job, &sensitivity)?;
     let Living {
         record,
         readings,
@@ -67,7 +67,7 @@ pub(super) fn record(
     let clock = record.clock().clone();
     let recorded = compare::record_of_job(work, task, &names)?;
     let parts = sections::parts(task.job, &clock)?;
-    let rested = rested(work, task, &record, &sensitivity)?;
+    let rested = remove_vibration(work, task, &record, &sensitivity)?;
     let (judged, errors, at_rest, motion, blank) = match rested {
         Some(r) => {
             let readings = spread((r.noise_factor, r.apart), &r.record, &zero)?;
@@ -107,7 +107,7 @@ pub(super) fn record(
         first_s,
         step_s,
         stride: task.job.recover.csv_every,
-        files: files::wanted(task.job, about)?,
+        files: files::select_load_files(task.job, about)?,
         is_compared: recorded.is_some() || !parts.is_empty(),
     });
     sink.begin(&head)?;
@@ -124,7 +124,8 @@ pub(super) fn record(
         Some(c) => c.found(&compared, head.filter.whole()),
         None => Vec::new(),
     };
-    work.findings.extend(validation::contradicted(&validation));
+    work.findings
+        .extend(validation::report_contradictions(&validation));
     let slope = task.job.recover.slope;
     let mut beside = Beside {
         validation,
@@ -277,7 +278,7 @@ fn unusable(task: &Task) -> Fault {
     Fault::of(
         file,
         "sensitivity",
-        "S holds numbers that are not finite, or too large to reckon with",
+        "S contains numbers that are not finite, or too large to compute with",
         "check the table of S, or the results of the unit loads",
     )
 }

@@ -2,7 +2,7 @@
 
 use super::known_payload::KnownLoads;
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::input_faults::{RecordedRuns, findings_of_recorded_loads};
@@ -105,7 +105,7 @@ fn without_row(file: &str, runs: &[&str], all: usize) -> Option<Finding> {
         Finding::new(
             severity,
             "run-without-record",
-            few(runs),
+            list_few(runs),
             format!(
                 "`{file}` has no row for {} of {all} measured runs: they are not compared with recorded loads",
                 runs.len()

@@ -2,14 +2,14 @@
 
 use super::answer::{Beside, RecoveredRuns};
 use super::calibrated;
-use super::combined::{Listed, listed};
+use super::combined::{Listed, list_load_columns};
 use super::compare;
 use super::known_payload::{self, KnownLoads};
 use super::recorded;
 use super::sections;
 use super::task::Task;
 use super::validation::{self, ValidationGauge};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::work::Work;
 use crate::input_faults::identical::identical_readings;
@@ -97,9 +97,9 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
             Finding::new(
                 Severity::Warning,
                 "readings-missing",
-                few(&blank),
-                format!("{n} readings of `{}` are blank: the loads of these runs are those of the other gauges, with wider intervals", table.file),
-                "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+                list_few(&blank),
+                format!("{n} readings of `{}` are blank. Loads of these runs are computed from the other gauges, with wider intervals", table.file),
+                "repair the channel, or exclude its gauge: [[correction]] ignore = true",
             )
             .with_numbers(n as f64, 0.0),
         );
@@ -109,9 +109,9 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
             Finding::new(
                 Severity::Warning,
                 "readings-repeated",
-                few(&repeated),
-                "these runs have the same readings at all gauges, to the last digit, as no two measurements have: one is a copy",
-                "look the runs up in the logger's files",
+                list_few(&repeated),
+                "the readings of these runs agree at all gauges to the last digit. Two measurements never agree so far. One run is a copy",
+                "check the runs in the files of the logger",
             )
             .with_numbers(repeated.len() as f64, 0.0),
         );
@@ -121,9 +121,9 @@ fn blanks(table: &StrainTable, names: &[String], gauges: &[(usize, &str)]) -> Ve
             Finding::new(
                 Severity::Warning,
                 "readings-all-alike",
-                few(&alike),
-                "in these runs all gauges give one and the same number, as loggers do that measure nothing: it counts as read",
-                "leave the run out if nothing was measured; blank fields are no readings",
+                list_few(&alike),
+                "in these runs all gauges have one common reading, as a logger without signal gives. The readings are used",
+                "leave the run out if nothing was measured; leave missing readings blank",
             )
             .with_numbers(alike.len() as f64, 0.0),
         );
@@ -155,7 +155,8 @@ pub(super) fn solve(work: &mut Work, task: &Task, table: &StrainTable) -> Result
     work.findings.extend(identical(&s, &readings));
     s = recovery.s(&s);
     let validation = validation::of_runs(task, (&s, &readings), &all, &recovery);
-    work.findings.extend(validation::contradicted(&validation));
+    work.findings
+        .extend(validation::report_contradictions(&validation));
     let wrong = recorded::wrong_records(work, task, (&s, &readings), &recovery, &known)?;
     work.findings
         .extend(not_explained_by(&recovery.findings, wrong));
@@ -225,7 +226,7 @@ pub(super) fn runs(
         names,
         units,
         sums: combinations,
-    } = listed(task.job, &s)?;
+    } = list_load_columns(task.job, &s)?;
     let comparison = compare::runs(work, task, (&s, &readings), (&recovery, &units), &known)?;
     let k = s.loads.len();
     work.findings.extend(sums(task, &recovery, &units[..k]));
@@ -292,7 +293,7 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
                     None => String::new(),
                 };
                 worst.push(format!(
-                    "{} {component} {:+.3} +- {:.3} {}{expected}",
+                    "{} {component} {:+.3} ± {:.3} {}{expected}",
                     r.estimate.run,
                     sum * u.factor,
                     half * u.factor,
@@ -311,11 +312,11 @@ fn sums(task: &Task, recovery: &Recovery, units: &[LoadUnits]) -> Vec<Finding> {
             "loads-not-in-balance",
             "equilibrium",
             format!(
-                "the recovered forces do not add up to {}: {}. Under inertia relief acceleration takes the rest",
+                "the recovered forces do not add up to {}: {}. Under inertia relief acceleration balances the rest",
                 if carried.is_some() { "the weight of the model" } else { "zero" },
-                few(&worst)
+                list_few(&worst)
             ),
-            "at a standstill they must: then a load is missing, or a sign or an `applied` is wrong",
+            "if the vehicle was at standstill, check for a missing load, a wrong sign or a wrong `applied`",
         )
         .with_numbers(largest, 0.1),
     ]

@@ -42,7 +42,10 @@ pub(super) fn count_files(work: &mut Work, task: &Task) -> Result<Vec<SectionLoa
         };
         let opened = measured::open(&mut work.inputs, &job, &measured, file)?;
         let MeasuredStrain::Record(opened) = opened else {
-            let wrong = format!("`{}` has runs, and a section is a record", file.given);
+            let wrong = format!(
+                "`{}` has runs, and a section is part of a record",
+                file.given
+            );
             let remedy = "name a record: a column `time`, or a format of records";
             let at = Fault::at(&*job.file, section.line, "section.file", wrong, remedy);
             return Err(at.into());

@@ -77,7 +77,7 @@ pub(super) fn without_record(job: &Job) -> Result<(), Faults> {
         return Ok(());
     };
     let wrong = "sections are stretches of a record, and the strain file has runs";
-    let remedy = "drop the sections, or name a record: a column `time`, or a format of records";
+    let remedy = "delete the sections, or name a record: a column `time`, or a format of records";
     Err(Fault::at(&*job.file, first.line, "section", wrong, remedy).into())
 }
 

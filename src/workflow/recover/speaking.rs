@@ -1,7 +1,7 @@
 //! The gauges of a record that read, and S of them.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::correct::channel_of;
@@ -59,7 +59,7 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
         return Err(Faults::from(Fault::of(
             file,
             "gauge",
-            "no gauge gives a single reading",
+            "no gauge has a single reading",
             "check the export of the record",
         )));
     }
@@ -74,18 +74,18 @@ pub(super) fn speaking(work: &mut Work, task: &Task, record: &Record) -> Result<
 pub(crate) fn silent_throughout(names: &[&str], gives: Gives) -> Option<Finding> {
     let what = match gives {
         Gives::Signal => return None,
-        Gives::Nothing => "nothing",
-        Gives::OneValue => "one and the same value",
+        Gives::Nothing => "no reading",
+        Gives::OneValue => "a constant reading",
     };
     (!names.is_empty()).then(|| {
         Finding::new(
             Severity::Warning,
             "gauge-silent",
-            few(names),
+            list_few(names),
             format!(
-                "these gauges give {what}: the loads are those of the others, with wider intervals"
+                "these gauges have {what}. The loads are computed from the other gauges, with wider intervals"
             ),
-            "repair the channel, or leave its gauge out: [[correction]] ignore = true",
+            "repair the channel, or exclude its gauge: [[correction]] ignore = true",
         )
     })
 }

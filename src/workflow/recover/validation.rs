@@ -1,7 +1,7 @@
 //! Validation gauges: no load is estimated from them, and the loads predict their readings.
 
 use super::task::Task;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Fault;
 use crate::host::outcome::finite;
 use crate::job::correct::channel_of;
@@ -56,7 +56,7 @@ impl Differences {
 }
 
 /// Returns a warning that names the validation gauges that differ from their prediction by more than stated errors explain.
-pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
+pub(super) fn report_contradictions(list: &[ValidationGauge]) -> Option<Finding> {
     let ratio = |g: &ValidationGauge| Some(g.rms_microstrain? / g.expected_rms_microstrain?);
     let off = list
         .iter()
@@ -67,10 +67,10 @@ pub(super) fn contradicted(list: &[ValidationGauge]) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "prediction-poor",
-            few(&names),
+            list_few(&names),
             format!(
-                "these validation gauges differ from their prediction by up to {largest:.1} times what stated errors explain: either they \
-                 or the recovered loads are wrong by more than the intervals state"
+                "these validation gauges differ from their prediction by up to {largest:.1} times the stated errors: either they or the \
+                 recovered loads are wrong by more than their intervals"
             ),
             "check these gauges and their place in the model, then run `reconcile`",
         )
@@ -220,9 +220,10 @@ impl<'a> Channels<'a> {
         Finding::new(
             Severity::Info,
             "gauges-not-compared",
-            few(&names),
-            "these validation gauges are not compared with their prediction: their readings contain the vibration that [dynamic] takes out of the loads",
-            "drop [dynamic] to compare them",
+            list_few(&names),
+            "these validation gauges are not compared with their prediction: their readings contain the vibration that [dynamic] subtracts \
+             from the loads",
+            "delete [dynamic] to compare them",
         )
     }
 

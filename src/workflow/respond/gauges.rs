@@ -1,13 +1,13 @@
 //! Predicted against measured strain at the installed gauges.
 
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::Faults;
 use crate::host::outcome::finite;
 use crate::host::work::Work;
 use crate::job::{Job, Reference};
 use crate::measured::means::is_long_record;
 use crate::measured::strain_table::StrainRows;
-use crate::measured::zero::{judged, read_zeroed};
+use crate::measured::zero::{read_zeroed, subtract_and_test_zero};
 use crate::respond::LoadState;
 use crate::strain_chain::Prepared;
 use crate::units::MICROSTRAIN;
@@ -77,7 +77,7 @@ pub(super) fn check(
     }
     let zeroed = read_zeroed(work, job, measured, &measured.strain)?;
     let table = &zeroed.table;
-    let read = judged(work, measured, &s.gauges, &zeroed.readings(&s.gauges));
+    let read = subtract_and_test_zero(work, measured, &s.gauges, &zeroed.readings(&s.gauges));
     // The row of the strain table that belongs to each state: by name, or by order where there are as many samples.
     let row_of: Vec<Option<usize>> = match &table.rows {
         StrainRows::Runs(names) => states
@@ -173,9 +173,9 @@ fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
         let finding = Finding::new(
             Severity::Error,
             "prediction-poor",
-            few(&missed),
-            "the loads leave more than half of what most gauges measured: they are in another unit, of other runs, or of another model, and so \
-             is the stress",
+            list_few(&missed),
+            "the loads explain less than half of the strain at most gauges: they are in another unit, of other runs, or of another model, \
+             and the stress is wrong too",
             "check the unit of the table of loads against `report_units`, and the names of its runs; then run `reconcile`",
         );
         return Some(finding.with_numbers(missed.len() as f64, rows.len() as f64 / 2.0));
@@ -185,8 +185,8 @@ fn judge(rows: &[GaugeCheck], noise_microstrain: f64) -> Option<Finding> {
         Finding::new(
             Severity::Warning,
             "prediction-poor",
-            few(&poor),
-            "the recovered loads do not reproduce what these gauges measured to 10 %: stress near them is as uncertain",
+            list_few(&poor),
+            "the recovered loads do not reproduce the strain of these gauges to 10 %: stress near them is uncertain by as much",
             "run `reconcile`",
         )
         .with_numbers(poor.len() as f64, 0.0)

@@ -9,7 +9,7 @@ pub use gauges::{Check, GaugeCheck};
 pub use outcome::{Element, ElementFatigue, Field, Responded};
 
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, Faults};
 use crate::host::outcome::{Outcome, StatedUnits};
@@ -67,7 +67,7 @@ fn responded(work: &mut Work, job: &Job) -> Result<Responded, Faults> {
         return Err(Faults::from(Fault::of(
             &*job.file,
             "sensitivity",
-            "S was computed elsewhere: there are no unit fields to superpose",
+            "the job gives S, not unit fields: stress cannot be superposed",
             "give a [model] instead",
         )));
     }
@@ -180,8 +180,8 @@ fn no_history(job: &Job) -> Fault {
         &*job.file,
         job.respond.line,
         "respond.slope",
-        "the loads are those of runs, which do not follow each other in time: they make no cycles",
-        "name the loads of a record: [respond] loads = \"job.out/loads.csv\", or drop slope",
+        "the loads are the loads of runs, which are not consecutive in time: they form no cycles",
+        "name the loads of a record: [respond] loads = \"job.out/loads.csv\", or delete slope",
     )
 }
 
@@ -210,9 +210,9 @@ fn about_damage(slope: f64) -> Finding {
         "pseudo-damage",
         "fatigue",
         format!(
-            "rainflow counts by ASTM E1049-85 of the normal stress on the plane where its damage is largest; pseudo-damage is the sum of cycles times range to the \
-             power {slope}, without mean stress and without a limit below which ranges do no harm. It compares places and histories; it is no life. Its interval \
-             moves all ranges together by their own 95 % interval, from the intervals of the loads"
+            "rainflow counts by ASTM E1049-85 of the normal stress on the plane of largest damage. Pseudo-damage is the sum of cycles \
+             times range to the power {slope}, without mean stress and without a fatigue limit. It compares places and records and is not \
+             a life. Its interval shifts all ranges together by their own 95 % interval, from the intervals of the loads"
         ),
         "state the slope of the part's S-N curve: [respond] slope",
     )
@@ -264,9 +264,9 @@ fn say_findings(
             Finding::new(
                 Severity::Warning,
                 "hot-at-a-joint",
-                few(&at_joint),
-                "these elements touch a rigid element: their stress is that of the idealised joint and grows as the mesh is refined",
-                "judge the joint by its forces, or by elements a plate thickness away",
+                list_few(&at_joint),
+                "these elements touch a rigid element: their stress is the stress of the idealised joint and grows as the mesh is refined",
+                "assess the joint by its forces, or by elements a plate thickness away",
             )
             .with_numbers(at_joint.len() as f64, 0.0),
         );
@@ -280,7 +280,7 @@ fn say_findings(
             Severity::Info,
             "stress-is-change",
             "respond",
-            "loads that are changes give stress that is the change from the state at which the gauges read zero",
+            "loads are changes from the state at which the gauges read zero, and stress is the change from this state",
             "state [measured] reference to get totals",
         ));
     }
@@ -292,7 +292,7 @@ fn say_findings(
                 Severity::Warning,
                 "stress-uncertain",
                 "respond",
-                "the loads are so uncertain that the largest stress is known to worse than 10 % (1 sd)",
+                "the loads are so uncertain that the largest stress has a standard deviation above 10 %",
                 "improve the gauge layout (`place`), or lower the noise",
             )
             .with_numbers(p.sigma / p.von_mises, 0.1),

@@ -3,7 +3,7 @@
 use super::gauges::{Check, GaugeCheck};
 use crate::estimate::NORMAL_95;
 use crate::host::outcome::Answer;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::job::Job;
 use crate::respond::{LoadState, Peak, ResponseRow};
 use crate::strain_chain::Prepared;
@@ -15,7 +15,7 @@ use serde::Serialize;
 pub struct Responded {
     /// The elements asked for, or the hottest, the hottest first.
     pub elements: Vec<Element>,
-    /// Elements hotter than all that share a grid with them.
+    /// Elements with a higher stress than all elements that share a grid with them.
     pub hot_spots: Vec<Element>,
     /// Pseudo-damage of these elements over the history of loads, where the job states a slope.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -46,7 +46,7 @@ impl Answer for Responded {
     const RESULT: &'static str = "The stresses";
 
     fn verdict(&self) -> String {
-        let states = counted(self.states, "load state");
+        let states = count_of(self.states, "load state");
         let Some(e) = self.elements.first() else {
             return format!("No element has a stress in {states}.");
         };

@@ -160,7 +160,7 @@ fn finish(
         if exact.is_empty() {
             "a table of intervals contains no correlations between loads: their errors are treated as independent".to_owned()
         } else {
-            format!("{} have no interval in the file and count as exact", exact.join(", "))
+            format!("{} have no interval in the file and are treated as exact", exact.join(", "))
         },
         "let `respond` recover the runs itself ([measured], no [respond] loads) to keep correlations",
     ));
@@ -289,7 +289,7 @@ impl Columns {
         out
     }
 
-    /// Returns a fault where a run has two rows, or where the time of a row is missing or not later than that of the row before.
+    /// Returns a fault if a run has two rows, or if the time of a row is missing or not later than the time before.
     fn wrong_key(&self, t: &Table, row: usize, before: &mut KeysRead) -> Option<Fault> {
         let (line, fields) = t.rows.get(row)?;
         let (field, wrong, remedy) = match self.kind {

@@ -2,7 +2,7 @@
 
 use super::gauges::LayoutGauge;
 use super::pool::{Pool, Prepared, on_model};
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::gauge::GaugeSpec;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
@@ -96,7 +96,7 @@ pub(super) fn of(
         work.findings.push(Finding::new(
             Severity::Warning,
             "layouts-skipped",
-            few(&skipped),
+            list_few(&skipped),
             format!("the job has {} gauges: these layouts need more", pool.len()),
             "name more gauges, or a [candidates] section",
         ));

@@ -10,7 +10,7 @@ use crate::finding::{Finding, Severity};
 use crate::host::context::Context;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::outcome::{Answer, Outcome, StatedUnits, finite};
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::job::{Job, Study};
 use crate::measured::runs_file::{RunRow, read_runs};
@@ -61,7 +61,7 @@ impl Answer for Studied {
                 "{} % ({} {}, {})",
                 number(100.0 * error),
                 row.layout,
-                counted(row.gauges, "gauge"),
+                count_of(row.gauges, "gauge"),
                 row.error
             )
         };
@@ -183,7 +183,7 @@ pub fn study(job: &Job, cx: &Context) -> Result<Outcome<Studied>, Faults> {
             &*job.file,
             "load.expected",
             format!("nuisance load `{}` has no size", l.name),
-            "state `expected`, its standard deviation: it is drawn in every trial",
+            "state `expected`, its standard deviation: every trial draws a random value",
         )));
     }
     let layouts = layouts::of(&mut work, job, study, &prepared)?;
@@ -251,7 +251,7 @@ fn errors(job: &Job, study: &Study) -> Result<Vec<(StudyError, String)>, Faults>
                 &*job.file,
                 study.line,
                 "study.errors.kind",
-                format!("`{word}` is no kind of error"),
+                format!("`{word}` is not a kind of error"),
                 format!("write one of {}", known.join(", ")),
             )),
         }
@@ -297,7 +297,7 @@ fn truth(
                 Severity::Info,
                 "true-loads",
                 &run,
-                format!("the loads of run `{run}` are taken as true"),
+                format!("the loads of run `{run}` are used as true loads"),
                 "",
             ));
             let known = loads.iter().zip(values).map(|(l, f)| match l.wanted {
@@ -352,7 +352,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
                 "layout-singular",
                 format!("{} {}", line.layout, line.gauges),
                 format!(
-                    "none of these layouts separates the {} loads: there is no answer to study",
+                    "none of these layouts separates the {} loads: the study has no result",
                     loads.len()
                 ),
                 "ask for more gauges than loads",
@@ -379,7 +379,7 @@ fn findings(work: &mut Work, lines: &[Line], loads: &[Load]) {
             Severity::Warning,
             "place-without-effect",
             "position",
-            "S is given, or the gauges are on bars: the change of strain with position is unknown, and position errors have no effect here",
+            "the job gives S, or the gauges are on bars. The gradient of the strain is unknown, and position errors have no effect here",
             "give a [model] with shells",
         ));
     }

@@ -5,7 +5,7 @@ use super::ids::id_lists;
 use crate::cards::{Cards, IdList, Mpc, SetSum, Spc, Spc1, Suport};
 use crate::place::Placed;
 
-/// Terms stand in fields 3-5 and 6-8 of every line.
+/// Terms are in fields 3-5 and 6-8 of every line.
 pub(super) fn mpc(f: &mut Fields) -> Mpc {
     let sid = f.id(0, "SID");
     let mut terms = Vec::new();
@@ -53,7 +53,7 @@ pub(super) fn spc1(f: &mut Fields, cards: &mut Cards) {
 
 pub(super) fn set_sum(f: &mut Fields) -> SetSum {
     let sid = f.id(0, "SID");
-    let sets = match super::ids::joined(f, 1, "S") {
+    let sets = match super::ids::join_ids(f, 1, "S") {
         IdList::Each(ids) => ids,
         IdList::Thru(a, b) => f.written_out(1, "S", a..=b, 1),
     };

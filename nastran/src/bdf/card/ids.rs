@@ -92,7 +92,7 @@ fn range(
 }
 
 /// The ids as a single list, ranges written out where there are several parts.
-pub(super) fn joined(f: &mut Fields, first: usize, name: &'static str) -> IdList {
+pub(super) fn join_ids(f: &mut Fields, first: usize, name: &'static str) -> IdList {
     let mut lists = id_lists(f, first, name);
     if lists.len() == 1 {
         return lists.pop().unwrap_or(IdList::Each(Vec::new()));

@@ -4,7 +4,7 @@ use super::super::fault::Wrong;
 use super::super::fields::{Fields, Value};
 use crate::cards::{MaterialAngle, ShearPanel, Shell, ShellShape, Snorm};
 
-/// Where the fields behind the grids stand.
+/// Positions of the fields after the grids.
 struct Layout {
     shape: ShellShape,
     angle: usize,

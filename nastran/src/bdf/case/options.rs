@@ -15,11 +15,11 @@ pub(super) fn unknown_option(word: &str, options: &[String]) -> Option<&'static 
         | "ANALYSIS" | "RIGID" => (&[], "the command has no options"),
         "TEMPERATURE" => (
             &["INITIAL", "MATERIAL", "LOAD", "BOTH"],
-            "the option is none of INITIAL, MATERIAL, LOAD and BOTH",
+            "the option must be INITIAL, MATERIAL, LOAD or BOTH",
         ),
         "METHOD" => (
             &["STRUCTURE", "FLUID", "COUPLED", "BOTH"],
-            "the option is none of STRUCTURE, FLUID, COUPLED and BOTH",
+            "the option must be STRUCTURE, FLUID, COUPLED or BOTH",
         ),
         _ => return None,
     };
@@ -72,8 +72,8 @@ const RIGIDS: [&str; 7] = [
 /// Returns what is wrong with the value of a command, in upper case, that is one of a list.
 pub(super) fn unknown_value(word: &str, value: &str) -> Option<&'static str> {
     let (known, why): (&[&str], _) = match word {
-        "ANALYSIS" => (&ANALYSES, "Nastran knows no such analysis"),
-        "RIGID" => (&RIGIDS, "Nastran knows no such method of rigid elements"),
+        "ANALYSIS" => (&ANALYSES, "Nastran has no analysis of this name"),
+        "RIGID" => (&RIGIDS, "Nastran has no such method of rigid elements"),
         _ => return None,
     };
     let value = value.trim_matches(['\'', '"']);

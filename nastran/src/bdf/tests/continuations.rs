@@ -78,7 +78,8 @@ fn a_continuation_with_another_name_belongs_to_no_card() {
         "{asked:?}"
     );
     assert!(
-        asked[1].starts_with("test.bdf:1: the card names a continuation that no line has: P4"),
+        asked[1]
+            .starts_with("test.bdf:1: the card refers to a continuation that does not exist: P4"),
         "{asked:?}"
     );
     // nor does one below a card that asks for none, whatever is between
@@ -106,7 +107,7 @@ fn the_last_of_several_continuations_is_missed_too() {
     for between in ["", "GRID,99\n"] {
         let found = shown(&super::bulk(&[head, between, rest].concat()));
         assert!(
-            found.len() == 1 && found[0].contains("that no line has: R2"),
+            found.len() == 1 && found[0].contains("that does not exist: R2"),
             "{between}: {found:?}"
         );
     }
@@ -243,7 +244,7 @@ fn a_continuation_that_two_cards_name_is_refused_with_both_lines() {
     assert_eq!(apart.len(), 1, "{apart:?}");
     assert!(
         apart[0].starts_with(
-            "test.bdf:5: the continuation can belong to more than one card, for lines 1 and 3 both name it: Q1"
+            "test.bdf:5: the continuation can belong to more than one card, because lines 1 and 3 both name it: Q1"
         ),
         "{apart:?}"
     );

@@ -48,7 +48,7 @@ fn an_unknown_name_is_one_fault_with_its_count() {
         panic!("{:?}", shown(&deck))
     };
     assert!(
-        fault.starts_with("test.bdf:3: `FORCEE`: Nastran does not know this name (2 cards)"),
+        fault.starts_with("test.bdf:3: `FORCEE`: Nastran has no card of this name (2 cards)"),
         "{fault}"
     );
     assert_eq!(effect_of_card("CQDMEM"), Some(Effect::Acts));
@@ -76,7 +76,7 @@ fn a_line_above_cend_that_no_statement_begins_is_a_fault() {
     for (lines, says) in [
         (
             "ID A,B\nTIMEE 10\n",
-            "test.bdf:2: `TIMEE`: Nastran does not know this name, did you mean `TIME`?",
+            "test.bdf:2: `TIMEE`: Nastran has no card of this name, did you mean `TIME`?",
         ),
         (
             "SPC = 1\n",

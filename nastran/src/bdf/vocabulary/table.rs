@@ -7,7 +7,7 @@ use super::effect::Effect;
 pub(super) struct Entry {
     /// The name as decks write it.
     pub written: &'static str,
-    /// The name that it stands for.
+    /// The full name.
     pub name: &'static str,
     /// Effect of the name.
     pub effect: Effect,

@@ -1,6 +1,6 @@
 //! Edits of a deck: cards replaced, removed, added.
 
-use super::super::continuation_name::bare;
+use super::super::continuation_name::strip_marks;
 use super::super::deck::Deck;
 use super::super::line::{Line, Lines, trim, without_comment};
 use super::super::source::Position;
@@ -16,8 +16,8 @@ pub enum EditError {
     /// The card is made by replication, or others are made from it.
     #[error("the card at line {} is part of a replication: write the cards out first", .0.line)]
     Replicated(Place),
-    /// Continuation lines stand elsewhere in the deck.
-    #[error("the continuations of the card at line {} stand elsewhere: put them below it first", .0.line)]
+    /// Continuation lines are elsewhere in the deck.
+    #[error("the continuations of the card at line {} are elsewhere: put them below it first", .0.line)]
     ContinuationsApart(Place),
 }
 
@@ -129,7 +129,7 @@ impl Edits {
     ///
     /// # Errors
     ///
-    /// The card is replicated, or its lines do not stand together.
+    /// The card is replicated, or its lines are not consecutive.
     pub fn replace_card(&mut self, deck: &Deck, at: Place, text: &str) -> Result<(), EditError> {
         let mut text = Some(text);
         for (start, end) in card_lines(deck, at)? {
@@ -147,7 +147,7 @@ impl Edits {
     ///
     /// # Errors
     ///
-    /// The card is replicated, or its lines do not stand together.
+    /// The card is replicated, or its lines are not consecutive.
     pub fn remove_card(&mut self, deck: &Deck, at: Place) -> Result<(), EditError> {
         self.replace_card(deck, at, "")
     }
@@ -193,7 +193,7 @@ fn card_lines(deck: &Deck, at: Place) -> Result<Vec<(usize, usize)>, EditError> 
     let mut spans = vec![(first.start, first.end)];
     for line in lines.filter(|l| !is_empty(l)) {
         let cut = cut(without_comment(line.text));
-        let (wanted, have) = (bare(cut.head), bare(label));
+        let (wanted, have) = (strip_marks(cut.head), strip_marks(label));
         let named = matches!(label.first(), Some(b'+' | b'*'));
         let fits = wanted.is_empty() || have.is_empty() || wanted == have || !named;
         match cut.lead {

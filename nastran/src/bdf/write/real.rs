@@ -86,7 +86,7 @@ fn shortest(negative: bool, digits: &str, exponent: i32) -> String {
     best
 }
 
-/// The digits with the point behind the first `k`, zeros added where it stands outside.
+/// The digits with the point behind the first `k`, zeros added if the point is outside.
 fn with_point(digits: &str, k: i32) -> String {
     let n = digits.len();
     match usize::try_from(k) {

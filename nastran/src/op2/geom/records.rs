@@ -59,7 +59,7 @@ impl Geometry {
             }
             Unread::Selected(name) => {
                 let message = format!(
-                    "{name} is not read: it acts where case control selects it, and the file contains no case control that is read"
+                    "{name} is not read: case control selects it, and the file contains no case control that is read"
                 );
                 self.note(record.table, message);
             }
@@ -126,7 +126,7 @@ impl Geometry {
         };
         if failed > 0 {
             let message = format!(
-                "{card}: {failed} of {} cards do not make sense and were left out",
+                "{card}: {failed} of {} cards are not valid and were left out",
                 cards.len().saturating_add(failed)
             );
             self.left_out(card, record.table, message);
@@ -148,7 +148,7 @@ impl Geometry {
                 Some(card) => list(&mut self.cards).push(Self::place(card)),
                 None => {
                     let message = format!(
-                        "{card}: the record makes no sense from word {} of {} on; the rest was left out",
+                        "{card}: the record is not valid from word {} of {} on; the rest was left out",
                         record.words.len().saturating_sub(fields.left()),
                         record.words.len()
                     );

@@ -22,7 +22,7 @@ pub(super) fn rbar(f: &mut Fields<'_>) -> Option<Rbar> {
     })
 }
 
-/// RBE1: `eid (gn cn) .. -2 -2 (gm cm) .. -1 -1`, and what stands behind in newer versions (alpha first).
+/// RBE1: `eid (gn cn) .. -2 -2 (gm cm) .. -1 -1`, and further words in newer versions (alpha first).
 pub(super) fn rbe1(record: Record<'_>) -> impl Fn(&mut Fields<'_>) -> Option<Rbe1> {
     let tail = record.tail(-1);
     move |f| {

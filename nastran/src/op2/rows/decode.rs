@@ -127,8 +127,8 @@ fn push_entry(
     Ok(())
 }
 
-/// A location of a solid: `grid, xx xy p1 a1 a2 a3 pressure vm, yy yz p2 b1 b2 b3, zz zx p3 c1 c2 c3`, where a, b, c are direction
-/// cosines. The principal values p1 p2 p3 stand in no fixed order in the file; they are sorted.
+/// A location of a solid: `grid, xx xy p1 a1 a2 a3 pressure vm, yy yz p2 b1 b2 b3, zz zx p3 c1 c2 c3`, where a, b, c are direction cosines. The
+/// principal values p1 p2 p3 have no fixed order in the file; they are sorted.
 fn push_solid(place: Words<'_>, out: &mut Vec<f64>) {
     let v = |i: usize| place.real(i).unwrap_or(f64::NAN);
     let mut principal = [v(3), v(11), v(17)];

@@ -120,8 +120,8 @@ fn local_mass(model: &Model, beam: &Beam) -> SMatrix<f64, 12, 12> {
     m
 }
 
-/// Returns the forces of the coupled mass of beam `i` in a field of acceleration (basic, by grid), as forces along the acceleration, before
-/// WTMASS: forces along the beam, and the twelve at its ends that stand for them. Element frame.
+/// Returns the forces of the coupled mass of beam `i` in a field of acceleration (basic, by grid), as forces along the acceleration, before WTMASS:
+/// forces along the beam, and the twelve at its ends equivalent to them. Element frame.
 ///
 /// The forces along the beam are linear in four parts of each section interval, with the resultant and the moment of the exact ones.
 pub(crate) fn beam_inertia(

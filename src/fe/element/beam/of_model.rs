@@ -52,7 +52,7 @@ pub(super) fn local<'a>(
     let Some(MaterialKind::Isotropic { e, g, .. }) = material.map(|m| m.kind) else {
         return Err(refuse(
             beam,
-            "its material is no MAT1".to_owned(),
+            "its material is not a MAT1".to_owned(),
             "beams need a MAT1",
         ));
     };
@@ -188,7 +188,12 @@ pub(crate) fn beam_stiffness(model: &Model, i: usize) -> Result<ElementMatrix, R
 fn warped(model: &Model, beam: &Beam, k: Matrix12, t: &Matrix12) -> Result<ElementMatrix, Refusal> {
     let (gj, ecw, length) = torsion_of(model, beam)?;
     let torsion = warping_torsion(gj, ecw, length);
-    Ok(warping::assembled(&beam.all_grids(), k, t, &torsion))
+    Ok(warping::assemble_with_warping(
+        &beam.all_grids(),
+        k,
+        t,
+        &torsion,
+    ))
 }
 
 /// GJ, E CW and length of a beam that warps.

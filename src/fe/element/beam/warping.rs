@@ -135,7 +135,7 @@ pub(super) fn torque_at_ends(
 
 /// The stiffness of a beam over its two grids and its two warping points, basic frame: `k` (element frame) without its torsion, and
 /// `torsion` instead. The first dof of a warping point is theta'.
-pub(super) fn assembled(
+pub(super) fn assemble_with_warping(
     grids: &[GridIx],
     mut k: SMatrix<f64, 12, 12>,
     t: &SMatrix<f64, 12, 12>,

@@ -1,6 +1,6 @@
 //! Thermal expansion of shells: stress resultants of a held shell and free strain at its surfaces.
 
-use super::laminate::{Lamination, placed};
+use super::laminate::{Lamination, place_plies};
 use super::plane_stress::{plane_stress, rotate};
 use super::types::{Expansion, Heat};
 use crate::model::{Material, MaterialKind, Model, ShellKind, ShellProperty};
@@ -97,7 +97,7 @@ pub(crate) fn expansion(
             tref,
             ..
         } => {
-            let places = placed(model, plies, *z0, angle_rad)?;
+            let places = place_plies(model, plies, *z0, angle_rad)?;
             let alphas: Option<Vec<[f64; 3]>> = plies
                 .iter()
                 .map(|p| {

@@ -52,7 +52,7 @@ pub(super) struct Placed {
 
 /// Plies of a laminate whose material x axis lies at `angle_rad` from the output x axis; `None` where a material has no plane-stress
 /// law.
-pub(super) fn placed(
+pub(super) fn place_plies(
     model: &Model,
     plies: &[ModelPly],
     z0: f64,

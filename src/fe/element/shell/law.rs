@@ -1,6 +1,6 @@
 //! The plane-stress law of a shell in its output frame, by the MID1 to MID4 rules of PSHELL.
 
-use super::laminate::{self, Lamination, placed};
+use super::laminate::{self, Lamination, place_plies};
 use super::plane_stress::{
     RIGID_SHEAR, plane_strain_matrix, plane_stress, rotate, rotate_shear, transverse_shear,
 };
@@ -26,7 +26,7 @@ impl ShellLaw {
             let ShellKind::Laminate { z0, plies, lam, .. } = &property.kind else {
                 return None;
             };
-            let placed = placed(model, plies, *z0, angle_rad)?;
+            let placed = place_plies(model, plies, *z0, angle_rad)?;
             return laminate::law(&placed, Lamination::of(lam)?);
         };
         let material = |m: &crate::model::MaterialIx| model.materials.get(m.us());

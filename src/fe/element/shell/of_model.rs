@@ -66,7 +66,7 @@ pub(crate) fn shell_matrices(
     let bad = |_: BadShape| {
         refuse(
             shell,
-            "its corners span no area or make a re-entrant shape",
+            "its corners span no area or form a re-entrant shape",
             "move its grids or delete it",
         )
     };

@@ -41,7 +41,7 @@ fn input(model: &Model, solid: &Solid) -> Result<SolidInput, Refusal> {
         return Err(refuse(
             solid,
             "the built-in solver has no pyramid with mid-side grids",
-            "leave the mid-side grids out, or solve with Nastran",
+            "delete the mid-side grids, or solve with Nastran",
         ));
     }
     Ok(shape_of(model, solid, &solid.all_grids()))

@@ -12,7 +12,7 @@ fn found(texts: &[String]) -> Vec<Repeated> {
         .iter()
         .map(|t| ResultsFile::read(t.as_bytes(), "run.pch").unwrap())
         .collect();
-    repeated(&files.iter().collect::<Vec<_>>(), None)
+    find_repeated_results(&files.iter().collect::<Vec<_>>(), None)
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::linalg::tall::{Triangle, triangle};
 use crate::reconcile::motion::columns::parameter_column;
-use crate::reconcile::motion::fit::held;
+use crate::reconcile::motion::fit::held_parameters;
 use crate::reconcile::motion::fitted::MotionFit;
 use crate::reconcile::motion::frame::MotionFrame;
 
@@ -34,7 +34,7 @@ impl<'a> Known<'a> {
         let v = &fit.assembled.vehicle;
         let names = v.parameters();
         let known = |i: &usize| frame.known.contains_key(&names[*i].name);
-        let held: Vec<usize> = (held(frame, v, &fit.design).iter().enumerate())
+        let held: Vec<usize> = (held_parameters(frame, v, &fit.design).iter().enumerate())
             .filter_map(|(i, h)| h.map(|_| i))
             .filter(|i| !known(i))
             .collect();

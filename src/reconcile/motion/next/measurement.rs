@@ -56,7 +56,7 @@ impl Measurement {
             }
             Self::Road(times) => format!("drive a road {times} times as rough"),
             Self::Part { part, .. } => format!(
-                "drive (or shake) with the power between {:.2} and {:.2} Hz, accelerations as large as now",
+                "drive (or shake) with the power between {:.2} and {:.2} Hz and accelerations as large as now",
                 part.low_hz, part.high_hz
             ),
             Self::Longer(times) => format!("drive the same road {times:.0} times as long"),
@@ -69,16 +69,16 @@ impl Measurement {
                 body(at.body)
             ),
             Self::KnownMass { body: b, mass } => format!(
-                "drive the same road with {mass} {} more, weighed before, on body {}",
+                "drive the same road with an additional weighed mass of {mass} {} on body {}",
                 frame.units.mass,
                 body(*b)
             ),
             Self::TurnOver => {
-                "turn every accelerometer over at rest (plus and minus 1 g): its gain and its zero"
+                "turn every accelerometer over at rest (plus and minus 1 g) to check its gain and its zero"
                     .into()
             }
             Self::Strike => {
-                "strike all accelerometers at once at the beginning and the end of a record: their timing"
+                "strike all accelerometers at the same time, at the beginning and at the end of a record, to check their timing"
                     .into()
             }
         }

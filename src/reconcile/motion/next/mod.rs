@@ -14,10 +14,11 @@ mod worth;
 use self::known::Known;
 use self::measurement::{Measurement, measurements};
 use self::view::{View, view};
-use self::worth::expected;
+use self::worth::expected_evidence;
 use super::fitted::MotionFit;
 use super::found::other_sets;
 use super::scorer::MotionScorer;
+use crate::finding::capital;
 use crate::reconcile::outcome::Verdict;
 use crate::reconcile::search::{Scored, Scorer};
 
@@ -31,7 +32,7 @@ const MOST: usize = 3;
 /// Name of an explanation without effects.
 const AS_IT_IS: &str = "the model as it is";
 /// Instruction if no measurement separates the nearest explanations.
-const LEFT_OUT: &str = "measure what the model leaves out: the other side and axle, spring travel, a second accelerometer on each body";
+const LEFT_OUT: &str = "measure quantities that the model does not contain: the other side and axle, spring travel, a second accelerometer on each body";
 
 /// Measurement with the smallest log evidence that it is expected to bring between the first explanation and each other one.
 struct Weighed {
@@ -85,17 +86,19 @@ pub(super) fn next_measurement(
     match (verdict, said) {
         (Verdict::Named, Some((words, each))) => format!("{} ({each}).", capital(&words)),
         (Verdict::Named, None) if !others.is_empty() => format!(
-            "No road, sensor or mass of those that were weighed separates {first} from {others}: take them for one."
+            "No tested road, sensor or mass separates {first} from {others}: treat them as one cause."
         ),
-        (Verdict::Named, None) => "None needed; another road would confirm it.".into(),
+        (Verdict::Named, None) => {
+            "No further measurement is needed; another road would confirm the result.".into()
+        }
         (Verdict::Unknown, Some((words, each))) => format!(
-            "{}: it would say most of what comes nearest ({each}); or {LEFT_OUT}.",
+            "{}. This separates most of the nearest explanations ({each}). Or {LEFT_OUT}.",
             capital(&words)
         ),
         (Verdict::Unknown, None) => format!("{}.", capital(LEFT_OUT)),
         (Verdict::BelowDetectability, Some((words, each))) => {
             format!(
-                "{}: it would show the hint or end it ({each}).",
+                "{}. This confirms or excludes the indicated effect ({each}).",
                 capital(&words)
             )
         }
@@ -159,7 +162,7 @@ fn best_of(scorer: &MotionScorer, list: &[&Scored<MotionFit>]) -> Option<Weighed
             let (Some(truth), Some(other)) = (&seen[a], &seen[b]) else {
                 return 0.0;
             };
-            expected(&known[b], other, truth).unwrap_or(0.0)
+            expected_evidence(&known[b], other, truth).unwrap_or(0.0)
         };
         let worth: Vec<f64> = (1..known.len())
             .map(|k| between(0, k).min(between(k, 0)))
@@ -184,10 +187,4 @@ fn name(scorer: &MotionScorer, s: &Scored<MotionFit>) -> String {
         true => AS_IT_IS.into(),
         false => ids.join(" + "),
     }
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    let first = letters.next().map(|c| c.to_uppercase().to_string());
-    first.unwrap_or_default() + letters.as_str()
 }

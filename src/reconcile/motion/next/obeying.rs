@@ -10,7 +10,7 @@ use rustfft::num_complex::Complex64;
 /// Symbols in a bin: r the residual of the truth, H and G the responses of both, N the power of the channels' noise, C and D the factors by which
 /// both multiply readings. Then e = N H' (H N H')^-1 r, and the residual is other - G (D / C) e. For the reading of a new channel, `r - H e` of the
 /// truth is subtracted from it. `None` if both have different equations.
-pub(super) fn missed(other: &Recorded, truth: &Recorded) -> Option<Vec<Bins>> {
+pub(super) fn residual_of_other(other: &Recorded, truth: &Recorded) -> Option<Vec<Bins>> {
     if other.is_new != truth.is_new || other.left.len() != truth.left.len() {
         return None;
     }
@@ -169,7 +169,7 @@ mod tests {
             recorded(&rows, readings, &old),
             recorded(&turned, readings, &old),
         );
-        let missed = missed(&other, &truth).unwrap();
+        let missed = residual_of_other(&other, &truth).unwrap();
         assert!(truth.left.iter().flatten().all(|l| l.norm() > 0.1));
         assert!(
             missed.iter().flatten().all(|m| m.norm() < 1e-12),
@@ -188,7 +188,7 @@ mod tests {
             recorded(&truth_rows, readings, &[false]),
             recorded(&other_rows, readings, &[false]),
         );
-        let missed = missed(&other, &truth).unwrap();
+        let missed = residual_of_other(&other, &truth).unwrap();
         // -1 + 1.8 + 0.6 j.
         assert!((missed[0][0] - c(0.8, 0.6)).norm() < 1e-12, "{missed:?}");
     }
@@ -203,7 +203,7 @@ mod tests {
             recorded(&truth_rows, readings, &[true]),
             recorded(&other_rows, readings, &[true]),
         );
-        let missed = missed(&other, &truth).unwrap();
+        let missed = residual_of_other(&other, &truth).unwrap();
         assert!((missed[0][0] - c(0.2, 0.0)).norm() < 1e-12, "{missed:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! The difference of log evidence that a measurement is expected to bring between two explanations.
 
 use super::known::{Known, Rows};
-use super::obeying::missed;
+use super::obeying::residual_of_other;
 use super::view::{Recorded, View, Weight};
 use crate::linalg::tall::{Triangle, solve, triangle};
 use crate::reconcile::motion::design::Bins;
@@ -11,7 +11,7 @@ use crate::reconcile::motion::design::Bins;
 ///
 /// With d the difference of both readings there over its standard deviation, A the columns of the other one there, B its columns in the present
 /// record and P the priors: 1/2 min over x of |A x + d|^2 + |B x|^2 + |x / P|^2. Noise adds alike to both.
-pub(super) fn expected(known: &Known, other: &View, truth: &View) -> Option<f64> {
+pub(super) fn expected_evidence(known: &Known, other: &View, truth: &View) -> Option<f64> {
     let other = match (other, truth) {
         (View::AtRest(o), View::AtRest(t)) if o.reading.len() == t.reading.len() => Rows {
             reading: (o.reading.iter().zip(&t.reading))
@@ -94,7 +94,7 @@ impl Recorded {
             .zip(there)
             .map(|(h, t)| (h.weight - t.weight) / h.sigma);
         Some(Rows {
-            reading: rows(&missed(self, truth)?, apart),
+            reading: rows(&residual_of_other(self, truth)?, apart),
             own: (self.own.iter().enumerate())
                 .map(|(k, c)| rows(c, entry(|w| &w.own, k)))
                 .collect(),

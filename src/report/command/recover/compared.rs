@@ -5,7 +5,7 @@ use crate::host::output::Output;
 use crate::report::csv_cell;
 use crate::report::figure::{CrossPlot, cross};
 use crate::report::page::{Block, Page, Section, number, table_section};
-use crate::units::{fixed, percent};
+use crate::units::{format_fixed, percent};
 use crate::workflow::recover::{Comparison, LoadComparison, Recovered, Sections};
 use std::io::Write;
 
@@ -172,9 +172,9 @@ fn comparison_section(comparison: &Comparison) -> Section {
     let shift = comparison.shift.as_ref().map(|s| {
         let half = s.half_width_s.map_or_else(
             || ", as stated".to_owned(),
-            |h| format!(" ± {}", fixed(h, 5)),
+            |h| format!(" ± {}", format_fixed(h, 5)),
         );
-        let shift = fixed(s.shift_s, 5);
+        let shift = format_fixed(s.shift_s, 5);
         Block::Text(format!("Time shift of {}: {shift}{half} s.", s.file))
     });
     let mut blocks: Vec<Block> = shift.into_iter().collect();
@@ -184,8 +184,8 @@ fn comparison_section(comparison: &Comparison) -> Section {
     ));
     blocks.push(Block::Figure(cross(&plots)));
     blocks.push(Block::Note(
-        "Bias and rms: mean and root mean square of recovered less recorded load. Damage ratio: pseudo-damage of the recovered over that of the \
-         recorded load between the same times. The plot shows some of the points."
+        "Bias and rms: mean and root mean square of recovered minus recorded load. Damage ratio: pseudo-damage of the recovered over that \
+         of the recorded load between the same times. The plot shows some of the points."
             .to_owned(),
     ));
     Section::new("Recovered against recorded loads", blocks)
@@ -223,7 +223,7 @@ fn section_table(sections: &Sections) -> Section {
         "Loads by section",
         &head,
         &rows,
-        "Damage: of the section once.",
+        "Damage: of one pass of the section.",
     )
 }
 
@@ -239,6 +239,6 @@ fn duty_cycle(sections: &Sections) -> Section {
     });
     let head = ["load", "unit", "duration, s", "damage", "95 % interval"];
     let rows: Vec<Vec<String>> = rows.collect();
-    let note = "The sum of repeats times damage over the sections.";
+    let note = "Sum of repeats times damage over the sections.";
     table_section("Duty cycle", &head, &rows, note)
 }

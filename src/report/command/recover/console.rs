@@ -2,7 +2,7 @@
 
 use super::compared;
 use crate::host::outcome::Outcome;
-use crate::host::words::counted;
+use crate::host::words::count_of;
 use crate::report::console::{Console, ConsoleTable};
 use crate::units::{half_width, number, plus_minus};
 use crate::workflow::recover::{LoadSpan, Recovered, RecoveredRuns, States};
@@ -11,8 +11,8 @@ use crate::workflow::recover::{LoadSpan, Recovered, RecoveredRuns, States};
 pub(super) fn console(outcome: &Outcome<Recovered>) -> Console {
     let spans = outcome.spans();
     let (n, of_what) = match &outcome.states {
-        States::Runs(runs) => (runs.runs.len(), counted(runs.runs.len(), "run")),
-        States::Record(r) => (usize::MAX, counted(r.samples as usize, "sample")),
+        States::Runs(runs) => (runs.runs.len(), count_of(runs.runs.len(), "run")),
+        States::Record(r) => (usize::MAX, count_of(r.samples as usize, "sample")),
     };
     let by_load = by_load(&spans, &of_what);
     let compact = compact(&spans, n, &of_what);

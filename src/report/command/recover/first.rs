@@ -24,7 +24,7 @@ pub(super) fn key_numbers(outcome: &Outcome<Recovered>) -> Vec<KeyNumber> {
         let half = run.map_or(s.half, RecoveredLoad::half_width);
         let at = run.map_or_else(String::new, |r| format!(", run {}", r.run));
         let value = format!("{} {}", plus_minus(s.peak(), half), s.unit);
-        let meaning = format!("largest load against its typical size: {}{at}", s.name);
+        let meaning = format!("largest load relative to its typical size: {}{at}", s.name);
         KeyNumber::new(value, meaning)
     }));
     let residual = |rms: f64, more: String| {

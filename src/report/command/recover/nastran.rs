@@ -74,7 +74,7 @@ fn unit_card(model: Option<&Model>, load: &JobLoad, sid: u32) -> String {
     load_card(model, &card, component)
 }
 
-/// Text that can stand in a comment or a label.
+/// Text for a comment or a label.
 fn plain(text: &str) -> String {
     text.chars()
         .filter(|c| !c.is_control() && *c != '$')
@@ -127,7 +127,7 @@ pub(super) fn write_runs(
         bulk.push_str(&format!("$ Run {label}\n{}", format_card("LOAD", &fields)));
         next += 1;
     }
-    let head = heading(recovered, "1 of each load, then a LOAD a run");
+    let head = heading(recovered, "1 of each load, then one LOAD for each run");
     out.write_bytes(NAME, [head, case, cards, bulk].concat().as_bytes())?;
     Ok(())
 }

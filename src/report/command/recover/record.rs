@@ -14,7 +14,7 @@ use crate::report::page::{Page, number};
 use crate::report::scene::{Pointing, Shown, run_arrows, scene_of_job};
 use crate::report::spreadsheet::{HistoryLoad, history_sheet, residual_sheet};
 use crate::report::strain::{Recovered as OnPage, RecoveredRun, recover_page};
-use crate::units::fixed;
+use crate::units::format_fixed;
 use crate::workflow::recover::{LoadDamage, Recovered, RecoveredRecord};
 use std::io::Write;
 
@@ -134,8 +134,8 @@ pub(super) fn page(outcome: &Outcome<Recovered>, record: &RecoveredRecord) -> Pa
     let row = |name: &str, value: String| (name.to_owned(), value);
     let numbers = [
         row("Samples", record.samples.to_string()),
-        row("Sample rate, Hz", fixed(rate(record), 4)),
-        row("Duration, s", fixed(record.duration_s, 4)),
+        row("Sample rate, Hz", format_fixed(rate(record), 4)),
+        row("Duration, s", format_fixed(record.duration_s, 4)),
         row("Samples with gaps", record.gaps.to_string()),
         row(
             "Residual, microstrain rms",

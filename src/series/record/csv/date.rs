@@ -41,7 +41,7 @@ pub fn is_ambiguous(field: &[u8]) -> bool {
 }
 
 /// Seconds since 1970 of a date in one field and a time of day in the other.
-pub fn beside(one: &[u8], other: &[u8]) -> Option<f64> {
+pub fn parse_date_and_time(one: &[u8], other: &[u8]) -> Option<f64> {
     let date = |field: &[u8]| days_of(std::str::from_utf8(field).ok()?.trim());
     let both =
         |date_in: &[u8], time_in: &[u8]| Some(date(date_in)? as f64 * DAY + of_day(time_in)?);
@@ -74,7 +74,7 @@ fn days_of(date: &str) -> Option<i64> {
     is_date.then(|| days(year, month, day))
 }
 
-/// Hours, minutes and seconds (none stated: 0), of twelve hours where `AM` or `PM` stands behind them.
+/// Hours, minutes and seconds (none stated: 0), of twelve hours if `AM` or `PM` follows them.
 fn seconds_of_day(time: &str) -> Option<f64> {
     let time = time.trim();
     let half = time
@@ -170,8 +170,11 @@ mod tests {
             let may = f64::from((56 * 365 + 14 + 150) * 86_400 + 47_109);
             assert_eq!(seconds(text.as_bytes()), Some(may + 0.5), "{text}");
         }
-        assert_eq!(beside(b"2026-05-01", b"12:00:00"), Some(noon));
-        assert_eq!(beside(b"12:00:00 pm", b"01.05.2026"), Some(noon));
+        assert_eq!(parse_date_and_time(b"2026-05-01", b"12:00:00"), Some(noon));
+        assert_eq!(
+            parse_date_and_time(b"12:00:00 pm", b"01.05.2026"),
+            Some(noon)
+        );
         assert_eq!(of_day(b"12:00:30,25 AM"), Some(30.25));
         for text in ["12:30", "13:00:00 PM", "0:00:00 AM", "24:00:00", "1.5"] {
             assert_eq!(of_day(text.as_bytes()), None, "{text}");

@@ -2,7 +2,7 @@
 
 use super::date;
 use super::mark;
-use super::text::{Encoding, bare, field_end, has_bare_returns, is_empty_line, shown};
+use super::text::{Encoding, decode_field, field_end, has_bare_returns, is_empty_line, trim_field};
 use crate::series::error::SeriesError;
 use crate::series::number::{DecimalMark, number};
 use crate::series::record::column::{
@@ -91,7 +91,10 @@ impl Layout {
         let fields: Vec<Vec<&[u8]>> = lines.iter().map(|l| split(&l.text, delimiter)).collect();
         let header = header_of(&fields, mark)?;
         let names = fields.get(header).map_or(&[][..], Vec::as_slice);
-        let mut columns: Vec<Column> = names.iter().map(|f| name_and_unit(&shown(f))).collect();
+        let mut columns: Vec<Column> = names
+            .iter()
+            .map(|f| name_and_unit(&decode_field(f)))
+            .collect();
         let units = fields
             .get(header + 1)
             .filter(|f| is_units(f, &columns, mark));
@@ -105,14 +108,14 @@ impl Layout {
         }
         if let Some(units) = units {
             for (c, unit) in columns.iter_mut().zip(units) {
-                take_unit_below(c, &shown(unit));
+                take_unit_below(c, &decode_field(unit));
             }
         }
         let first = fields.get(row).ok_or(SeriesError::Empty)?;
         let start = lines.get(row).map_or(bytes.len(), |l| l.from);
         let time = time_field(&columns, first, mark);
         let rows = fields.get(row..).unwrap_or_default();
-        let mark = mark::settled(rows, mark).map_err(|(at, what)| {
+        let mark = mark::find_decimal_mark(rows, mark).map_err(|(at, what)| {
             let from = lines.get(row + at).map_or(0, |l| l.from);
             SeriesError::Line {
                 line: encoding.lines(bytes.get(..from).unwrap_or_default()) + 1,
@@ -157,7 +160,7 @@ impl Layout {
             return Err(SeriesError::Line {
                 line: 1,
                 what: format!("time: {}", clashing.clash_words()),
-                remedy: "correct whichever is wrong",
+                remedy: "correct the wrong one",
             });
         }
         let unit = column.map_or("", |c| c.unit.as_str());
@@ -166,7 +169,7 @@ impl Layout {
         let next = rows.first().and_then(|r| r.get(at + 1)).copied();
         let dated = date::seconds(first).map(|epoch_s| TimeKind::Date { epoch_s });
         let dated = dated.or_else(|| {
-            let epoch_s = date::beside(first, next?)?;
+            let epoch_s = date::parse_date_and_time(first, next?)?;
             Some(TimeKind::DateBeside { epoch_s })
         });
         let dated = dated.or_else(|| {
@@ -213,7 +216,7 @@ impl Layout {
 /// a time of day in two fields the first.
 fn time_field(columns: &[Column], row: &[&[u8]], mark: DecimalMark) -> Option<usize> {
     let field = |i: usize| row.get(i).copied().unwrap_or_default();
-    let pair = |i: usize| date::beside(field(i), field(i + 1)).is_some();
+    let pair = |i: usize| date::parse_date_and_time(field(i), field(i + 1)).is_some();
     let named = || (0..columns.len()).filter(|i| columns[*i].is_time(*i == 0));
     if let Some(at) = named().find(|i| pair(*i) || i.checked_sub(1).is_some_and(pair)) {
         return if pair(at) {
@@ -229,7 +232,7 @@ fn time_field(columns: &[Column], row: &[&[u8]], mark: DecimalMark) -> Option<us
 
 /// Decimals of a number as written: `1.50e-3` has five.
 fn decimals(field: &[u8]) -> usize {
-    let field = bare(field);
+    let field = trim_field(field);
     let (digits, power) = match field.iter().position(|b| matches!(b, b'e' | b'E')) {
         Some(n) => {
             let power = field.get(n + 1..).unwrap_or_default();
@@ -247,7 +250,7 @@ fn decimals(field: &[u8]) -> usize {
     usize::try_from(after as i32 - power).unwrap_or(0)
 }
 
-/// The lines in which header and first rows stand, empty ones and comments left out.
+/// The lines of header and first rows, without empty lines and comments.
 fn first_lines(encoding: Encoding, bytes: &[u8], begin: usize) -> Vec<Line> {
     let mut lines = Vec::new();
     let mut at = begin;
@@ -302,7 +305,7 @@ fn split(line: &[u8], delimiter: u8) -> Vec<&[u8]> {
     loop {
         let rest = line.get(at..).unwrap_or_default();
         let n = field_end(rest, delimiter);
-        out.push(bare(rest.get(..n).unwrap_or_default()));
+        out.push(trim_field(rest.get(..n).unwrap_or_default()));
         at += n + 1;
         if rest.get(n) != Some(&delimiter) {
             return out;
@@ -332,7 +335,8 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
     };
     let named = |f: &[&[u8]]| {
         f.iter().enumerate().any(|(i, n)| {
-            is_time(&name_and_unit(&shown(n)).name, i == 0) || shown(n).eq_ignore_ascii_case("run")
+            is_time(&name_and_unit(&decode_field(n)).name, i == 0)
+                || decode_field(n).eq_ignore_ascii_case("run")
         })
     };
     // Names may be numbers (`time,14,15`): a column of time tells the header, if rows of about its length follow.
@@ -371,7 +375,7 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
         .ok_or_else(|| SeriesError::Line {
             line: 1,
             what: "no line names the columns".into(),
-            remedy: "begin with a header line: `time` and a name a channel",
+            remedy: "begin with a header line: `time` and one name for each channel",
         })
 }
 
@@ -379,9 +383,9 @@ fn header_of(fields: &[Vec<&[u8]>], mark: DecimalMark) -> Result<usize, SeriesEr
 /// rows, a name there makes it one of them.
 pub fn is_units(fields: &[&[u8]], columns: &[Column], mark: DecimalMark) -> bool {
     let word = |f: &[u8]| !f.is_empty() && number(f, mark).is_none() && !is_moment(f);
-    let states_none = |f: &[u8]| states_no_unit(&shown(f));
+    let states_none = |f: &[u8]| states_no_unit(&decode_field(f));
     let of_time = |f: &[u8]| {
-        let unit = shown(f);
+        let unit = decode_field(f);
         let unit = unit.trim_matches(['[', ']', '(', ')']);
         !unit.is_empty() && seconds_in(unit).is_some()
     };

@@ -1,6 +1,6 @@
 //! Determines whether commas or points are the decimal marks of a table with semicolons or tabs as delimiters, and the mark between thousands.
 
-use super::text::shown;
+use super::text::decode_field;
 use crate::series::number::{DecimalMark, number};
 
 /// Remedy for an ambiguous decimal mark.
@@ -10,7 +10,10 @@ pub const REMEDY: &str = "write numbers without marks between thousands, and all
 const SEVERAL: usize = 2;
 
 /// Returns the decimal mark of the first rows; `mark` if none of their numbers has one. Error: the wrong row, and the message about it.
-pub fn settled(rows: &[Vec<&[u8]>], mark: DecimalMark) -> Result<DecimalMark, (usize, String)> {
+pub fn find_decimal_mark(
+    rows: &[Vec<&[u8]>],
+    mark: DecimalMark,
+) -> Result<DecimalMark, (usize, String)> {
     if mark == DecimalMark::Point {
         return Ok(mark);
     }
@@ -23,9 +26,9 @@ pub fn settled(rows: &[Vec<&[u8]>], mark: DecimalMark) -> Result<DecimalMark, (u
     let (comma, point) = (first(b','), first(b'.'));
     if let (Some(a), Some(b)) = (comma, point) {
         let what = format!(
-            "`{}` has a decimal comma and `{}` a decimal point, or one of them a mark between thousands",
-            shown(a.2),
-            shown(b.2)
+            "`{}` has a decimal comma and `{}` a decimal point, or one of them has a mark between thousands",
+            decode_field(a.2),
+            decode_field(b.2)
         );
         return Err((a.0.max(b.0), what));
     }
@@ -58,7 +61,7 @@ pub fn settled(rows: &[Vec<&[u8]>], mark: DecimalMark) -> Result<DecimalMark, (u
 pub fn in_words(field: &[u8]) -> String {
     format!(
         "`{}` may be a fraction, or a whole number with a mark between thousands",
-        shown(field)
+        decode_field(field)
     )
 }
 

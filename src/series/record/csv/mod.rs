@@ -213,13 +213,14 @@ impl RecordReader for Csv {
 /// Seconds from the first row to the date or time of day at the beginning of `rest`, and the length of the field.
 fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wrong> {
     let used = text::field_end(rest, delimiter);
-    let shown = text::bare(rest.get(..used).unwrap_or_default());
+    let shown = text::trim_field(rest.get(..used).unwrap_or_default());
     let found = match kind {
         TimeKind::Date { epoch_s } => date::seconds(shown).map(|s| s - epoch_s),
         TimeKind::DateBeside { epoch_s } => {
             let next = rest.get(used + 1..).unwrap_or_default();
             let next = next.get(..text::field_end(next, delimiter));
-            date::beside(shown, text::bare(next.unwrap_or_default())).map(|s| s - epoch_s)
+            date::parse_date_and_time(shown, text::trim_field(next.unwrap_or_default()))
+                .map(|s| s - epoch_s)
         }
         TimeKind::OfDay { first_s } => date::of_day(shown).map(|s| s - first_s),
         TimeKind::Number { .. } => None,
@@ -228,7 +229,10 @@ fn moment(rest: &[u8], delimiter: u8, kind: TimeKind) -> Result<(f64, usize), Wr
         Some(s) => Ok((s, used)),
         None if shown.is_empty() => Ok((f64::NAN, used)),
         None => Err((
-            format!("`{}` is no date and time", String::from_utf8_lossy(shown)),
+            format!(
+                "`{}` is not a date and time",
+                String::from_utf8_lossy(shown)
+            ),
             "write it as in the first row, such as 2026-05-01 12:00:00.002",
         )),
     }
@@ -288,8 +292,8 @@ impl Parser<'_> {
             Ok(at)
         } else {
             Err((
-                format!("{field} fields, the header has {n}"),
-                "give every row as many fields as the header; is the file cut off?",
+                format!("the row has {field} fields, the header has {n}"),
+                "give every row as many fields as the header, and check whether the file is cut off",
             ))
         }
     }
@@ -300,7 +304,7 @@ impl Parser<'_> {
         if self.layout.mark != DecimalMark::CommaOrPoint {
             return Ok(());
         }
-        let field = text::bare(rest.get(..used).unwrap_or_default());
+        let field = text::trim_field(rest.get(..used).unwrap_or_default());
         match mark::may_be_thousands(field) {
             true => Err((mark::in_words(field), mark::REMEDY)),
             false => Ok(()),
@@ -336,7 +340,7 @@ impl Parser<'_> {
             }
         }
         let used = text::field_end(rest, delimiter);
-        let shown = text::bare(rest.get(..used).unwrap_or_default());
+        let shown = text::trim_field(rest.get(..used).unwrap_or_default());
         self.check_mark(shown, shown.len())?;
         match number(shown, mark) {
             Some(v) => Ok((v * factor, used)),
@@ -354,7 +358,7 @@ impl Parser<'_> {
                 if ambiguous {
                     return Err((
                         format!(
-                            "`{shown}` in column `{name}` is a date whose day and month could be exchanged"
+                            "`{shown}` in column `{name}` is a date with an ambiguous order of day and month"
                         ),
                         "write dates as 2026-03-01 10:00:00.002, or give times in seconds",
                     ));

@@ -197,7 +197,7 @@ fn times_with_an_offset_and_units_in_the_name_of_a_column_are_read() {
     }
     let words = refusal("time,A\n3/1/2026 10:00:00.000 AM,1\n3/1/2026 10:00:00.010 AM,2\n");
     assert!(
-        words.contains("day and month could be exchanged"),
+        words.contains("an ambiguous order of day and month"),
         "{words}"
     );
     assert!(words.contains("2026-03-01"), "{words}");

@@ -195,7 +195,7 @@ pub fn field_end(rest: &[u8], delimiter: u8) -> usize {
 }
 
 /// A field without spaces around it and without its quotes.
-pub fn bare(field: &[u8]) -> &[u8] {
+pub fn trim_field(field: &[u8]) -> &[u8] {
     let field = field.trim_ascii();
     field
         .strip_prefix(b"\"")
@@ -204,7 +204,7 @@ pub fn bare(field: &[u8]) -> &[u8] {
 }
 
 /// Text of a field without its quotes: UTF-8, else an eight-bit code. A quotation mark within is doubled in the file.
-pub fn shown(field: &[u8]) -> String {
+pub fn decode_field(field: &[u8]) -> String {
     match std::str::from_utf8(field) {
         Ok(t) => t.replace("\"\"", "\""),
         Err(_) => field.iter().map(|b| char::from(*b)).collect(),

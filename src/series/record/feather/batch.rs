@@ -37,7 +37,7 @@ impl Batch {
     ) -> Result<Vec<Cow<'a, [u8]>>, SeriesError> {
         let buffers = self.buffers.get(at).map(Vec::as_slice).unwrap_or_default();
         let raw = buffers.iter().map(|r| self.raw(file, r));
-        raw.map(|b| b.ok_or_else(|| broken("a compressed column is damaged")))
+        raw.map(|b| b.ok_or_else(|| read_error("a compressed column is damaged")))
             .collect()
     }
 
@@ -192,9 +192,9 @@ fn take(field: &Field, rows: Option<usize>, parts: &mut Parts) -> Option<Vec<Ran
     Some(own)
 }
 
-pub(super) fn broken(what: &str) -> SeriesError {
+pub(super) fn read_error(what: &str) -> SeriesError {
     SeriesError::Broken {
-        wrong: format!("it can't be read as Feather ({what})"),
+        wrong: format!("it cannot be read as Feather ({what})"),
         remedy: "write it again, columns of numbers and one `time` in seconds",
     }
 }

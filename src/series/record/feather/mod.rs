@@ -12,7 +12,7 @@ use super::reader::{BLOCK, Block, Bytes, Pick, RecordReader, Sink, Times};
 use super::tile::Tile;
 use super::typed::{Meaning, Precision, TimeColumn, Typed};
 use crate::series::error::SeriesError;
-use batch::{Batch, MAGIC, broken, parts};
+use batch::{Batch, MAGIC, parts, read_error};
 use std::borrow::Cow;
 use std::ops::{ControlFlow, Range};
 use values::{Values, is_valid};
@@ -48,10 +48,10 @@ impl Feather {
     pub fn new(bytes: Bytes) -> Result<Self, SeriesError> {
         let file: &[u8] = (*bytes).as_ref();
         if !file.ends_with(MAGIC) {
-            return Err(broken("it is cut off"));
+            return Err(read_error("it is cut off"));
         }
         let (fields, batches, dictionaries) =
-            parts(file).ok_or_else(|| broken("its list of columns or batches is damaged"))?;
+            parts(file).ok_or_else(|| read_error("its list of columns or batches is damaged"))?;
         let numbers = fields.iter().enumerate();
         let typed =
             Typed::of(numbers.filter_map(|(at, f)| Some((at, &*f.name, f.meaning()?, &*f.unit))));
@@ -152,7 +152,7 @@ impl Feather {
     ) -> Result<(), SeriesError> {
         let buffers: Vec<Cow<'_, [u8]>> = batch.all(at, (*self.bytes).as_ref())?;
         let [validity, places, data @ ..] = buffers.as_slice() else {
-            return Err(broken("a column of text has no buffers"));
+            return Err(read_error("a column of text has no buffers"));
         };
         let places = Buffer(places);
         let text = |i: usize| {
@@ -182,7 +182,7 @@ impl Feather {
         };
         for i in 0..batch.rows {
             let text = match is_valid(validity, i) {
-                true => text(i).ok_or_else(|| broken("a text lies outside of its column"))?,
+                true => text(i).ok_or_else(|| read_error("a text is outside its column"))?,
                 false => String::new(),
             };
             out.push(text);
@@ -200,7 +200,7 @@ impl Feather {
         let buffers = batch.all(at, (*self.bytes).as_ref())?;
         let [validity, data]: [Cow<'a, [u8]>; 2] = buffers
             .try_into()
-            .map_err(|_| broken("a column of numbers has too few buffers"))?;
+            .map_err(|_| read_error("a column of numbers has too few buffers"))?;
         let needed = match stored {
             Stored::Bits => Some(batch.rows.div_ceil(8)),
             Stored::Integer { bytes, .. } | Stored::Real { bytes } => batch.rows.checked_mul(bytes),
@@ -215,7 +215,7 @@ impl Feather {
                 data,
                 dictionary: None,
             }),
-            false => Err(broken("a column ends before its batch")),
+            false => Err(read_error("a column ends before its batch")),
         }
     }
 

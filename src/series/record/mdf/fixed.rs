@@ -1,6 +1,6 @@
 //! Groups of fixed records, a piece at a time.
 
-use super::fault::broken;
+use super::fault::read_error;
 use super::field::{Field, values};
 use crate::series::error::SeriesError;
 use crate::series::record::column::Column;
@@ -61,14 +61,14 @@ impl Group {
                 None => b.offset.checked_add(HEAD + b.original_size),
             };
             if end.is_none_or(|end| end > length) {
-                return Err(broken("the file is cut off: a block ends beyond it"));
+                return Err(read_error("the file is cut off: a block ends beyond it"));
             }
         }
         if finished {
             let stated = stated_cycles((**bytes).as_ref(), group.block_offset());
             if stated.is_some_and(|n| n > group.sample_count) {
-                return Err(broken(format!(
-                    "the file is cut off: it holds {} of {} samples",
+                return Err(read_error(format!(
+                    "the file is cut off: it contains {} of {} samples",
                     group.sample_count,
                     stated.unwrap_or(0)
                 )));
@@ -171,7 +171,7 @@ impl Group {
             let content = content(file, block)?;
             let low = begin.saturating_sub(*at) as usize;
             let high = (end - at).min(block.original_size) as usize;
-            let short = || broken("a block is shorter than it says");
+            let short = || read_error("a block is shorter than its stated length");
             match content {
                 Cow::Borrowed(b) if *at <= begin && at + block.original_size >= end => {
                     return b.get(low..high).map(Cow::Borrowed).ok_or_else(short);
@@ -182,7 +182,7 @@ impl Group {
             }
         }
         if out.len() as u64 != end - begin {
-            return Err(broken("the file is cut off: records are missing"));
+            return Err(read_error("the file is cut off: records are missing"));
         }
         Ok(Cow::Owned(out))
     }
@@ -218,7 +218,7 @@ fn content<'a>(file: &'a [u8], block: &DataBlockInfo) -> Result<Cow<'a, [u8]>, S
         let from = usize::try_from(from).ok()?;
         file.get(from..from.checked_add(usize::try_from(len).ok()?)?)
     };
-    let cut = || broken("the file is cut off: a block ends beyond it");
+    let cut = || read_error("the file is cut off: a block ends beyond it");
     let Some(c) = &block.compression else {
         return part(block.offset + HEAD, block.original_size)
             .map(Cow::Borrowed)
@@ -229,12 +229,12 @@ fn content<'a>(file: &'a [u8], block: &DataBlockInfo) -> Result<Cow<'a, [u8]>, S
     flate2::bufread::ZlibDecoder::new(packed)
         .take(block.original_size + 1)
         .read_to_end(&mut out)
-        .map_err(broken)?;
+        .map_err(read_error)?;
     if out.len() as u64 != block.original_size {
-        return Err(broken("a block expands to another size than it says"));
+        return Err(read_error("a block expands to another size than stated"));
     }
     if c.algorithm == CompressionType::TransposedDeflate {
-        out = Mf4File::un_transpose(&out, c.parameter as usize).map_err(broken)?;
+        out = Mf4File::un_transpose(&out, c.parameter as usize).map_err(read_error)?;
     }
     Ok(Cow::Owned(out))
 }

@@ -13,7 +13,7 @@ use super::whole::Whole;
 use crate::series::error::SeriesError;
 use falcon_mdf::io::{ByteSlice, ByteSource};
 use falcon_mdf::{ChannelGroup, Mf4Error, Mf4File};
-use fault::broken;
+use fault::read_error;
 use field::{Field, values};
 use fixed::{Fixed, Group};
 use std::sync::Arc;
@@ -47,7 +47,7 @@ impl ByteSource for Source {
 /// # Errors
 /// A file that can't be read or is cut off, wanted channels on other times.
 pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordReader>, SeriesError> {
-    let file = Mf4File::from_source(Arc::new(Source(bytes.clone()))).map_err(broken)?;
+    let file = Mf4File::from_source(Arc::new(Source(bytes.clone()))).map_err(read_error)?;
     let groups: Vec<&ChannelGroup> = file
         .data_groups()
         .iter()
@@ -62,7 +62,7 @@ pub(super) fn open(bytes: Bytes, wanted: &[String]) -> Result<Box<dyn RecordRead
         )
     };
     let Some(main) = groups.iter().copied().max_by_key(|g| weight(g)) else {
-        return Err(broken("it holds no channels"));
+        return Err(read_error("it contains no channels"));
     };
     let finished = file.unfinalized().is_none();
     let mut plain: Vec<Option<Group>> = Vec::new();
@@ -118,8 +118,8 @@ fn whole(file: &Mf4File, group: &ChannelGroup) -> Result<Whole, SeriesError> {
     let mut columns = Vec::new();
     let mut samples = Vec::new();
     let decode = |c: &falcon_mdf::Channel| -> Result<Vec<f64>, SeriesError> {
-        let signal = file.signal(c).map_err(broken)?;
-        let mut samples = signal.values_f64().map_err(broken)?;
+        let signal = file.signal(c).map_err(read_error)?;
+        let mut samples = signal.values_f64().map_err(read_error)?;
         if let Some(valid) = signal.validity() {
             for (v, valid) in samples.iter_mut().zip(valid) {
                 *v = if valid { *v } else { f64::NAN };

@@ -1,6 +1,6 @@
 //! Times of the samples of a channel, as its properties or a channel of times state them.
 
-use super::fault::broken;
+use super::fault::read_error;
 use super::segments::{Channel, Kind, Value};
 use crate::series::error::SeriesError;
 use crate::series::record::column::{is_time, seconds_in};
@@ -107,7 +107,7 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
             ("wf_start_time", Value::Time(t)) => start = Some(*t),
             ("wf_start_offset", Value::Number(v)) => now = *v,
             ("wf_increment", Value::Number(v)) if (v * second(c) / step_s - 1.0).abs() > 1e-9 => {
-                return Err(broken(format!(
+                return Err(read_error(format!(
                     "the time between samples of `{}` changes at sample {} from {step_s} s to {} s",
                     c.name,
                     restart.first + 1,
@@ -128,9 +128,9 @@ pub(super) fn check_restarts(c: &Channel) -> Result<(), SeriesError> {
         let begins = since + second(c) * (now - offset);
         let ends = restart.first as f64 * step_s;
         if (begins - ends).abs() > step_s.max(COMPUTER_CLOCK_S) {
-            return Err(broken(format!(
-                "`{}` has two parts that do not follow each other: the second begins {begins} s after the first sample, and the first \
-                 part of {} samples ends after {ends} s",
+            return Err(read_error(format!(
+                "`{}` has two parts with a time step between them: the second begins {begins} s after the first sample, and the first part \
+                 of {} samples ends after {ends} s",
                 c.name, restart.first
             )));
         }
@@ -183,7 +183,7 @@ pub(super) fn check_clocks(
             seconds_in(unit).is_some_and(|s| (mean * s / main.step_s - 1.0).abs() < SAME_RATE)
         };
         if mean > 0.0 && !units.iter().any(agrees) {
-            return Err(broken(format!(
+            return Err(read_error(format!(
                 "the times of channel `{}` are {mean} {stated} apart, and `wf_increment` of the other channels is {} s",
                 c.name, main.step_s
             )));

@@ -16,7 +16,7 @@ use super::time_unit::single_rounding_s;
 use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use clock::{check_clocks, check_restarts, is_over_time, samplings};
-use fault::broken;
+use fault::read_error;
 use segments::{Channel, Kind, Value, channels_of};
 use stamp::Stamp;
 
@@ -130,8 +130,9 @@ impl Tdms {
             epoch_s = Some(first).filter(|t| t.is_finite());
             scale = vec![-epoch_s.unwrap_or(0.0), 1.0];
         } else {
-            let second = seconds_in(&unit)
-                .ok_or_else(|| broken(format!("`{unit}` of `{}` is not a unit of time", c.name)))?;
+            let second = seconds_in(&unit).ok_or_else(|| {
+                read_error(format!("`{unit}` of `{}` is not a unit of time", c.name))
+            })?;
             scale.iter_mut().for_each(|factor| *factor *= second);
         }
         let one = scale.get(1).copied().unwrap_or(1.0).abs();
@@ -164,7 +165,7 @@ fn over_time(
         .iter()
         .find(|c| over_time.is_empty() || wanted.contains(&c.name));
     match refused {
-        Some(c) => Err(broken(format!(
+        Some(c) => Err(read_error(format!(
             "the samples of `{}` are over {}, which is not time",
             c.name,
             clock::axis(c)
@@ -190,7 +191,7 @@ fn scale_of(c: &Channel) -> Result<Scale, SeriesError> {
     if n == 0.0 || c.text("NI_Scaling_Status").is_some_and(|s| s == "scaled") {
         return Ok(vec![0.0, 1.0]);
     }
-    let refused = |what: &str| broken(format!("channel `{}` has a scaling `{what}`", c.name));
+    let refused = |what: &str| read_error(format!("channel `{}` has a scaling `{what}`", c.name));
     if n > 1.0 {
         return Err(refused("of several steps"));
     }

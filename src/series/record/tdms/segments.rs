@@ -1,6 +1,6 @@
 //! The lists of a TDMS file: which channels there are and where their samples lie.
 
-use super::fault::broken;
+use super::fault::read_error;
 use super::stamp::Stamp;
 use crate::series::error::SeriesError;
 use std::collections::BTreeMap;
@@ -177,13 +177,13 @@ impl<'a> Cursor<'a> {
     fn take(&mut self, n: usize) -> Result<&'a [u8], SeriesError> {
         let end = self.at.checked_add(n);
         let part = end.and_then(|end| self.bytes.get(self.at..end));
-        let part = part.ok_or_else(|| broken("the file is cut off"))?;
+        let part = part.ok_or_else(|| read_error("the file is cut off"))?;
         self.at += n;
         Ok(part)
     }
 
     fn u32(&mut self) -> Result<u32, SeriesError> {
-        let b: [u8; 4] = self.take(4)?.try_into().map_err(broken)?;
+        let b: [u8; 4] = self.take(4)?.try_into().map_err(read_error)?;
         Ok(if self.big {
             u32::from_be_bytes(b)
         } else {
@@ -192,7 +192,7 @@ impl<'a> Cursor<'a> {
     }
 
     fn u64(&mut self) -> Result<u64, SeriesError> {
-        let b: [u8; 8] = self.take(8)?.try_into().map_err(broken)?;
+        let b: [u8; 8] = self.take(8)?.try_into().map_err(read_error)?;
         Ok(if self.big {
             u64::from_be_bytes(b)
         } else {
@@ -211,14 +211,16 @@ impl<'a> Cursor<'a> {
             Some(Kind::Text) => self.text().map(Value::Text),
             Some(Kind::Time) => {
                 let stamp = Stamp::of(self.take(Kind::Time.size())?, self.big);
-                let stamp = stamp.ok_or_else(|| broken("the file is cut off"))?;
+                let stamp = stamp.ok_or_else(|| read_error("the file is cut off"))?;
                 Ok(Value::Time(stamp))
             }
             Some(kind) => {
                 let b = self.take(kind.size())?;
                 Ok(Value::Number(kind.value(b, self.big)))
             }
-            None => Err(broken(format!("a property is of kind {code:#x}"))),
+            None => Err(read_error(format!(
+                "a property has the unsupported type {code:#x}"
+            ))),
         }
     }
 }
@@ -292,7 +294,7 @@ fn segment(
         big: false,
     };
     if c.take(4)? != b"TDSm" {
-        return Err(broken(format!("no segment begins at byte {at}")));
+        return Err(read_error(format!("no segment begins at byte {at}")));
     }
     let flags = c.u32()?;
     // From here on in the order of bytes that the flags state.
@@ -301,13 +303,13 @@ fn segment(
     let (next, raw) = (c.u64()?, c.u64()?);
     let begin = at + LEAD;
     let end = if next == u64::MAX {
-        return Err(broken("its last segment was not finished"));
+        return Err(read_error("its last segment was not finished"));
     } else {
         usize::try_from(next)
             .ok()
             .and_then(|n| begin.checked_add(n))
             .filter(|end| *end <= bytes.len())
-            .ok_or_else(|| broken("the file is cut off"))?
+            .ok_or_else(|| read_error("the file is cut off"))?
     };
     if flags & META != 0 {
         if flags & NEW_LIST != 0 {
@@ -321,13 +323,13 @@ fn segment(
         return Ok(end);
     }
     if flags & DAQMX != 0 {
-        return Err(broken("it holds DAQmx raw data"));
+        return Err(read_error("it contains DAQmx raw data"));
     }
     let data = usize::try_from(raw)
         .ok()
         .and_then(|n| begin.checked_add(n))
         .filter(|d| *d <= end)
-        .ok_or_else(|| broken("samples begin beyond their segment"))?;
+        .ok_or_else(|| read_error("samples begin beyond their segment"))?;
     samples(objects, active, data, end, flags)?;
     Ok(end)
 }
@@ -346,19 +348,20 @@ fn object(
     match c.u32()? {
         u32::MAX => object.index = None,
         0 => {}
-        0x1269 | 0x1369 => return Err(broken("it holds DAQmx raw data")),
+        0x1269 | 0x1369 => return Err(read_error("it contains DAQmx raw data")),
         _ => {
             let code = c.u32()?;
-            let kind =
-                Kind::of(code).ok_or_else(|| broken(format!("`{path}` is of kind {code:#x}")))?;
+            let kind = Kind::of(code).ok_or_else(|| {
+                read_error(format!("`{path}` has the unsupported type {code:#x}"))
+            })?;
             c.u32()?;
-            let values = usize::try_from(c.u64()?).map_err(broken)?;
+            let values = usize::try_from(c.u64()?).map_err(read_error)?;
             let size = if kind == Kind::Text {
-                usize::try_from(c.u64()?).map_err(broken)?
+                usize::try_from(c.u64()?).map_err(read_error)?
             } else {
                 values
                     .checked_mul(kind.size())
-                    .ok_or_else(|| broken("too many samples"))?
+                    .ok_or_else(|| read_error("too many samples"))?
             };
             object.index = Some(Index {
                 kind,
@@ -407,7 +410,7 @@ fn samples(
         return Ok(());
     }
     if !(end - data).is_multiple_of(chunk) {
-        return Err(broken(
+        return Err(read_error(
             "the file is cut off: samples are missing in its last segment",
         ));
     }
@@ -420,7 +423,7 @@ fn samples(
                 continue;
             };
             if object.kind.is_some_and(|k| k != index.kind) {
-                return Err(broken(format!("`{path}` changes its kind")));
+                return Err(read_error(format!("`{path}` changes its type")));
             }
             object.kind = Some(index.kind);
             if index.kind.is_number() {

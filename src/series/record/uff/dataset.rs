@@ -1,6 +1,6 @@
 //! One data set 58: its head, and where its numbers are.
 
-use super::fault::broken;
+use super::fault::read_error;
 use crate::series::error::SeriesError;
 use crate::series::record::column::{Column, seconds_in};
 use std::collections::BTreeSet;
@@ -109,7 +109,7 @@ pub fn datasets(bytes: &[u8]) -> Result<Vec<Dataset>, SeriesError> {
         }
         // To the end of this data set.
         if !lines.by_ref().any(|l| l.trim_ascii() == b"-1") {
-            return Err(broken("the file is cut off: a data set has no end"));
+            return Err(read_error("the file is cut off: a data set has no end"));
         }
     }
     // Programs differ in what tells their channels apart: the first of the titles that tells most of them; a number where it is there twice.
@@ -175,21 +175,21 @@ fn history(
     if let Some(n) = bytes_of_data {
         lines.at = at.saturating_add(n);
         if lines.at > lines.bytes.len() {
-            return Err(broken("the file is cut off"));
+            return Err(read_error("the file is cut off"));
         }
     }
     let function = whole(5, 0, 5).unwrap_or(-1);
     if !RESPONSES.contains(&function) || whole(7, 0, 10) != Some(TIME) {
         return Ok(None);
     }
-    let bad = |what: &str| broken(format!("data set {}: {what}", before + 1));
+    let bad = |what: &str| read_error(format!("data set {}: {what}", before + 1));
     let double = match whole(6, 0, 10) {
         Some(2) => false,
         Some(4) => true,
         _ => return Err(bad("its numbers are not real")),
     };
     let samples = whole(6, 10, 20).and_then(|n| usize::try_from(n).ok());
-    let samples = samples.ok_or_else(|| bad("no number of samples"))?;
+    let samples = samples.ok_or_else(|| bad("the number of samples is missing"))?;
     if whole(6, 20, 30) != Some(1) {
         return Err(bad("its steps are uneven"));
     }
@@ -202,13 +202,13 @@ fn history(
     })?;
     let start_s = second * real(6, 30, 43).unwrap_or(0.0);
     let step_s = real(6, 43, 56).filter(|s| *s > 0.0);
-    let step_s = second * step_s.ok_or_else(|| bad("no time between samples"))?;
+    let step_s = second * step_s.ok_or_else(|| bad("the time between samples is missing"))?;
     let data = match (binary, bytes_of_data) {
         (Some(layout), Some(n)) => {
             let big = match layout.first() {
                 Some(1) => false,
                 Some(2) => true,
-                _ => return Err(bad("its order of bytes is not told")),
+                _ => return Err(bad("its byte order is not stated")),
             };
             if layout.get(1) != Some(&2) {
                 return Err(bad("its numbers are not IEEE 754"));

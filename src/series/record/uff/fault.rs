@@ -3,9 +3,9 @@
 use crate::series::error::SeriesError;
 
 /// Returns the error of a file that can't be read.
-pub(super) fn broken(what: impl std::fmt::Display) -> SeriesError {
+pub(super) fn read_error(what: impl std::fmt::Display) -> SeriesError {
     SeriesError::Broken {
-        wrong: format!("it can't be read as a universal file ({what})"),
+        wrong: format!("it cannot be read as a universal file ({what})"),
         remedy: "export time histories as data sets 58 or 58b on even steps",
     }
 }

@@ -10,7 +10,7 @@ use super::reader::{BLOCK, Block, Bytes, OtherChannel, Pick, RecordReader, Sink,
 use super::together::{Sampling, sampled_together};
 use crate::series::error::SeriesError;
 use dataset::{Dataset, Samples, datasets};
-use fault::broken;
+use fault::read_error;
 
 /// Samples a piece.
 const PIECE: usize = 65_536;
@@ -46,8 +46,8 @@ impl Uff {
         let all = datasets((*bytes).as_ref())?;
         let named_twice = |w: &&String| all.iter().filter(|d| d.twice.as_ref() == Some(*w)).count();
         if let Some(name) = wanted.iter().find(|w| named_twice(w) > 0) {
-            return Err(broken(format!(
-                "`{name}` is there {} times, which of the data sets is meant is not known",
+            return Err(read_error(format!(
+                "the file contains `{name}` {} times, and the intended data set is ambiguous",
                 named_twice(&name)
             )));
         }
@@ -62,7 +62,7 @@ impl Uff {
         let found = sampled_together(&channels.collect::<Vec<_>>(), wanted)?;
         let Some((main, together)) = found else {
             return Err(match all.is_empty() {
-                true => broken("it holds no time histories"),
+                true => read_error("it contains no time histories"),
                 false => SeriesError::Empty,
             });
         };

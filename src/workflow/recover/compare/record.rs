@@ -339,13 +339,13 @@ fn no_shift(job: &Job, compare: &Compare, file: &str, e: NoShift) -> Fault {
         ),
         NoShift::Unlike(best) => (
             format!(
-                "recovered loads and those of `{file}` do not agree at any time shift: the largest mean correlation coefficient is {best:.2}"
+                "recovered loads and the loads of `{file}` do not agree at any time shift: the largest mean correlation coefficient is {best:.2}"
             ),
             "compare columns, signs and the times of both files, or state the shift as a number of seconds: shift_s = 0.0",
         ),
         NoShift::Ambiguous([first, second]) => (
             format!(
-                "loads of `{file}` agree with the recovered ones at a time shift of {} s and as well at {} s: they repeat themselves",
+                "the loads of `{file}` agree with the recovered loads at a time shift of {} s and equally at {} s: they are periodic",
                 short(first),
                 short(second)
             ),
@@ -362,8 +362,8 @@ fn shift_found(shift: &ComparisonShift) -> Option<Finding> {
         "time-shift-estimated",
         &*shift.file,
         format!(
-            "recorded loads are compared {:.5} ± {:.5} s after the times of their file, as recovered and recorded loads agree best; mean correlation \
-             coefficient {:.3}",
+            "recorded loads are compared {:.5} ± {:.5} s after the times of their file, which gives the best agreement with the recovered \
+             loads; mean correlation coefficient {:.3}",
             shift.shift_s,
             half,
             shift.correlation.unwrap_or(f64::NAN)
@@ -380,8 +380,8 @@ fn coarse(recorded: &LoadRecord, load: &str, (curved, sigma): (f64, f64)) -> Opt
             "recorded-samples-coarse",
             format!("load `{load}`"),
             format!(
-                "`{}` has {} samples a second. Between them the load curves by {} rms, more than the standard deviation {} of the recovered load: \
-                 differences and damage include what interpolation misses",
+                "`{}` has {} samples per second. The interpolation error of the load is {} rms, more than the standard deviation {} of the \
+                 recovered load: differences and damage include it",
                 recorded.file,
                 short(recorded.clock.rate_hz),
                 short(curved),

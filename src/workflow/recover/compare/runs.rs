@@ -2,7 +2,7 @@
 
 use super::{Comparison, Differences, POINTS, Pair};
 use crate::estimate::NORMAL_95;
-use crate::finding::{Finding, Severity, few};
+use crate::finding::{Finding, Severity, list_few};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{HoldOut, Job, Runs};
@@ -33,7 +33,7 @@ pub fn runs(
     let row_of = |run: &str| rows.iter().find(|r| r.run == run);
     if job.compare.is_some() && !readings.iter().any(|r| row_of(&r.run).is_some()) {
         let wrong = format!(
-            "`{}` has none of the runs of the strain file",
+            "`{}` contains none of the runs of the strain file",
             file.file.given
         );
         let remedy = "give the runs the same names in both files";
@@ -141,10 +141,9 @@ fn not_compared(runs: &[&str]) -> Option<Finding> {
         Finding::new(
             Severity::Info,
             "calibration-runs-not-compared",
-            few(runs),
-            "S was calibrated with the recorded loads of these runs: their recovered loads agree with the recorded ones because of that, and they are not \
-             compared",
-            "keep some runs out of the calibration ([calibration] runs, or [measured] hold_out) and compare these",
+            list_few(runs),
+            "S was calibrated with the recorded loads of these runs. Their recovered loads therefore agree, and they are not compared",
+            "leave some runs out of the calibration ([calibration] runs, or [measured] hold_out) and compare these",
         )
         .with_numbers(runs.len() as f64, 0.0)
     })
