@@ -189,13 +189,12 @@ pub(super) fn take_out(
 pub fn take_out_beside(
     work: &mut Work,
     job: &Job,
-    fields: &super::Fields,
+    (deck, known): (&DeckModel, Option<&MeshError>),
     (loads, solved): (&[UnitLoad], &mut [CaseResult]),
 ) -> Result<(), Faults> {
-    if fields.mesh_error.is_none() {
+    if known.is_none() {
         return Ok(());
     }
-    let deck = &fields.deck;
     let cases = support_of_job(job, &deck.model)?.unit_cases(&deck.model, loads);
     let own: Vec<&CaseResult> = solved.iter().collect();
     let (errors, _) = finer(work, job, deck, (&cases, &own), WantedAt::Gauges).map_err(|why| {

@@ -15,6 +15,7 @@ mod mesh;
 pub(crate) mod named_results;
 pub(crate) mod not_solved;
 mod other_loads;
+pub(crate) mod repeated_subcases;
 pub(crate) mod solved;
 mod solver_check;
 mod specs;

@@ -17,10 +17,10 @@ use crate::strain_chain::combined_subcases::{CombinedSubcase, add_combinations, 
 use crate::strain_chain::deck::{DeckModel, read_model};
 use crate::strain_chain::job_deck::read_deck;
 use crate::strain_chain::named_results::{Absent, check_named};
+use crate::strain_chain::repeated_subcases::refuse_repeated_subcases;
 pub use crate::strain_chain::solved::MODES;
 use crate::strain_chain::solved::{
-    cases_of_job, faults_of, is_combination, refuse_repeated_subcases, relief_of_job, solve_kept,
-    static_case, support_of_job,
+    cases_of_job, faults_of, is_combination, relief_of_job, solve_kept, static_case, support_of_job,
 };
 use crate::units::{UnitSystem, number};
 use nastran::bdf::Request;

@@ -14,7 +14,7 @@ use crate::host::words::count_of;
 use crate::host::work::Work;
 use crate::model::Model;
 use crate::strain_chain::deck::{looks_like_op2, read_model};
-use crate::strain_chain::solved::find_repeated_subcases;
+use crate::strain_chain::repeated_subcases::find_repeated_subcases;
 use nastran::results::ResultsFile;
 use serde::Serialize;
 use std::path::{Path, PathBuf};

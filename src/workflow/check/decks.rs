@@ -9,7 +9,7 @@ use crate::job::Job;
 use crate::model::{Model, UnsupportedCard};
 use crate::strain_chain::deck::{DeckModel, model_of_deck, moduli_and_densities};
 use crate::strain_chain::job_deck::against_suggested_units;
-use crate::strain_chain::solved::find_repeated_subcases;
+use crate::strain_chain::repeated_subcases::find_repeated_subcases;
 use crate::units::{Quantity, Unit, UnitSystem, factor, likely_system};
 use nastran::bdf::vocabulary::{Effect, effect_of_card};
 use serde::Serialize;

@@ -234,7 +234,8 @@ fn held(
         let made = (&fields.deck, "payload on supports");
         unit_loads_kept(w, made, (fields.model(), support), &loads)
     })?;
-    take_out_beside(work, job, fields, (&loads, &mut solution.cases))?;
+    let known = (&fields.deck, fields.mesh_error.as_ref());
+    take_out_beside(work, job, known, (&loads, &mut solution.cases))?;
     let [_, b, c] = place.axes();
     let at = fields.model().grids.get(grid.us());
     let at = at.map_or_else(Vec3::zeros, |g| g.x);
@@ -289,7 +290,8 @@ fn standing(
         })
         .map_err(|e| floor_fault(job, &e))?;
     if let Some(fields) = prepared.and_then(|p| p.fields.as_ref()) {
-        take_out_beside(work, job, fields, (&loads, &mut standing.others))?;
+        let known = (&fields.deck, fields.mesh_error.as_ref());
+        take_out_beside(work, job, known, (&loads, &mut standing.others))?;
     }
     let at = model.grids.get(grid.us()).map_or_else(Vec3::zeros, |g| g.x);
     let n = wheels.grids.len();
