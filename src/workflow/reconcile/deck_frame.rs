@@ -15,12 +15,15 @@ use crate::finding::{Finding, Severity};
 use crate::gauge::Gauge;
 use crate::host::fault::{Fault, FaultList, Faults};
 use crate::host::work::Work;
+use crate::input_faults::AlternativeRows;
 use crate::job::{Ids, Job, JobLoad, LoadActs, LoadRole};
+use crate::linalg::Matrix;
 use crate::model::Model;
 use crate::reconcile::strain::{GaugeFacts, PlaneStrainRow, Wiring};
+use crate::sensitivity::from_cases;
 use crate::stop::Stop;
 use crate::strain_chain::solved::{support_of_job, unit_loads_kept};
-use crate::strain_chain::{Fields, Prepared, lay_gauges, prepare_beside};
+use crate::strain_chain::{Fields, Prepared, alternatives_of, lay_gauges, prepare_beside};
 use crate::units::KILO;
 use std::collections::BTreeMap;
 
@@ -35,6 +38,8 @@ pub(super) struct DeckFrame {
     pub(super) regions: Vec<Region>,
     /// Properties whose stiffness may be wrong together, by the name of the zone.
     pub(super) zones: BTreeMap<String, Ids>,
+    /// The influence of the gauges if all of them are installed otherwise than stated.
+    pub(super) alternatives: Vec<AlternativeRows>,
     /// Stops the solutions of changed models between two of them.
     pub(super) stop: Stop,
 }
@@ -106,6 +111,22 @@ pub(super) fn read(
     if from_results && finer.is_none() {
         table.clone_from(&base);
     }
+    let rows_of = |work: &mut Work, job: &Job| {
+        let laid = lay_gauges(work, job, &fields).ok()?;
+        let laid = in_order(job, laid, channels).ok()?;
+        let rows = match &finer {
+            Some(f) => influence(job, model, &f.lay(&laid, model)?, &solution, n_c),
+            None if from_results => {
+                let s = from_cases(&laid, &fields.load_cases(job)).ok()?;
+                let s = FrameColumns::of(job, s, channels).ok()?;
+                with_s(&influence(job, model, &laid, &own, n_c), &s, n_c)
+            }
+            None => influence(job, model, &laid, &solution, n_c),
+        };
+        let rows = Matrix::from_fn(channels.len(), n_c, |g, c| rows[g * n_c + c]);
+        Some((channels.to_vec(), rows))
+    };
+    let alternatives = alternatives_of(work, job, channels, &rows_of);
     let column = |c: usize| readings(seen[0], &solution, c..c + 1);
     let mut part = asked.part(job, model, column);
     part.gauges = gauge_facts(job, channels, &gauges);
@@ -137,6 +158,7 @@ pub(super) fn read(
         columns: asked.columns,
         base: by_solver,
         regions: vec![],
+        alternatives,
         stop: work.cx.progress.stop(),
     };
     part.stiffness = work.stage("solve zones", |_| deck.signatures(job))?;

@@ -16,14 +16,23 @@ impl Finer {
     pub(super) fn of(model: &Model, laid: [&Vec<Gauge>; 3]) -> Result<Self, String> {
         let refined = refined_mesh(model, laid.first().map(|g| g.as_slice()))?;
         let lost = || "a gauge is not on the refined mesh".to_owned();
-        let on = |gauges: &Vec<Gauge>| -> Option<Vec<Gauge>> {
+        let of = |k: usize| {
+            let gauges = laid.get(k);
             gauges
-                .iter()
-                .map(|g| on_refined(g, model, &refined))
-                .collect()
+                .and_then(|g| lay_on(g, model, &refined))
+                .ok_or_else(lost)
         };
-        let of = |k: usize| laid.get(k).and_then(|g| on(g)).ok_or_else(lost);
         let laid = [of(0)?, of(1)?, of(2)?];
         Ok(Self { refined, laid })
     }
+
+    /// Lays gauges of the deck's model on the finer model; `None` if one is not on it.
+    pub(super) fn lay(&self, gauges: &[Gauge], model: &Model) -> Option<Vec<Gauge>> {
+        lay_on(gauges, model, &self.refined)
+    }
+}
+
+fn lay_on(gauges: &[Gauge], model: &Model, refined: &RefinedModel) -> Option<Vec<Gauge>> {
+    let gauges = gauges.iter();
+    gauges.map(|g| on_refined(g, model, refined)).collect()
 }

@@ -13,17 +13,14 @@ use super::run_frame::frame;
 use super::stiffness::factor;
 use super::strain_findings::findings;
 use super::{causes, described, extend, matrix_frame};
-use crate::finding::Finding;
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{EffectSource, Job};
-use crate::linalg::Matrix;
 use crate::reconcile::effect::{Correction, Extension};
 use crate::reconcile::strain::{
     StiffnessOf, StrainFrame, examine, gauges_installed_otherwise, outcome_of_wrong_inputs, predict,
 };
 use crate::reconcile::{GapBasis, NamedEffect, Outcome, Verdict};
-use crate::strain_chain::alternatives_of;
 
 /// Compares the strain of the runs with the model, or with the causes, and returns the answer of `reconcile`.
 ///
@@ -62,8 +59,11 @@ pub(super) fn answer(job: &Job, work: &mut Work) -> Result<Reconciled, Faults> {
         .as_ref()
         .and_then(|r| r.effects.clone())
         .unwrap_or_default();
-    let wrong = match &deck {
-        Some(_) => installed_otherwise(work, job, &frame, &channels),
+    let wrong = match &mut deck {
+        Some(deck) => {
+            let mut alternatives = || std::mem::take(&mut deck.alternatives);
+            gauges_installed_otherwise(&frame, &mut alternatives)
+        }
         None => Vec::new(),
     };
     if !wrong.is_empty() {
@@ -156,24 +156,6 @@ pub(super) fn look(job: &Job, work: &mut Work) -> Result<(), Faults> {
         }
         (None, None) => Ok(()),
     }
-}
-
-/// Returns the finding on gauges that are all installed otherwise than stated, by the recorded loads.
-fn installed_otherwise(
-    work: &mut Work,
-    job: &Job,
-    frame: &StrainFrame,
-    channels: &[String],
-) -> Vec<Finding> {
-    let rows_of = |work: &mut Work, job: &Job| {
-        let (part, _) = deck_frame::read(work, job, channels).ok()?;
-        let n_c = frame.n_columns();
-        let rows = Matrix::from_fn(channels.len(), n_c, |g, c| part.influence[g * n_c + c]);
-        Some((channels.to_vec(), rows))
-    };
-    gauges_installed_otherwise(frame, &mut || {
-        alternatives_of(work, job, channels, &rows_of)
-    })
 }
 
 /// The verdict on the frame.
