@@ -112,8 +112,7 @@ pub(super) fn read(
         table.clone_from(&base);
     }
     let rows_of = |work: &mut Work, job: &Job| {
-        let laid = lay_gauges(work, job, &fields).ok()?;
-        let laid = in_order(job, laid, channels).ok()?;
+        let laid = in_order(job, lay_gauges(work, job, &fields).ok()?, channels).ok()?;
         let rows = match &finer {
             Some(f) => influence(job, model, &f.lay(&laid, model)?, &solution, n_c),
             None if from_results => {
