@@ -371,8 +371,11 @@ fn of_lorries_that_a_scale_weighed_whole_the_whole_is_known_and_the_axles_are_no
         (share("front") + share("rear")).abs() < 1e-6,
         "what takes from one axle and gives to the other: {apart}"
     );
+    let words: Vec<&str> = said.split_whitespace().collect();
     assert!(
-        said.contains("The runs determine these sums: front + rear"),
+        words
+            .join(" ")
+            .contains("The runs determine these sums: front + rear."),
         "{said}"
     );
     let calibrated = folder.join("cal/calibrated.toml");

@@ -112,7 +112,7 @@ impl<A: Answer> Outcome<A> {
                 count_of(n, "warning")
             ),
             _ => format!(
-                "{} is not reliable: {}.",
+                "{} cannot be relied on: {}.",
                 A::RESULT,
                 reasons(&self.findings)
             ),
@@ -335,7 +335,7 @@ mod tests {
         );
         assert_eq!(
             said,
-            "The answer is not reliable: gauge silent (P1, P2); loads not separable."
+            "The answer cannot be relied on: gauge silent (P1, P2); loads not separable."
         );
         let refused = summary(2, &[(error, "gauge-silent", "P1")]);
         assert!(refused.starts_with("The input has 2 faults"), "{refused}");

@@ -246,10 +246,19 @@ fn finer(
             "load set {sid} acts on elements, and a mesh of half the width is solved for loads at grids, gravity and rotation"
         ));
     }
+    if cases.iter().any(|c| c.mpc != deck.model.mpc) {
+        return Err("the subcases select different MPC sets".to_owned());
+    }
+    // New grids beside elements that are not divided follow the grids of their side: the finer model has these equations too.
+    let mpc = refined.model.mpc;
+    let cases: Vec<LoadCase> = cases
+        .iter()
+        .map(|c| LoadCase { mpc, ..c.clone() })
+        .collect();
     let fine = work
         .stage("solve the finer mesh", |w| {
             let made = (deck, "mesh half as wide");
-            cases_kept(w, made, &refined.model, cases)
+            cases_kept(w, made, &refined.model, &cases)
         })
         .map_err(|faults| faults.first_reason())?;
     let pairs: Vec<_> = solved.iter().copied().zip(&fine.cases).collect();

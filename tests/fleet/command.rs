@@ -252,7 +252,7 @@ fn a_merge_knows_which_parts_are_missing() {
     // Every second record in the order of their names.
     assert!(subject.starts_with("T0_10.csv"), "{subject}");
     assert!(
-        message.contains("of 60 records")
+        message.contains("Of 60 requested records")
             && message.contains(" 30 have")
             && message.contains("shard 2/2"),
         "{message}"
@@ -540,7 +540,7 @@ fn a_drift_hidden_by_peaks_is_found_in_every_record_with_its_mean() {
     };
     assert_eq!(subject, "T1 G2");
     assert!(message.contains("20 of 20 records"), "{message}");
-    let size = message.split_once("off by ").unwrap().1;
+    let size = message.split_once("deviates by ").unwrap().1;
     let size: f64 = size.split(' ').next().unwrap().parse().unwrap();
     // 170 samples of noise 1, and a drift that is not the constant it is taken for: its mean is known to a few tenths.
     assert!(

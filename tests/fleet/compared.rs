@@ -367,7 +367,7 @@ fn a_zero_that_moves_over_the_days_and_exchanged_channels_are_named_with_their_d
     };
     assert_eq!(subject, "T1 G2");
     // Eleven days at 1.5; S and noise leave the mean of 75 samples a few tenths.
-    let moved = message.split_once("moves by ").unwrap().1;
+    let moved = message.split_once("drifts by ").unwrap().1;
     let moved: f64 = moved.split(' ').next().unwrap().parse().unwrap();
     assert!((moved - 16.5).abs() < 1.0, "{message}");
     assert!(message.contains("from 1 to 12"), "{message}");
@@ -411,7 +411,7 @@ fn a_gain_that_changed_is_told_and_exchanged_gauges_have_one_name() {
     let own = gains.iter().find(|f| f[0] == "T2 G1");
     let [_, message] = own.unwrap_or_else(|| panic!("{gains:?}"));
     assert!(
-        message.contains("is 1.00 before 7 and 0.70 from then on"),
+        message.contains("is 1.00 before 7 and 0.70 from that day on"),
         "{message}"
     );
 }

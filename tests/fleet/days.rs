@@ -168,7 +168,7 @@ fn a_day_whose_readings_are_all_half_or_twice_as_large_is_told_and_a_rougher_day
         let [message] = found.as_slice() else {
             panic!("{factor}: {found:?}");
         };
-        let before = message.split(" on 3: ").next().unwrap();
+        let before = message.split(" on 3. ").next().unwrap();
         let said: f64 = before.rsplit(' ').next().unwrap().parse().unwrap();
         // Second differences of 4,000 readings tell noise to 1.5 %, the median of five gauges to half of that; three sigmas.
         assert!((said / factor - 1.0).abs() < 0.03, "{message}");

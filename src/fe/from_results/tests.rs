@@ -329,7 +329,7 @@ fn elements_that_are_spread_over_two_files_are_one_case_and_other_values_are_two
     assert!(
         finding
             .message
-            .starts_with("subcase 1 is in `a` and in `c` with different strain")
+            .starts_with("Subcase 1 is in `a` and in `c` with different strain")
     );
 }
 

@@ -215,7 +215,7 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
                 .collect();
             let got = recover(&s, &readings, errors);
             let said = got.findings.iter().find(|f| {
-                f.code == GAUGE_SUSPECT && f.subject == "G3" && f.message.contains("% (+- ")
+                f.code == GAUGE_SUSPECT && f.subject == "G3" && f.message.contains("% (± ")
             });
             // An error has an interval without zero, whichever gauge it is of.
             let errors = got.findings.iter().filter(|f| {
@@ -243,9 +243,9 @@ fn the_gain_that_is_stated_of_a_suspect_is_that_against_the_others_and_its_inter
 fn size_and_half(found: &Finding) -> Option<[f64; 2]> {
     let (size, rest) = found
         .message
-        .split_once("off by ")?
+        .split_once("deviates by ")?
         .1
-        .split_once(" % (+- ")?;
+        .split_once(" % (± ")?;
     let half = rest.split_once(" %")?.0;
     Some([size.parse().ok()?, half.parse().ok()?])
 }

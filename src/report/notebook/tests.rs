@@ -49,7 +49,7 @@ fn a_piece_has_verdict_findings_and_pictures_and_runs_nothing() {
     for word in [
         "<b>error</b>",
         "It &lt;b&gt;fails",
-        "mend it",
+        "Mend it",
         "<svg",
         "a note",
     ] {

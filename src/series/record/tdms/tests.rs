@@ -288,7 +288,10 @@ fn segments_that_do_not_follow_each_other_are_refused() {
         part(1, 0.25, 0.01),
     ] {
         let refused = joined(second).err().unwrap().to_string();
-        assert!(refused.contains("do not follow each other"), "{refused}");
+        assert!(
+            refused.contains("two parts with a time step between them"),
+            "{refused}"
+        );
     }
     let refused = joined(part(2, 0.25, 0.02)).err().unwrap().to_string();
     assert!(refused.contains("time between samples"), "{refused}");

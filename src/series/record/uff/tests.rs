@@ -56,7 +56,9 @@ fn two_data_sets_of_one_name_are_named() {
     };
     let refused = open("P1").err().unwrap();
     assert!(
-        refused.to_string().contains("`P1` is there 2 times"),
+        refused
+            .to_string()
+            .contains("the file contains `P1` 2 times"),
         "{refused}"
     );
     // A channel that is there once is read by its name.
