@@ -14,7 +14,7 @@ use crate::gauge::{CornerRows, Gauge, Spot, build, change_by_refining, reading};
 use crate::host::fault::{Fault, Faults};
 use crate::host::work::Work;
 use crate::job::{Job, Measured};
-use crate::model::{Model, RefinedModel, ShellIx};
+use crate::model::{GridIx, Load as ModelLoad, Model, RefinedModel, ShellIx};
 use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::solved::{MOST_GRIDS_TWICE, cases_kept, support_of_job};
@@ -147,7 +147,18 @@ pub(super) fn take_out(
         Some(true) => {}
         // Bars and springs alone have no error of the mesh.
         None if deck.model.shells.is_empty() => return None,
-        None if grids <= MOST_GRIDS_TWICE => {}
+        None if grids <= MOST_GRIDS_TWICE => {
+            let of_shells = grids_of_shells(&deck.model);
+            let mut loads = cases.iter().flat_map(|c| &c.loads);
+            let point = loads.find_map(|l| shell_grid_of(&deck.model, &of_shells, l));
+            if let Some(grid) = point {
+                work.notes.push(format!(
+                    "the error of the mesh is not computed: a load acts at grid {grid} of a shell, and the strain under a point load grows as the mesh becomes finer. \
+                     Let it act at the reference grid of an RBE2 or RBE3, or write `mesh_error = true` in [model]"
+                ));
+                return None;
+            }
+        }
         None => {
             work.notes.push(format!(
                 "the error of the mesh is not computed: the deck has {grids} grids, limit {MOST_GRIDS_TWICE}. `mesh_error = true` in [model] computes it"
@@ -179,6 +190,36 @@ pub(super) fn take_out(
                 .push(not_checked(&format!("no finer mesh was solved: {why}")));
             None
         }
+    }
+}
+
+/// Returns by grid whether a shell has it.
+fn grids_of_shells(model: &Model) -> Vec<bool> {
+    let mut of_shells = vec![false; model.grids.len()];
+    for grid in model.shells.iter().flat_map(|s| s.all_grids()) {
+        of_shells[grid.us()] = true;
+    }
+    of_shells
+}
+
+/// Returns the id of a grid of a shell at which a load acts directly.
+fn shell_grid_of(model: &Model, of_shells: &[bool], load: &UnitLoad) -> Option<u32> {
+    let of_shell = |grid: &GridIx| {
+        let is_of_shell = of_shells.get(grid.us()) == Some(&true);
+        model.grids.get(grid.us()).filter(|_| is_of_shell)
+    };
+    match load {
+        UnitLoad::AtGrid { grid, .. } => of_shell(grid).map(|g| g.id),
+        UnitLoad::Set(sid) => {
+            let mut loads = model.load_sets.iter().filter(|s| s.sid == *sid);
+            let acting = loads.next()?.loads.iter();
+            let mut grids = acting.filter_map(|(_, l)| match l {
+                ModelLoad::Force(grid, _) | ModelLoad::Moment(grid, _) => of_shell(grid),
+                _ => None,
+            });
+            grids.next().map(|g| g.id)
+        }
+        UnitLoad::Temperature { .. } => None,
     }
 }
 
@@ -236,15 +277,19 @@ fn finer(
     })?;
     let sets = |model: &Model| -> Vec<u32> { model.load_sets.iter().map(|s| s.sid).collect() };
     let (of_deck, kept) = (sets(&deck.model), sets(&refined.model));
-    let acting = cases.iter().flat_map(|c| &c.loads);
-    let lost = acting.filter_map(|load| match load {
-        UnitLoad::Set(sid) if of_deck.contains(sid) && !kept.contains(sid) => Some(*sid),
-        _ => None,
-    });
-    if let Some(sid) = lost.into_iter().next() {
-        return Err(format!(
-            "load set {sid} acts on elements, and a mesh of half the width is solved for loads at grids, gravity and rotation"
-        ));
+    let of_shells = grids_of_shells(&deck.model);
+    for load in cases.iter().flat_map(|c| &c.loads) {
+        let UnitLoad::Set(sid) = load else { continue };
+        if of_deck.contains(sid) && !kept.contains(sid) {
+            return Err(format!(
+                "load set {sid} acts on elements, and a mesh of half the width is solved for loads at grids, gravity and rotation"
+            ));
+        }
+        if let Some(grid) = shell_grid_of(&deck.model, &of_shells, load) {
+            return Err(format!(
+                "load set {sid} acts at grid {grid} of a shell, and its distribution over the grids of a finer mesh is not known"
+            ));
+        }
     }
     if cases.iter().any(|c| c.mpc != deck.model.mpc) {
         return Err("the subcases select different MPC sets".to_owned());

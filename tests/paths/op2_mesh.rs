@@ -141,7 +141,7 @@ fn unread_elements_are_named_with_their_count_and_refused() {
         let (findings, refused) = tried(&rod(&[(table, record)]));
         let (message, measured) = warned(&findings).unwrap_or_else(|| panic!("{named}"));
         assert!(
-            message.contains(&format!("`rod.op2`: `{named}` acts")),
+            message.contains(&format!("`rod.op2`: `{named}` affects the solution")),
             "{message}"
         );
         assert_eq!(measured, count, "{named}");
@@ -173,7 +173,7 @@ fn unread_loads_act_where_their_set_is_selected() {
     let matt1 = [vec![703, 7, 91], vec![3; 12]].concat();
     let bytes = rod(&[("GEOM3", force2), ("MPT", matt1)]);
     let (findings, refused) = tried(&bytes);
-    assert!(warned(&findings).is_some_and(|w| w.0.contains("`FORCE2 5` acts")));
+    assert!(warned(&findings).is_some_and(|w| w.0.contains("`FORCE2 5` affects the solution")));
     assert!(!refused.contains("does not support"), "{refused}");
     let noted = |f: &&Finding| f.code == "geometry-note" && f.message.contains("MATT1");
     assert!(findings.iter().any(|f| noted(&f)));
