@@ -56,7 +56,7 @@ pub(super) fn read(
         fields: Some(mut fields),
         gauges,
         ..
-    } = prepare_beside(work, job, Some(&columns))?
+    } = prepare_beside(work, &on_own_mesh(job), Some(&columns))?
     else {
         return Err(Faults::from(Fault::of(
             &*job.file,
@@ -164,6 +164,16 @@ pub(super) fn read(
     let described = deck.described(&mut work.inputs, job, channels, &per_job_unit(job))?;
     part.stiffness.extend(described);
     Ok((part, deck))
+}
+
+/// Returns the job with S of the deck's own mesh unless it asks for the mesh error: the part of the mesh in the gap is stated, and signatures come
+/// from a finer mesh.
+fn on_own_mesh(job: &Job) -> Job {
+    let mut job = job.clone();
+    if let Some(model) = &mut job.model {
+        model.mesh_error.get_or_insert(false);
+    }
+    job
 }
 
 /// Lays the gauges turned by 45 and by 90 degrees. Their readings at three angles determine the in-plane strain.
