@@ -196,7 +196,7 @@ fn mechanisms_are_named_before_anything_is_solved() {
     // The set, and what moves: the strip slides along x and along y.
     let said = err.lines().find(|l| l.contains("SPC set 5")).unwrap();
     assert!(
-        said.contains("motions are left") && said.contains("dof 1") && said.contains("dof 2"),
+        said.contains("motions remain") && said.contains("dof 1") && said.contains("dof 2"),
         "{said}"
     );
     // Where no set is selected, that is said.
@@ -591,7 +591,7 @@ fn a_support_that_the_deck_lacks_is_refused_with_the_line_of_the_job() {
         assert_eq!(out.status.code(), Some(2), "{command}");
         let told = text(&out.stderr);
         assert!(
-            told.contains("job.toml:5") && told.contains("SPC set 9"),
+            told.contains("job.toml:6") && told.contains("SPC set 9"),
             "{told}"
         );
     }

@@ -45,7 +45,6 @@ STRIP_JOB = {
 STRIP_TEXT = """units = "mm-t-s"
 [model]
 deck = "strip.bdf"
-mesh_error = false
 [[load]]
 name = "left"
 grid = 1

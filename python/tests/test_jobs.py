@@ -97,7 +97,7 @@ def test_an_outcome_that_cannot_be_relied_on_says_so(matrix_folder):
     (matrix_folder / "S.csv").write_text(f"gauge,A.FZ,B.FZ\n{rows}\n")
     out = sb.sensitivity("job.toml")
     assert not out.is_reliable
-    assert "NOT RELIABLE" in repr(out) and "is not reliable" in out._repr_html_()
+    assert "NOT RELIABLE" in repr(out) and "cannot be relied on" in out._repr_html_()
 
 
 def test_the_text_of_a_dictionary_is_read_back_as_it_was(matrix_folder):

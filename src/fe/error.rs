@@ -333,8 +333,8 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
         .map(|d| format!("grid {} dof {}", d.grid, d.dof))
         .collect();
     let motions = match count {
-        1 => "a motion is".to_owned(),
-        n => format!("{n} motions are"),
+        1 => "a motion remains".to_owned(),
+        n => format!("{n} motions remain"),
     };
     Refusal {
         card: support
@@ -342,7 +342,7 @@ fn mechanism(dofs: &[FreeDof], count: usize, support: (Option<u32>, Relief)) -> 
             .map_or("SPC".to_owned(), |set| format!("SPC {set}")),
         at: Place::default(),
         reason: format!(
-            "{held}, and {motions} without resistance remain, largest at {}",
+            "{held}, and {motions} without resistance, largest at {}",
             few_of(&named, count)
         ),
         remedy: remedy.to_owned(),

@@ -241,7 +241,7 @@ fn another_kind_of_file_than_the_one_expected_is_one_fault() {
     let image = strain_is(b"\x89PNG\r\n\x1a\n\x00\x00");
     assert!(image.contains("it is a PNG image"), "{image}");
     let other = strain_is(b"time,left,right\n0,1,2\n0.01,1,2\n");
-    assert!(other.contains("the columns are left, right"), "{other}");
+    assert!(other.contains("its columns are left, right"), "{other}");
     let deck = InMemory::default()
         .with(
             "main.bdf",

@@ -97,7 +97,10 @@ fn a_held_out_run_that_no_file_has_is_a_fault_of_every_command_that_reads_runs()
     let runs = table("run", 6, as_is);
     let (code, said, _, dir) = recover("held", &runs, "hold_out = [\"R99\"]\n");
     assert_eq!(code, 2, "{said}");
-    assert!(said.contains("`strain.csv` has no run `R99`"), "{said}");
+    assert!(
+        said.contains("`strain.csv` does not contain run `R99`"),
+        "{said}"
+    );
     let (code, said, r, _) = recover("held-right", &runs, "hold_out = [\"R5\"]\n");
     assert_eq!(code, 0, "{said}");
     assert!(load(&r, "R5", "A")[1] > 0.0);

@@ -142,7 +142,7 @@ fn results_of_another_material_thickness_length_or_normal_are_errors() {
     named(
         "one",
         one,
-        "the strain in the results has another sign or direction than the built-in solver computes on this deck, in elements 3",
+        "The strain in the results has another sign or direction than the built-in solver computes on this deck, in elements 3",
     );
     let long = Strip {
         length: 50.0,

@@ -168,7 +168,11 @@ fn a_payload_of_wheel_forces_alone_needs_no_gauges_and_a_flipped_sign_is_refused
         );
     }
     assert!(
-        payload[2]["force"].is_null() && payload[2]["refused"].as_str().unwrap().contains("pull")
+        payload[2]["force"].is_null()
+            && payload[2]["refused"]
+                .as_str()
+                .unwrap()
+                .contains("cannot be negative")
     );
     assert!(codes(&result, "error").contains(&"payload-negative".to_owned()));
     // Place by the levers: sum of force times station over the payload.

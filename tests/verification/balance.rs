@@ -191,7 +191,7 @@ fn a_negative_spring_softens_as_its_closed_form_and_is_named_where_it_outweighs_
             .unwrap_err();
         let faults = error.faults();
         assert!(
-            faults[0].card == "CELAS 9" && faults[0].reason.contains("balance"),
+            faults[0].card == "CELAS 9" && faults[0].reason.contains("equilibrium"),
             "{k}: {error}"
         );
     }

@@ -132,7 +132,7 @@ fn a_zero_or_held_out_file_that_is_the_strain_file_itself_is_refused() {
     }
     for (key, wrong) in [
         ("zero", "differences from their mean"),
-        ("hold_out", "no data would remain to be held out"),
+        ("hold_out", "no run would remain to be held out"),
     ] {
         let dir = copied(&format!("own_{key}"), "frame");
         edit(&dir, "recover.toml", |t| {
@@ -225,7 +225,7 @@ fn a_record_that_repeats_itself_in_a_part_is_said_to_stand_still_or_to_be_no_mea
         let said = said(&text);
         assert!(
             said.contains("warning [record-stands-still]")
-                && said.contains("from t = 14.950000 s to t = 17.400000 s"),
+                && said.contains("From t = 14.950000 s to t = 17.400000 s"),
             "{said}"
         );
     }
