@@ -201,7 +201,7 @@ fn nothing_that_acts_and_gravity_without_mass_are_said() {
     assert!(
         told(&solution.findings, "no-load")
             .message
-            .contains("nothing acts")
+            .contains("Nothing acts")
     );
     let mut b = Bulk::default();
     b.card("MAT1,1,210000.,,.3");
