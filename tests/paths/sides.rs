@@ -203,7 +203,11 @@ fn fibres_off_the_skin_are_named_and_do_not_move_the_skin() {
             .find(|f| f.code == "fibre-off-skin")
             .unwrap();
         assert!(found.message.contains(field), "{}", found.message);
-        assert!(found.message.contains(&format!("The skin is at {z} ")));
+        assert!(
+            found.message.contains(&format!("The skin is at {z}")),
+            "{}",
+            found.message
+        );
         assert_eq!(severity(&findings, "gauge-side-contradicted"), None);
     }
     // Fibres at the skins need no word.
