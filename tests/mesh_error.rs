@@ -294,6 +294,31 @@ fn the_mesh_error_of_open_rails_is_that_against_a_mesh_a_third_as_wide() {
     assert!(after < before / 9.0, "{}", (after / before).sqrt());
 }
 
+/// Without the key S is corrected where loads act through an RBE3, and it is S of the deck's mesh where a load acts at a grid of a shell: the strain
+/// under a point load has no limit.
+#[test]
+fn without_the_key_the_error_is_subtracted_unless_a_load_acts_directly_on_a_shell() {
+    let cells = &middle()[..2];
+    let folder = meshes("default", cells);
+    let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+    let with = std::fs::read_to_string(folder.join("with.toml")).unwrap();
+    let silent = with.replace("mesh_error = true\n", "");
+    write("default.toml", &silent);
+    let at_shell = format!("grid = {}\n", Frame::new(1).grids[&[RAIL, 0, HEIGHT / 2]]);
+    let direct = |text: &str| text.replacen("grid = 900001\n", &at_shell, 1);
+    write("direct.toml", &direct(&silent));
+    let declined = with.replace("mesh_error = true", "mesh_error = false");
+    write("direct_declined.toml", &direct(&declined));
+    let [with, default, direct, declined] = ["with", "default", "direct", "direct_declined"]
+        .map(|name| format!("{name}.toml"))
+        .map(|job| (run(&folder, "sensitivity", &job), rows(&folder, &job)));
+    assert_eq!(default.1, with.1);
+    assert_eq!(default.0["mesh_error"], with.0["mesh_error"]);
+    assert_ne!(direct.1, default.1);
+    assert_eq!(direct.1, declined.1);
+    assert_eq!(direct.0["mesh_error"].as_array().map(Vec::len), Some(0));
+}
+
 /// A frame that is the fine mesh, read with noise: loads recovered from the coarse deck. All 100 runs share one error of the mesh, so that what
 /// their intervals hold scatters more than that of independent runs.
 #[test]

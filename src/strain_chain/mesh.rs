@@ -19,6 +19,7 @@ use crate::sensitivity::{LoadCaseOf, Sensitivity, Uncertainty};
 use crate::strain_chain::deck::DeckModel;
 use crate::strain_chain::solved::{MOST_GRIDS_TWICE, cases_kept, support_of_job};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// Number of shells beyond which only shells round the gauges are divided: four times as many would take too long.
 const MOST_SHELLS: usize = 40_000;
@@ -148,10 +149,8 @@ pub(super) fn take_out(
         // Bars and springs alone have no error of the mesh.
         None if deck.model.shells.is_empty() => return None,
         None if grids <= MOST_GRIDS_TWICE => {
-            let of_shells = grids_of_shells(&deck.model);
-            let mut loads = cases.iter().flat_map(|c| &c.loads);
-            let point = loads.find_map(|l| shell_grid_of(&deck.model, &of_shells, l));
-            if let Some(grid) = point {
+            let loads = cases.iter().flat_map(|c| &c.loads);
+            if let Some(grid) = point_load(&deck.model, loads) {
                 work.notes.push(format!(
                     "the error of the mesh is not computed: a load acts at grid {grid} of a shell, and the strain under a point load grows as the mesh becomes finer. \
                      Let it act at the reference grid of an RBE2 or RBE3, or write `mesh_error = true` in [model]"
@@ -193,37 +192,31 @@ pub(super) fn take_out(
     }
 }
 
-/// Returns by grid whether a shell has it.
-fn grids_of_shells(model: &Model) -> Vec<bool> {
-    let mut of_shells = vec![false; model.grids.len()];
-    for grid in model.shells.iter().flat_map(|s| s.all_grids()) {
-        of_shells[grid.us()] = true;
-    }
-    of_shells
-}
-
-/// Returns the id of a grid of a shell at which a load acts directly.
-fn shell_grid_of(model: &Model, of_shells: &[bool], load: &UnitLoad) -> Option<u32> {
-    let of_shell = |grid: &GridIx| {
-        let is_of_shell = of_shells.get(grid.us()) == Some(&true);
-        model.grids.get(grid.us()).filter(|_| is_of_shell)
-    };
-    match load {
-        UnitLoad::AtGrid { grid, .. } => of_shell(grid).map(|g| g.id),
+/// Returns the id of a grid of a shell at which one of the loads acts directly.
+///
+/// The strain under a point load has no limit for finer meshes. Forces at several grids may be a distributed load, which a finer mesh would have to
+/// distribute over more grids.
+fn point_load<'a>(model: &Model, mut loads: impl Iterator<Item = &'a UnitLoad>) -> Option<u32> {
+    let shells = model.shells.iter();
+    let of_shells: BTreeSet<GridIx> = shells.flat_map(|s| s.all_grids()).collect();
+    let is_direct = |grid: &GridIx| of_shells.contains(grid);
+    let grid = loads.find_map(|load| match load {
+        UnitLoad::AtGrid { grid, .. } => Some(*grid).filter(is_direct),
         UnitLoad::Set(sid) => {
-            let mut loads = model.load_sets.iter().filter(|s| s.sid == *sid);
-            let acting = loads.next()?.loads.iter();
-            let mut grids = acting.filter_map(|(_, l)| match l {
-                ModelLoad::Force(grid, _) | ModelLoad::Moment(grid, _) => of_shell(grid),
+            let set = model.load_sets.iter().find(|s| s.sid == *sid)?;
+            let mut grids = set.loads.iter().filter_map(|(_, l)| match l {
+                ModelLoad::Force(grid, _) | ModelLoad::Moment(grid, _) => Some(*grid),
                 _ => None,
             });
-            grids.next().map(|g| g.id)
+            grids.find(is_direct)
         }
         UnitLoad::Temperature { .. } => None,
-    }
+    })?;
+    model.grids.get(grid.us()).map(|g| g.id)
 }
 
-/// Subtracts the mesh error from the strain of further unit loads on the model of a job, where it was subtracted from the strain of the job's loads.
+/// Subtracts the mesh error from the strain of further unit loads on the model of a job, if it was subtracted from the strain of the job's loads. A
+/// note states that loads directly on a shell keep the strain of the deck's mesh.
 ///
 /// # Errors
 /// Loads that cannot be solved on the finer mesh.
@@ -234,6 +227,12 @@ pub fn take_out_beside(
     (loads, solved): (&[UnitLoad], &mut [CaseResult]),
 ) -> Result<(), Faults> {
     if known.is_none() {
+        return Ok(());
+    }
+    if let Some(grid) = point_load(&deck.model, loads.iter()) {
+        work.notes.push(format!(
+            "the error of the mesh is not subtracted from the strain of the load at grid {grid}: the grid is of a shell"
+        ));
         return Ok(());
     }
     let cases = support_of_job(job, &deck.model)?.unit_cases(&deck.model, loads);
@@ -277,19 +276,20 @@ fn finer(
     })?;
     let sets = |model: &Model| -> Vec<u32> { model.load_sets.iter().map(|s| s.sid).collect() };
     let (of_deck, kept) = (sets(&deck.model), sets(&refined.model));
-    let of_shells = grids_of_shells(&deck.model);
-    for load in cases.iter().flat_map(|c| &c.loads) {
+    let acting = || cases.iter().flat_map(|c| &c.loads);
+    for load in acting() {
         let UnitLoad::Set(sid) = load else { continue };
         if of_deck.contains(sid) && !kept.contains(sid) {
             return Err(format!(
                 "load set {sid} acts on elements, and a mesh of half the width is solved for loads at grids, gravity and rotation"
             ));
         }
-        if let Some(grid) = shell_grid_of(&deck.model, &of_shells, load) {
-            return Err(format!(
-                "load set {sid} acts at grid {grid} of a shell, and its distribution over the grids of a finer mesh is not known"
-            ));
-        }
+    }
+    let of_sets = acting().filter(|l| matches!(l, UnitLoad::Set(_)));
+    if let Some(grid) = point_load(&deck.model, of_sets) {
+        return Err(format!(
+            "a load set acts at grid {grid} of a shell, and its distribution over the grids of a finer mesh is not known"
+        ));
     }
     if cases.iter().any(|c| c.mpc != deck.model.mpc) {
         return Err("the subcases select different MPC sets".to_owned());

@@ -203,7 +203,7 @@ fn has_enforced(model: &Model, spc: Option<u32>) -> bool {
 /// Solves load cases on the model of a deck, with its elastic modes, or takes the kept solution.
 ///
 /// # Errors
-/// What stops the solver, with file and line.
+/// Faults of the solver, with file and line.
 pub fn solve_kept(
     work: &mut Work,
     read: &DeckModel,
@@ -226,7 +226,7 @@ pub fn solve_kept(
 /// describes how the model was made, which the bytes of the deck do not show.
 ///
 /// # Errors
-/// What stops the solver, with file and line.
+/// Faults of the solver, with file and line.
 pub fn unit_loads_kept(
     work: &mut Work,
     (read, made): (&DeckModel, &str),
@@ -239,7 +239,7 @@ pub fn unit_loads_kept(
 /// Returns the strain of load cases like [`unit_loads_kept`].
 ///
 /// # Errors
-/// What stops the solver, with file and line.
+/// Faults of the solver, with file and line.
 pub(super) fn cases_kept(
     work: &mut Work,
     (read, made): (&DeckModel, &str),
@@ -267,7 +267,7 @@ pub struct ElasticModes {
 /// The lowest `count` elastic modes on an SPC set, with their strain, solved or taken from those kept; fewer where the structure has fewer.
 ///
 /// # Errors
-/// What stops the solver, with file and line.
+/// Faults of the solver, with file and line.
 pub fn modes_kept(
     work: &mut Work,
     read: &DeckModel,

@@ -58,7 +58,7 @@ pub(super) fn readings(
 /// The model under these loads.
 ///
 /// # Errors
-/// What stops the solver.
+/// Faults of the solver.
 pub(super) fn solve(
     job: &Job,
     model: &Model,
@@ -73,7 +73,7 @@ pub(super) fn solve(
 /// Solves each variant of the model under these loads and returns the results of `read`.
 ///
 /// # Errors
-/// What stops the solver.
+/// Faults of the solver.
 pub(super) fn solve_each<T>(
     job: &Job,
     model: &Model,
@@ -91,7 +91,7 @@ pub(super) fn solve_each<T>(
 /// bushes and of first order for shells. `None` where no single factor serves the variants.
 ///
 /// # Errors
-/// What stops the solver.
+/// Faults of the solver.
 pub(super) fn small_changes(
     job: &Job,
     model: &Model,
@@ -109,7 +109,7 @@ pub(super) fn small_changes(
 /// Displacements of the model under these loads and for these readings.
 ///
 /// # Errors
-/// What stops the solver.
+/// Faults of the solver.
 pub(super) fn adjoint<'a>(
     job: &Job,
     model: &'a Model,
