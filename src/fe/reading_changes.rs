@@ -65,8 +65,8 @@ pub fn reading_changes(
             return Ok(None);
         };
         let prepared = prepare(&variant, &cases)?;
-        let of_bushes = elements.iter().all(|e| matches!(e, ElementRef::Bush(_)));
-        let change = match of_bushes {
+        let is_bush = |e: &ElementRef| matches!(e, ElementRef::Bush(_));
+        let change = match !elements.is_empty() && elements.iter().all(is_bush) {
             true => adjoint.change_by_bushes(&base.change(&prepared, &elements)?)?,
             false => Some(adjoint.small_change(&prepared, &elements, &cases, readings)?),
         };
