@@ -49,7 +49,7 @@ const COLUMNS: [(&str, &[&str], Measures); 27] = [
     ("cid", &[], Nothing),
     ("role", &[], Nothing),
     ("member", &[], Nothing),
-    // Of a spot that `place` may choose; a gauge has none.
+    // Read of the spots that `place` may choose from; a gauge has no cost.
     ("cost", &["costs", "price"], Nothing),
     // A vector in one column can't be read.
     ("direction", &[], Nothing),
@@ -133,6 +133,12 @@ impl GaugeColumns {
         names.iter().any(|n| self.column(n).is_some())
     }
 
+    /// Marks a column as one that nothing reads.
+    pub fn leave_unread(&mut self, name: &str) {
+        self.unread.extend(self.column(name).map(|c| c.at));
+        self.known.retain(|k| k.0 != name);
+    }
+
     /// Adds a warning that names the columns which nothing reads.
     pub fn note_unread(&self, inputs: &mut Inputs, t: &Table) {
         let is_read = |c| !self.unread.contains(&c);
@@ -171,12 +177,11 @@ impl GaugeColumns {
 
     /// Refuses a direction in a single column, where the table states none in three.
     fn check_direction(&mut self, t: &Table, faults: &mut FaultList) {
-        let Some(column) = self.column("direction") else {
+        if self.column("direction").is_none() {
             return;
-        };
+        }
         if self.column("dir_x").is_some() {
-            self.known.retain(|k| k.0 != "direction");
-            self.unread.push(column.at);
+            self.leave_unread("direction");
             return;
         }
         let remedy = "write its components in the columns `dir_x`, `dir_y`, `dir_z`";

@@ -27,9 +27,11 @@ pub(super) fn read_gauge_file(
     let Some(named) = &job.gauge_file else {
         return Vec::new();
     };
-    let Some((t, columns, gauges)) = read_gauges(inputs, job, named, faults) else {
+    let Some((t, mut columns, gauges)) = read_gauges(inputs, job, named, faults) else {
         return Vec::new();
     };
+    columns.leave_unread("cost");
+    columns.note_unread(inputs, &t);
     if let Some(finding) = without_direction(job, &t, &columns, &gauges) {
         inputs.note(&t.file, finding);
     }
@@ -51,7 +53,6 @@ pub(super) fn read_gauges(
     match table {
         Ok(t) => {
             let columns = GaugeColumns::of(&t, job.units.length_m(), faults);
-            columns.note_unread(inputs, &t);
             let gauges = gauges_from_table(&t, &columns, faults);
             Some((t, columns, gauges))
         }

@@ -18,6 +18,7 @@ pub(super) fn read_spots(inputs: &mut Inputs, job: &mut Job, faults: &mut FaultL
     let Some((table, columns, gauges)) = read_gauges(inputs, job, &named, faults) else {
         return;
     };
+    columns.note_unread(inputs, &table);
     let spots = gauges.into_iter().map(|gauge| {
         let row = table.rows.iter().position(|r| r.0 == gauge.line);
         let row = Row {
