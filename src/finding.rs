@@ -45,7 +45,8 @@ fn read_code<'de, D: Deserializer<'de>>(from: D) -> Result<CodeName, D::Error> {
 }
 
 impl Finding {
-    /// Creates a finding without numbers. Message and remedy become sentences, with a capital letter and a full stop, and are [`shorten_names`].
+    /// Creates a finding without numbers. Message and remedy become sentences with a capital letter and a full stop, and long names in them are
+    /// shortened ([`shorten_names`]).
     pub fn new(
         severity: Severity,
         code: &'static str,

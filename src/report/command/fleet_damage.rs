@@ -2,15 +2,13 @@
 
 use crate::finding::{Finding, Severity};
 use crate::host::outcome::Outcome;
-use crate::report::figure::{Ends, IntervalRow, interval_trace, intervals};
+use crate::report::figure::{Ends, IntervalRow, MOST_RATIO, interval_trace, intervals};
 use crate::report::page::{Section, figure_section};
 use crate::workflow::fleet::{Fleet, VehicleAnswer, VehicleLoadAnswer};
 use serde_json::{Value, json};
 
 /// Rows of the figure for one choice, the largest.
 const MOST_ROWS: usize = 24;
-/// Ratio of two values of positive damage above which the axis goes by powers of ten.
-const WIDE: f64 = 50.0;
 
 /// Damage an hour by vehicle, the largest first: all loads against the mean of the fleet, then each load in its unit. `None` without vehicles.
 pub(super) fn damage_section(o: &Outcome<Fleet>) -> Option<Section> {
@@ -47,7 +45,7 @@ pub(super) fn damage_section(o: &Outcome<Fleet>) -> Option<Section> {
     let known: Vec<f64> = known.collect();
     let is_wide = choices.iter().any(|(_, rows)| {
         let sizes = || rows.iter().map(|r| r.2[1]);
-        sizes().fold(0.0, f64::max) > WIDE * sizes().fold(f64::INFINITY, f64::min)
+        sizes().fold(0.0, f64::max) > MOST_RATIO * sizes().fold(f64::INFINITY, f64::min)
     });
     if is_wide && known.iter().all(|v| *v > 0.0) {
         figure.layout["xaxis"]["type"] = json!("log");

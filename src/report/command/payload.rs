@@ -255,7 +255,7 @@ fn page(found: &Outcome<Weighed>) -> Page {
         "Payload",
         &head,
         &rows,
-        "The place is that of the job if it is known; half axes are those of the 95 % region of the place.",
+        "The job states the place if it is known. Half axes describe the 95 % region of the place.",
     )];
     if !found.weighing.gauges.is_empty() {
         sections.extend(gauge_sections(&found.weighing, units.force.name));

@@ -287,7 +287,7 @@ fn scatter_section(found: &MotionPart) -> Option<Section> {
         ];
         blocks.push(Block::table(&head, cells.collect()));
         blocks.push(Block::Note(format!(
-            "{}; the parameters are those with the best simulation of the fitted record.",
+            "{}. These parameters give the best simulation of the fitted record.",
             s.metric
         )));
     }

@@ -258,7 +258,7 @@ fn gauges_by_layout(found: &Studied) -> Section {
         "Gauges of each layout",
         &["layout", "gauges", "names"],
         &rows,
-        "layouts.csv contains the place of each gauge. A random layout has no list: its errors are those of 50 layouts.",
+        "layouts.csv contains the place of each gauge. A random layout has no list: its errors come from 50 layouts.",
     )
 }
 

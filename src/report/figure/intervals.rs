@@ -4,6 +4,9 @@ use super::chart::Figure;
 use super::packed::shorts;
 use serde_json::{Value, json};
 
+/// Ratio of two values above which one linear axis does not show the smaller one.
+pub const MOST_RATIO: f64 = 20.0;
+
 /// A row: name, then low, value, high.
 pub type IntervalRow = (String, [f64; 3]);
 

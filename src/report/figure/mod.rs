@@ -20,7 +20,7 @@ pub use curve::{CountPoint, curve};
 pub use gap::gap_by_channel;
 pub use heat_map::heat_map;
 pub use history::{LoadTrace, history};
-pub use intervals::{Ends, IntervalRow, interval_trace, intervals};
+pub use intervals::{Ends, IntervalRow, MOST_RATIO, interval_trace, intervals};
 pub use lines::{Line, Scale, lines};
 pub(in crate::report) use packed::{STEPS, packed_deltas, short, shorts, steps_of};
 pub(in crate::report) use script::scripts;

@@ -61,7 +61,7 @@ fn summary(answer: &Calibrated) -> Section {
         let gain = next_words(n);
         pairs.push(("Best next run".to_owned(), gain));
     }
-    Section::new("What was learnt", vec![Block::pairs(&pairs)])
+    Section::new("Result of the calibration", vec![Block::pairs(&pairs)])
 }
 
 /// Errors of the loads of left-out runs with their 95 % intervals, by load; `None` without known loads.

@@ -190,7 +190,7 @@ fn gap_section(outcome: &Outcome) -> Section {
             Block::Text(gap_words(outcome)),
             Block::Figure(gap_by_channel(&by_channel, "µε rms")),
             Block::Note(format!(
-                "Root mean square over the {} runs: before and after the identified effects; stroke: the floor, from noise and stated uncertainty.",
+                "Root mean square over the {} runs: before and after the identified effects. Stroke: the noise floor, from noise and stated uncertainty.",
                 outcome.gap.basis.words()
             )),
             Block::Folded {

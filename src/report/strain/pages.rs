@@ -3,8 +3,8 @@
 use super::gluing::{gluing_section, in_length};
 use crate::finding::Finding;
 use crate::report::figure::{
-    CountPoint, Ends, GaugePoints, IntervalRow, LoadTrace, agreement, curve, heat_map, history,
-    intervals,
+    CountPoint, Ends, GaugePoints, IntervalRow, LoadTrace, MOST_RATIO, agreement, curve, heat_map,
+    history, intervals,
 };
 use crate::report::page::{Block, Page, Section, figure_section, number, table_section};
 use crate::report::scene::{Scene, scene_section};
@@ -232,9 +232,6 @@ pub fn recover_page(
         sections,
     )
 }
-
-/// Ratio of the sizes of two loads above which they are not drawn on one axis.
-const MOST_RATIO: f64 = 20.0;
 
 /// Loads of a similar size in one unit.
 struct Alike<'a> {

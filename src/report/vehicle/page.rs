@@ -95,7 +95,7 @@ fn parameters(found: &Identification) -> Section {
     let row = |p: &Estimate| {
         vec![
             format!("{}{}", p.name, if p.known { " (known)" } else { "" }),
-            told(p.value, "not told"),
+            told(p.value, "not determined"),
             p.sigma.map_or(String::new(), |s| format!("{s:.2e}")),
             told(p.interval.map(|i| i[0]), ""),
             told(p.interval.map(|i| i[1]), ""),
@@ -119,7 +119,7 @@ fn fit(found: &Identification) -> Vec<Block> {
     let head = [
         "channel",
         "left over, %",
-        "judged on",
+        "tested on",
         "residual on the fitted record, %",
     ];
     let mut out = vec![Block::table(&head, rows.collect())];

@@ -74,7 +74,7 @@ pub(super) fn finding(checks: &[CheckLoad], loads: &[String]) -> Option<Finding>
             "check-loads-outside",
             list_few(&names),
             format!(
-                "{inside} of {of} check loads are within their 95 % intervals. The largest deviation is that of `{}` in run `{}`: {} {} \
+                "{inside} of {of} check loads are within their 95 % intervals. The largest deviation has `{}` in run `{}`: {} {} \
                  applied, {} ± {} recovered",
                 worst.load,
                 worst.run,

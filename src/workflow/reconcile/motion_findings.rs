@@ -51,7 +51,7 @@ pub(super) fn findings(work: &mut Work, outcome: &MotionOutcome) {
             "no-hold-out",
             "vehicle.hold_out",
             format!(
-                "The job has no `hold_out` record: the stated gaps are those of {}.",
+                "The job has no `hold_out` record: the stated gaps are gaps of {}.",
                 outcome.judged_by.words()
             ),
             "Name a record of another stretch of road as `hold_out` in [vehicle].",
