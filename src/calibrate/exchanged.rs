@@ -62,13 +62,13 @@ fn is_certain(task: &Task, state: &State, at: [usize; 2], tried: usize) -> bool 
     let far = |l: &LeftOut| chance(l, 1.0);
     let mut own = 1.0;
     for (me, other) in [(0, 1), (1, 0)] {
-        let beside = [at[other]];
-        let stated = recover_left_out(task, state, at[me], &beside, loads[me]);
-        let turned = recover_left_out(task, state, at[me], &beside, loads[other]);
-        let (Some(stated), Some(turned)) = (stated, turned) else {
+        let without = [at[other]];
+        let stated = recover_left_out(task, state, at[me], &without, loads[me]);
+        let exchanged = recover_left_out(task, state, at[me], &without, loads[other]);
+        let (Some(stated), Some(exchanged)) = (stated, exchanged) else {
             return false;
         };
-        if far(&turned) < SUSPECT {
+        if far(&exchanged) < SUSPECT {
             return false;
         }
         own *= far(&stated);

@@ -77,10 +77,10 @@ fn even(d: &Design) -> Whitener {
     Whitener::of(&vec![s; d.f_hz.len()], n)
 }
 
-/// Floors by equation of a design `judged`, its parameters `values` found by [`fit_without_nuisance`] on the designs `learnt` in the `free` ones,
+/// Floors by equation of a design `tested`, its parameters `values` found by [`fit_without_nuisance`] on the designs `fitted` in the `free` ones,
 /// effects `parts` in the model.
 ///
-/// A tolerance of one sd leaves column - A beta there, beta the parameters that take its column on the learnt designs: what the
+/// A tolerance of one sd leaves column - A beta there, beta the parameters that take its column on the fitted designs: what the
 /// parameters take up is no gap. Several tolerances make a quadratic form of normal deviates; its quantile is that of the chi-square
 /// of equal mean and variance (Satterthwaite).
 ///
@@ -89,18 +89,18 @@ fn even(d: &Design) -> Whitener {
 pub fn floors(
     frame: &MotionFrame,
     parts: &[Part],
-    learnt: &[&Design],
-    judged: &Design,
+    fitted: &[&Design],
+    tested: &Design,
     values: &[f64],
     free: &[usize],
 ) -> Vec<Floor> {
-    let h = responses(judged, values);
-    let s = covariance(frame, judged, &h, &Background::default());
-    let n = judged.equations.len();
+    let h = responses(tested, values);
+    let s = covariance(frame, tested, &h, &Background::default());
+    let n = tested.equations.len();
     let sizes: Vec<f64> = (0..n)
-        .map(|i| reference(judged, i, values).max(f64::MIN_POSITIVE))
+        .map(|i| reference(tested, i, values).max(f64::MIN_POSITIVE))
         .collect();
-    let left = left_by_tolerances(frame, parts, learnt, judged, values, free, &h);
+    let left = left_by_tolerances(frame, parts, fitted, tested, values, free, &h);
     (0..n)
         .map(|i| {
             let noise: f64 = s.iter().map(|s| s[i * n + i].re).sum();
@@ -132,21 +132,21 @@ fn quantile(sum: f64, squares: f64, share: f64) -> f64 {
     ChiSquared::new(freedom).map_or(sum, |c| sum / freedom * c.inverse_cdf(share))
 }
 
-/// Returns the residual from one sd of each tolerance in every equation of `judged`, after a fit of the free parameters to `learnt`.
+/// Returns the residual from one sd of each tolerance in every equation of `tested`, after a fit of the free parameters to `fitted`.
 fn left_by_tolerances(
     frame: &MotionFrame,
     parts: &[Part],
-    learnt: &[&Design],
-    judged: &Design,
+    fitted: &[&Design],
+    tested: &Design,
     values: &[f64],
     free: &[usize],
     h: &[Vec<Vec<Complex64>>],
 ) -> Vec<Vec<Bins>> {
-    let here = nuisance(frame, judged, h, parts);
+    let here = nuisance(frame, tested, h, parts);
     if here.is_empty() {
         return vec![];
     }
-    let there: Vec<Vec<Vec<Bins>>> = learnt
+    let there: Vec<Vec<Vec<Bins>>> = fitted
         .iter()
         .map(|d| {
             let own = nuisance(frame, d, &responses(d, values), parts);
@@ -160,8 +160,8 @@ fn left_by_tolerances(
                 .iter()
                 .map(|d| d.get(k).cloned().unwrap_or_default())
                 .collect();
-            let beta = fit_without_nuisance(learnt, free, &target);
-            for (e, column) in judged.equations.iter().zip(&mut column) {
+            let beta = fit_without_nuisance(fitted, free, &target);
+            for (e, column) in tested.equations.iter().zip(&mut column) {
                 for (i, own) in &e.columns {
                     let Some(b) = free.iter().position(|f| f == i).map(|at| beta[at]) else {
                         continue;

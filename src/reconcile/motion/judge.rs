@@ -84,7 +84,7 @@ pub(super) fn conclude(
     let empty = all.iter().find(|s| s.set.is_empty()).cloned();
     let null_under_background = empty.as_ref().map_or(&null, |s| &s.fit);
     let best = nameable(scorer, &all, best);
-    let (best, mut told) = remove_unproven(scorer, &all, best);
+    let (best, mut remarks) = remove_unproven(scorer, &all, best);
     let before = Gaps::of(scorer, &null);
     let after = if best.set.is_empty() {
         Gaps::of(scorer, null_under_background)
@@ -105,10 +105,10 @@ pub(super) fn conclude(
             "the size of one of its effects does not exceed its own scatter".into()
         }),
         Check::of(after.at_floor(rules, excess), || {
-            "the residual with it exceeds the floor".into()
+            "the residual with this effect exceeds the noise floor".into()
         }),
         Check::of(gap.falls && gap.is_above_floor(), || {
-            "with it, the gap of the proof does not fall from above the floor by more than its sampling error".into()
+            "with this effect, the gap of the proof does not fall from above the noise floor by more than its sampling error".into()
         }),
         Check::unless(ahead(
             (best.set.len(), best.log_evidence),
@@ -134,7 +134,7 @@ pub(super) fn conclude(
         let ids: Vec<&str> = (best.set.iter())
             .map(|&c| scorer.candidates[c].id.as_str())
             .collect();
-        told.push(format!(
+        remarks.push(format!(
             "{} is nearest and is not identified: {}",
             ids.join(" + "),
             reasons(&checks).join(", ")
@@ -169,7 +169,7 @@ pub(super) fn conclude(
             left,
             judged_by,
             after.proof.as_ref(),
-            &told,
+            &remarks,
         ),
         next_measurement: next_measurement(scorer, verdict, &best, &all),
         rivals,

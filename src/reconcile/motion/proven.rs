@@ -31,7 +31,7 @@ pub(super) fn remove_unproven(
         };
         Some((with.gap, members.iter().map(&mut without).collect()))
     });
-    let told = |u: &Useless| {
+    let remarks = |u: &Useless| {
         format!(
             "{} explains more of the fitted record, but does not reduce the gap of the proof ({:.2} % with it, {:.2} % without)",
             scorer.candidates[u.candidate].id,
@@ -39,6 +39,6 @@ pub(super) fn remove_unproven(
             100.0 * u.without
         )
     };
-    let told = out.iter().map(told).collect();
-    (set, told)
+    let remarks = out.iter().map(remarks).collect();
+    (set, remarks)
 }
